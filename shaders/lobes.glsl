@@ -1,0 +1,31 @@
+// Radiance of a sum of lobes: the profiles of shviewer/harmonics/zonal.py, term for term.
+//
+// Each profile is a function of |direction - axis|^2, which keeps its digits in float32 where the cosine is close to 1.
+
+layout(std140) uniform LobeBlock {
+    vec4 lobes[3 * MAX_LOBES];  // axis and kind; radiance; parameters
+};
+uniform int n_lobes;
+uniform bool soft_edges;        // spread the edge of a disc over one pixel, for the eye; off where numbers are compared
+
+float profile_value(int kind, vec2 parameters, float squared_chord) {
+    if (kind == PROFILE_CLAMPED_LINEAR)
+        return max(0.0, (parameters.x - parameters.y) - 0.5 * parameters.x * squared_chord);
+    if (kind == PROFILE_DISC) {
+        float width = fwidth(squared_chord);
+        if (soft_edges && width > 0.0) return clamp((parameters.x - squared_chord) / width + 0.5, 0.0, 1.0);
+        return squared_chord <= parameters.x ? 1.0 : 0.0;
+    }
+    if (kind == PROFILE_GAUSSIAN) return exp(-0.5 * parameters.x * squared_chord);
+    return 1.0;
+}
+
+vec3 lobe_radiance(vec3 direction) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < n_lobes; ++i) {
+        vec4 axis_kind = lobes[3 * i];
+        vec3 chord = direction - axis_kind.xyz;
+        sum += profile_value(int(axis_kind.w), lobes[3 * i + 2].xy, dot(chord, chord)) * lobes[3 * i + 1].rgb;
+    }
+    return sum;
+}

@@ -1,0 +1,41 @@
+"""What can go wrong in a way that the person at the keyboard can put right.
+
+A `ShviewerError` becomes one line on stderr and the exit code of its class; every other exception is a
+programming error and keeps its traceback. The codes are part of the interface (README, "Exit codes").
+"""
+
+
+class ShviewerError(Exception):
+    """One line that names the value, the rule and the next step."""
+
+    exit_code = 1
+
+
+class UsageError(ShviewerError):
+    """An argument outside its range; the same code as argparse's own."""
+
+    exit_code = 2
+
+
+class LightError(ShviewerError):
+    """A LIGHT that is unknown, unreadable, damaged or not what its name says."""
+
+    exit_code = 3
+
+
+class OutputError(ShviewerError):
+    """A file that could not be written; what stood there before still does."""
+
+    exit_code = 4
+
+
+class GraphicsError(ShviewerError):
+    """No OpenGL, or one that is too old."""
+
+    exit_code = 5
+
+
+class ShaderError(ShviewerError):
+    """A shader that does not compile or link."""
+
+    exit_code = 6

@@ -1,0 +1,1 @@
+"""What is projected: sums of lobes, environment maps and Python functions."""

@@ -1,0 +1,63 @@
+"""A light that is a lat-long image. Its texels are areas of constant radiance, integrated exactly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.radiance_files import read_radiance_image
+
+
+@dataclass(frozen=True, eq=False)
+class EnvironmentLight:
+    """map: the image. `radiance` interpolates between texel centres; coefficients and norm are those of the areas."""
+
+    map: LatLongMap
+    name: str = "image"
+    notes: tuple[str, ...] = ()
+    best_method: str = "exact texel integrals"
+
+    @classmethod
+    def read(cls, path: Path, *, sanitize: bool = False) -> EnvironmentLight:
+        """The image in a .hdr or .exr file. LightError if it cannot be read."""
+        image = read_radiance_image(path, sanitize=sanitize)
+        return cls(LatLongMap(image.pixels), path.stem, image.notes)
+
+    @property
+    def description(self) -> str:
+        height, width = self.map.texels.shape[:2]
+        return f"environment map, {width} x {height}"
+
+    def radiance(self, directions: Array) -> Array:
+        return self.map.sample(directions)
+
+    def coefficients(self, n_bands: int) -> Array:
+        return project_image(self.map.texels, n_bands)
+
+    def norm_squared(self) -> Array:
+        return self._norm_squared
+
+    @cached_property
+    def _norm_squared(self) -> Array:
+        height, width = self.map.texels.shape[:2]
+        edges = np.linspace(0, np.pi, height + 1)
+        solid_angle = 2 * np.sin((edges[1:] + edges[:-1]) / 2) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width
+        squares = np.stack([np.einsum("cx,cx->x", row, row, dtype=np.float64) for row in self.map.texels])
+        return np.asarray(solid_angle @ squares)
+
+    def landmarks(self) -> Array:
+        """The centre of the brightest texel."""
+        height, width = self.map.texels.shape[:2]
+        row, column = divmod(int(np.abs(self.map.texels).max(axis=2).argmax()), width)
+        theta = np.pi * (row + 0.5) / height
+        return directions_from_angles(np.array([theta]), column_azimuths(width)[[column]])
+
+    def radiance_map(self) -> LatLongMap:
+        return self.map

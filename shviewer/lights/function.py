@@ -1,0 +1,118 @@
+"""A light that is any Python function of directions."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from shviewer.errors import LightError
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
+from shviewer.lights.lat_long import LatLongMap
+
+EVALUATIONS = 2 * 256**2
+"""Gauss-Legendre points: 256 rows, exact for the product of two functions of 256 bands."""
+
+MAP_ROWS = 513
+"""Rows of the map that the GPU samples, from pole to pole."""
+
+DirectionFunction = Callable[[Array], ArrayLike]
+"""Unit directions (k, 3) -> radiance (k, 3), or (k,) for grey."""
+
+
+@dataclass(frozen=True, eq=False)
+class FunctionLight:
+    """`function` is called on arrays of unit directions (k, 3) and returns radiance (k, 3), or (k,) for grey.
+
+    LightError if it raises, or returns another shape or a value that is not finite.
+    """
+
+    function: DirectionFunction
+    name: str = "function"
+    notes: tuple[str, ...] = ()
+
+    @property
+    def description(self) -> str:
+        return "Python function"
+
+    @property
+    def best_method(self) -> str:
+        return f"Gauss-Legendre, {EVALUATIONS:,} points".replace(",", " ")
+
+    def radiance(self, directions: Array) -> Array:
+        try:
+            values = np.asarray(self.function(directions), dtype=np.float64)
+        except Exception as error:
+            last = traceback.extract_tb(error.__traceback__)[-1]
+            where = f"{Path(last.filename).name}:{last.lineno}"
+            raise LightError(f"{self.name}: the function raised {type(error).__name__} at {where}: {error}") from error
+        if values.shape == (len(directions),):
+            values = np.repeat(values[:, None], 3, axis=1)
+        if values.shape != (len(directions), 3):
+            raise LightError(
+                f"{self.name}: for directions of shape {directions.shape} the function returned shape {values.shape}; "
+                f"it must be {(len(directions), 3)} or {(len(directions),)}"
+            )
+        if not np.isfinite(values).all():
+            bad = int(np.argmin(np.isfinite(values).all(axis=1)))
+            raise LightError(
+                f"{self.name}: the function returned {values[bad].tolist()} for direction {directions[bad].tolist()}; "
+                "radiance must be finite"
+            )
+        return values
+
+    def coefficients(self, n_bands: int) -> Array:
+        return project_product(self.radiance, gauss_legendre(max(EVALUATIONS, 2 * (n_bands + 1) ** 2)), n_bands)[0]
+
+    def norm_squared(self) -> Array:
+        return self._norm_squared
+
+    @cached_property
+    def _norm_squared(self) -> Array:
+        return project_product(self.radiance, gauss_legendre(EVALUATIONS), 1)[1]
+
+    def landmarks(self) -> Array:
+        return np.zeros((0, 3))
+
+    def radiance_map(self) -> LatLongMap:
+        return self._map
+
+    @cached_property
+    def _map(self) -> LatLongMap:
+        width = 2 * (MAP_ROWS - 1)
+        theta = np.linspace(0, np.pi, MAP_ROWS)
+        directions = directions_from_angles(theta[:, None], column_azimuths(width))
+        texels: NDArray[np.float32] = self.radiance(directions.reshape(-1, 3)).astype(np.float32)
+        return LatLongMap(texels.reshape(MAP_ROWS, width, 3), rows_on_poles=True)
+
+
+def load_function(path: Path, function: str) -> FunctionLight:
+    """The light `function` of the Python file `path`. LightError if the file or the function is missing or fails."""
+    if not path.is_file():
+        raise LightError(f"{path}: no such file; name a light function as file.py:function")
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    folder = str(path.parent.resolve())
+    sys.path.insert(0, folder)  # as for a script: its neighbours can be imported
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise LightError(f"{path}: importing it raised {type(error).__name__}: {error}") from error
+    finally:
+        sys.path.remove(folder)
+    found = getattr(module, function, None)
+    if not callable(found):
+        there = sorted(name for name, value in vars(module).items() if callable(value) and not name.startswith("_"))
+        raise LightError(f"{path}: no function {function!r}; there is: {', '.join(there) or 'none'}")
+    return FunctionLight(found, function)

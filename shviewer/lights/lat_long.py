@@ -1,0 +1,53 @@
+"""A lat-long raster of radiance, and the same bilinear look-up that shaders/lat_long.glsl makes in float32.
+
+Column u in [0, 1] is phi = pi (1 - 2u): the centre of the image looks along +x, and turning right is decreasing phi. Row
+v in [0, 1] is theta = pi v with +z on top. (OpenEXR's lat-long convention with z for its y.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+
+
+@dataclass(frozen=True, eq=False)
+class LatLongMap:
+    """texels: (height, width, 3) float32. Rows lie at texel centres, or from pole to pole if `rows_on_poles`.
+
+    Texel centres suit an image of areas; rows on the poles suit a sampled function, whose value there is then exact.
+    """
+
+    texels: NDArray[np.float32]
+    rows_on_poles: bool = False
+
+    @property
+    def row_scale_offset(self) -> tuple[float, float]:
+        """(a, b) with row = a theta + b."""
+        height = len(self.texels)
+        return ((height - 1) / np.pi, 0.0) if self.rows_on_poles else (height / np.pi, -0.5)
+
+    def sample(self, directions: Array) -> Array:
+        """Bilinear radiance (k, 3) in unit directions (k, 3); continuous across the seam and the poles."""
+        width = self.texels.shape[1]
+        x, y, z = directions.T
+        scale, offset = self.row_scale_offset
+        row = np.arctan2(np.hypot(x, y), z) * scale + offset
+        column = (0.5 - np.arctan2(y, x) / (2 * np.pi)) * width - 0.5
+        top, left = np.floor(row).astype(np.int64), np.floor(column).astype(np.int64)
+        down, right = (row - top)[:, None], (column - left)[:, None]
+        upper = self.texel_at(top, left) * (1 - right) + self.texel_at(top, left + 1) * right
+        lower = self.texel_at(top + 1, left) * (1 - right) + self.texel_at(top + 1, left + 1) * right
+        return np.asarray(upper * (1 - down) + lower * down)
+
+    def texel_at(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Array:
+        """The texels at whole positions (k,): columns go round, and beyond a pole comes the row half way round."""
+        height, width = self.texels.shape[:2]
+        pole_row = 0 if self.rows_on_poles else 1
+        beyond = (row < 0) | (row >= height)
+        row = np.where(row < 0, -row - pole_row, np.where(row >= height, 2 * (height - 1) - row + pole_row, row))
+        column = (column + beyond * (width // 2)) % width
+        return np.asarray(self.texels[np.clip(row, 0, height - 1), column], dtype=np.float64)

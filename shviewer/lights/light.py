@@ -1,0 +1,89 @@
+"""What every light can do, and how the text LIGHT of a command line becomes one."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import Protocol
+
+from shviewer.errors import LightError
+from shviewer.harmonics.basis import Array
+from shviewer.lights.lat_long import LatLongMap
+from shviewer.resources import resource_folder
+
+IMAGE_SUFFIXES = (".hdr", ".pic", ".exr")
+
+
+class Light(Protocol):
+    """A function on the sphere with values in linear RGB; it may be negative."""
+
+    @property
+    def name(self) -> str:
+        """What the user calls it: a built-in name, a file's stem or a function's name."""
+
+    @property
+    def description(self) -> str:
+        """A few words under the name."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Warnings worth a line each, such as negative texels."""
+
+    @property
+    def best_method(self) -> str:
+        """How `coefficients` computes, in words: "closed form", "exact texel integrals", ..."""
+
+    def radiance(self, directions: Array) -> Array:
+        """Unit directions (k, 3) -> radiance (k, 3), float64."""
+
+    def coefficients(self, n_bands: int) -> Array:
+        """(n_bands**2, 3) by the best way this light knows."""
+
+    def norm_squared(self) -> Array:
+        """Integral of radiance**2 per channel, (3,), by the same quadrature as `coefficients`."""
+
+    def landmarks(self) -> Array:
+        """Directions (j, 3) of features that a grid might step over, such as the axis of a sun."""
+
+    def __hash__(self) -> int:
+        """By identity: what is computed for a light is remembered."""
+
+    def radiance_map(self) -> LatLongMap | None:
+        """What the GPU samples; None for lobes, which the shader evaluates itself."""
+
+
+def built_in_lights() -> dict[str, Path]:
+    """Name -> file of every light in assets/: the scenes first, the paper's default first of all."""
+    scenes = sorted(resource_folder("assets").glob("scenes/*.toml"), key=lambda path: (path.stem != "green", path.stem))
+    maps = sorted(path for path in resource_folder("assets").glob("environments/*") if path.suffix in IMAGE_SUFFIXES)
+    return {path.stem: path for path in [*scenes, *maps]}
+
+
+def find_light(text: str, *, sanitize: bool = False) -> Light:
+    """The light that `text` names: a built-in, a .toml scene, a .hdr or .exr image, or "file.py:function".
+
+    `sanitize` repairs NaN, infinite and negative texels instead of refusing or keeping them.
+    LightError if there is no such light or its file is bad.
+    """
+    from shviewer.lights.environment import EnvironmentLight
+    from shviewer.lights.function import load_function
+    from shviewer.lights.scene import read_scene
+
+    path = built_in_lights().get(text) or Path(text)
+    if path.suffix.lower() == ".toml":
+        return read_scene(path)
+    if path.suffix.lower() in IMAGE_SUFFIXES:
+        return EnvironmentLight.read(path, sanitize=sanitize)
+    file, separator, function = text.rpartition(":")
+    if separator and file.endswith(".py"):
+        return load_function(Path(file), function)
+    raise LightError(_unknown(text))
+
+
+def _unknown(text: str) -> str:
+    names = list(built_in_lights())
+    near = difflib.get_close_matches(text, names, n=3, cutoff=0.5)
+    offer = f"did you mean {' or '.join(near)}?" if near else f"there is: {', '.join(names)}"
+    if Path(text).exists():
+        offer = "a file must end in .toml, .hdr, .pic or .exr, a function is named file.py:function"
+    return f"unknown light {text!r}: {offer}"

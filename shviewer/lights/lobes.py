@@ -1,0 +1,76 @@
+"""A light that is a sum of lobes: coefficients at every band, norm and radiance all in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from shviewer.harmonics.basis import Array, normalise
+from shviewer.harmonics.overlap import inner_product
+from shviewer.harmonics.zonal import Profile, orient
+
+MAX_LOBES = 64
+"""As many as the uniform block of shaders/lobes.glsl holds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lobe:
+    """A profile about `axis` (3,), any length, times `radiance` (3,), linear RGB."""
+
+    profile: Profile
+    axis: Array
+    radiance: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "axis", normalise(self.axis))
+        object.__setattr__(self, "radiance", np.broadcast_to(np.asarray(self.radiance, dtype=np.float64), (3,)))
+
+
+@dataclass(frozen=True, eq=False)
+class LobeLight:
+    """The sum of up to MAX_LOBES lobes. ValueError for none or more."""
+
+    lobes: tuple[Lobe, ...]
+    name: str = "lobes"
+    description: str = ""
+    notes: tuple[str, ...] = ()
+    best_method: str = "closed form"
+
+    def __post_init__(self) -> None:
+        if not 1 <= len(self.lobes) <= MAX_LOBES:
+            raise ValueError(f"{len(self.lobes)} lobes: there must be 1 to {MAX_LOBES}")
+
+    def radiance(self, directions: Array) -> Array:
+        total = np.zeros((len(directions), 3))
+        for lobe in self.lobes:
+            chord = directions - lobe.axis
+            total += lobe.profile.value((chord * chord).sum(axis=1))[:, None] * lobe.radiance
+        return total
+
+    def coefficients(self, n_bands: int) -> Array:
+        total = np.zeros((n_bands**2, 3))
+        for lobe in self.lobes:
+            total += orient(lobe.profile.zonal(n_bands), lobe.axis)[:, None] * lobe.radiance
+        return total
+
+    def norm_squared(self) -> Array:
+        return self._norm_squared
+
+    @cached_property
+    def _norm_squared(self) -> Array:
+        total = np.zeros(3)
+        for i, first in enumerate(self.lobes):
+            for second in self.lobes[: i + 1]:
+                half_chord = np.linalg.norm(first.axis - second.axis) / 2
+                angle = 2 * np.arctan2(half_chord, np.linalg.norm(first.axis + second.axis) / 2)
+                product = inner_product(first.profile, second.profile, float(angle))
+                total += (1 if first is second else 2) * product * first.radiance * second.radiance
+        return np.maximum(total, 0)
+
+    def landmarks(self) -> Array:
+        return np.stack([lobe.axis for lobe in self.lobes])
+
+    def radiance_map(self) -> None:
+        return None

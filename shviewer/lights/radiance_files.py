@@ -1,0 +1,195 @@
+"""Radiance from a file: which kind it is, whether it may be read, and what to do about bad values.
+
+The decoders are in rgbe.py (.hdr, .pic) and openexr_files.py (.exr), the limits in image_limits.py. A *value* is one
+channel of one texel; counts in messages and notes are of values.
+"""
+
+import errno
+import os
+import stat
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.errors import LightError
+from shviewer.lights.image_limits import MAX_FILE_BYTES
+from shviewer.lights.openexr_files import decode_openexr
+from shviewer.lights.rgbe import decode_rgbe
+
+_Decoder = Callable[[bytes], tuple[NDArray[np.float32], tuple[str, ...]]]
+
+
+@dataclass(frozen=True, eq=False)
+class RadianceImage:
+    """A latitude-longitude map as it is in its file, not rescaled."""
+
+    pixels: NDArray[np.float32]  # (height, width, 3) linear RGB, top row first, left column first, C-contiguous
+    notes: tuple[str, ...]  # one line each, for the person who chose the file
+
+
+@dataclass(frozen=True)
+class _Kind:
+    name: str
+    magic: bytes
+    suffixes: tuple[str, ...]
+    decode: _Decoder
+
+
+_KINDS = (
+    _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), decode_rgbe),
+    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), decode_openexr),
+)
+
+_OTHER_MAGICS = (
+    (b"\x89PNG", "a PNG"),
+    (b"\xff\xd8\xff", "a JPEG"),
+    (b"II*\0", "a TIFF"),
+    (b"MM\0*", "a TIFF"),
+    (b"II+\0", "a BigTIFF"),
+    (b"GIF8", "a GIF"),
+    (b"BM", "a BMP"),
+    (b"RIFF", "a WebP or other RIFF"),
+    (b"DDS ", "a DDS"),
+    (b"\xabKTX", "a KTX"),
+    (b"8BPS", "a Photoshop"),
+    (b"PF\n", "a PFM"),
+    (b"Pf\n", "a PFM"),
+    (b"PK\x03\x04", "a ZIP"),
+    (b"\x1f\x8b", "a gzip"),
+    (b"version https://git-lfs", "a Git LFS pointer"),
+    (b"<", "an HTML or XML"),
+)
+
+
+def read_radiance_image(path: Path, *, sanitize: bool = False) -> RadianceImage:
+    """Reads a .hdr, .pic or .exr file, whose kind its first bytes decide.
+
+    sanitize: NaN and -Inf become 0, +Inf the largest finite value, negative values 0. Without it NaN and Inf are
+    refused and negative values kept: projection is linear, and real maps have some.
+    Raises LightError, one line with file, finding, rule and next step, for whatever is wrong with the file.
+    """
+    try:
+        data = _read_bytes(path)
+        pixels, notes = _decoder(data, path.suffix.lower())(data)
+        notes += _repair(pixels) if sanitize else _check(pixels)
+    except LightError as error:
+        raise LightError(f"{_shown(path)}: {error}") from None
+    except MemoryError:
+        raise LightError(
+            f"{_shown(path)}: not enough memory to decode it; close something or make it smaller"
+        ) from None
+    return RadianceImage(pixels, notes + _aspect_notes(pixels))
+
+
+def _shown(path: Path) -> str:
+    """The path; quoted and escaped if it holds a line break or bytes that are no text."""
+    return str(path) if str(path).isprintable() else ascii(str(path))
+
+
+def _read_bytes(path: Path) -> bytes:
+    """The whole file, read once. Looks before it opens, so that no pipe or device can block or be disturbed."""
+    try:
+        _check_is_small_file(os.stat(path))
+        # The file may have been replaced since: without O_NONBLOCK a pipe in its place would block for ever.
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with open(descriptor, "rb") as file:
+            size = _check_is_small_file(os.fstat(descriptor))
+            data = file.read(size + 1)
+    except (OSError, ValueError) as error:
+        raise LightError(_reason(error)) from None
+    if len(data) != size:
+        raise LightError(f"{len(data)} bytes read where it had {size}; it changed meanwhile: try again")
+    return data
+
+
+def _check_is_small_file(status: os.stat_result) -> int:
+    """The size in bytes."""
+    if stat.S_ISDIR(status.st_mode):
+        raise LightError("a directory; name one .hdr or .exr file in it")
+    if not stat.S_ISREG(status.st_mode):
+        raise LightError("a pipe, socket or device; only a regular file is read: save it as one first")
+    if status.st_size == 0:
+        raise LightError("an empty file (0 bytes); fetch or export it again")
+    if status.st_size > MAX_FILE_BYTES:
+        raise LightError(f"{status.st_size} bytes; the limit is {MAX_FILE_BYTES}: make the image smaller")
+    return status.st_size
+
+
+def _reason(error: OSError | ValueError) -> str:
+    match error:
+        case OSError(errno=errno.ENOENT | errno.ENOTDIR):
+            return "no such file; check the path"
+        case OSError(errno=errno.EACCES | errno.EPERM):
+            return "permission to read it is denied; change its mode (chmod +r) or copy it"
+        case OSError(errno=errno.ELOOP):
+            return "a symbolic link that leads back to itself; name the file itself"
+        case OSError():
+            return f"cannot be read ({error.strerror}); check the path and the disk"
+    return f"not a path ({error}); check its spelling"
+
+
+def _decoder(data: bytes, suffix: str) -> _Decoder:
+    """By the first bytes; a suffix that says otherwise is refused, since one of the two is a mistake."""
+    for kind in _KINDS:
+        if not data.startswith(kind.magic):
+            continue
+        if any(suffix in other.suffixes for other in _KINDS if other is not kind):
+            raise LightError(f"named {suffix} but holds {kind.name}; rename it to end in {kind.suffixes[0]}")
+        return kind.decode
+    wanted = "a Radiance .hdr ('#?') or an OpenEXR .exr is needed: convert it"
+    for magic, name in _OTHER_MAGICS:
+        if data.startswith(magic):
+            raise LightError(f"seems to be {name} file; {wanted}")
+    raise LightError(f"begins with {data[:8]!r}, which is no known image; {wanted}")
+
+
+def _check(pixels: NDArray[np.float32]) -> tuple[str, ...]:
+    """Refuses NaN and Inf; negative values are worth a note."""
+    finite = np.isfinite(pixels)
+    if not finite.all():
+        row, column = (int(i) for i in np.argwhere(~finite.all(axis=2))[0])
+        nan, up, down = int(np.isnan(pixels).sum()), int(np.isposinf(pixels).sum()), int(np.isneginf(pixels).sum())
+        raise LightError(
+            f"{nan} NaN, {up} +Inf and {down} -Inf values, the first at row {row}, column {column} (from 0, top left);"
+            " a light must be finite: --sanitize repairs them"
+        )
+    count = int((pixels < 0.0).sum())
+    return (f"{_negative(count)}, minimum {pixels.min():.4g}, kept",) if count else ()
+
+
+def _repair(pixels: NDArray[np.float32]) -> tuple[str, ...]:
+    """Makes the values finite and not negative, in place; one note per kind of repair."""
+    finite = np.isfinite(pixels)
+    if not finite.any():
+        raise LightError("not one finite value, so there is nothing to repair it with: export it again")
+    smallest = pixels.min(where=finite, initial=0.0)
+    largest = pixels.max(where=finite, initial=0.0)
+    repairs = []
+    for wrong, name, value in (
+        (np.isnan(pixels), "NaN", 0.0),
+        (np.isposinf(pixels), "+Inf", largest),
+        (np.isneginf(pixels), "-Inf", 0.0),
+    ):
+        if count := int(wrong.sum()):
+            pixels[wrong] = value
+            repairs.append(f"{count} {name} -> {value:.6g}")
+    notes = ["sanitised: " + ", ".join(repairs)] if repairs else []
+    if count := int((pixels < 0.0).sum()):
+        np.maximum(pixels, 0.0, out=pixels)
+        notes.append(f"sanitised: {_negative(count)}, minimum {smallest:.4g} -> 0")
+    return tuple(notes)
+
+
+def _negative(count: int) -> str:
+    return f"{count} negative value{'s' if count > 1 else ''}"
+
+
+def _aspect_notes(pixels: NDArray[np.float32]) -> tuple[str, ...]:
+    """A lat-long map is twice as wide as high; 1 % is left for a map cut at an odd number of rows."""
+    height, width = pixels.shape[:2]
+    if 50 * abs(width - 2 * height) <= height:
+        return ()
+    return (f"{width} x {height} is not 2:1; a cube cross or an angular map read as lat-long? Used as it is",)

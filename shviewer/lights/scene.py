@@ -1,0 +1,137 @@
+"""Scene files: lobe lights written in TOML.
+
+    description = "A warm key light over a dim sky"
+
+    [[lobe]]
+    profile = "gaussian"        # "clamped-linear", "disc", "gaussian" or "constant"
+    axis = [1, 0.5, 2]          # any length; or azimuth_degrees and elevation_degrees; none for a constant
+    radiance = [8, 6, 4]        # linear RGB, or one number for grey; may be negative
+    sharpness = 40              # clamped-linear: slope, offset; disc: half_angle_degrees
+
+Every mistake is reported with the file, the key and what was expected.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shviewer.errors import LightError
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.quadrature import directions_from_angles
+from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
+from shviewer.lights.lobes import Lobe, LobeLight
+
+PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
+    "clamped-linear": (("slope", "offset"), ClampedLinear),
+    "disc": (("half_angle_degrees",), lambda degrees: Disc(float(np.radians(degrees)))),
+    "gaussian": (("sharpness",), Gaussian),
+    "constant": ((), Constant),
+}
+
+LARGEST = 1e30
+"""Radiance beyond this would leave the shader's float32 once lobes are added up."""
+
+MAX_FILE_BYTES = 2**20
+
+
+def read_scene(path: Path) -> LobeLight:
+    """The lobe light in a .toml file. LightError with file, key and rule for anything wrong with it."""
+    try:
+        if path.stat().st_size > MAX_FILE_BYTES:
+            raise LightError(f"{path}: {path.stat().st_size} bytes; a scene file has at most {MAX_FILE_BYTES}")
+        if not path.is_file():
+            raise LightError(f"{path}: not a regular file; name a .toml scene")
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise LightError(f"{path}: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise LightError(f"{path}: byte {error.start} is not UTF-8 text; a scene is a TOML file") from error
+    except tomllib.TOMLDecodeError as error:
+        raise LightError(f"{path}: not valid TOML: {error}") from error
+    return _Reader(path).light(document)
+
+
+class _Reader:
+    """Checks a parsed scene key by key; `self.path` stands in every message."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def light(self, document: dict[str, Any]) -> LobeLight:
+        self.only("the file", document, ("description", "lobe"))
+        description = document.get("description", "")
+        if not isinstance(description, str):
+            raise self.wrong("description", description, "a text")
+        tables = document.get("lobe", [])
+        if not (isinstance(tables, list) and all(isinstance(table, dict) for table in tables) and tables):
+            raise LightError(f"{self.path}: no lobe; a scene has one or more [[lobe]] tables")
+        lobes = tuple(self.lobe(f"lobe {number}", table) for number, table in enumerate(tables, 1))
+        try:
+            return LobeLight(lobes, self.path.stem, description)
+        except ValueError as error:
+            raise LightError(f"{self.path}: {error}") from error
+
+    def lobe(self, where: str, table: dict[str, Any]) -> Lobe:
+        kind = table.get("profile")
+        if not isinstance(kind, str) or kind not in PROFILES:
+            raise self.wrong(f"{where}: profile", kind, f"one of {', '.join(PROFILES)}")
+        parameters, make = PROFILES[kind]
+        self.only(where, table, ("profile", "radiance", *parameters, *(() if kind == "constant" else AXIS_KEYS)))
+        numbers = [self.number(f"{where}: {key}", table.get(key)) for key in parameters]
+        try:
+            profile = make(*numbers)
+        except ValueError as error:
+            raise LightError(f"{self.path}: {where}: {error}") from error
+        axis = np.array([0.0, 0.0, 1.0]) if kind == "constant" else self.axis(where, table)
+        return Lobe(profile, axis, self.radiance(f"{where}: radiance", table.get("radiance")))
+
+    def axis(self, where: str, table: dict[str, Any]) -> Array:
+        if "axis" in table:
+            if "azimuth_degrees" in table or "elevation_degrees" in table:
+                raise LightError(f"{self.path}: {where}: give axis or azimuth_degrees and elevation_degrees, not both")
+            vector = self.vector(f"{where}: axis", table["axis"])
+            if not vector.any():
+                raise self.wrong(f"{where}: axis", table["axis"], "a vector that is not zero")
+            return vector
+        if "azimuth_degrees" not in table and "elevation_degrees" not in table:
+            raise LightError(
+                f"{self.path}: {where}: no axis; give axis = [x, y, z] or azimuth_degrees and elevation_degrees"
+            )
+        azimuth, elevation = (
+            np.radians(self.number(f"{where}: {key}", table.get(key)))
+            for key in ("azimuth_degrees", "elevation_degrees")
+        )
+        return directions_from_angles(np.array(np.pi / 2 - elevation), np.array(azimuth))
+
+    def radiance(self, key: str, value: Any) -> Array:
+        colour = self.vector(key, value if isinstance(value, list) else [value] * 3)
+        if np.abs(colour).max() > LARGEST:
+            raise self.wrong(key, value, f"at most {LARGEST:g} in magnitude")
+        return colour
+
+    def vector(self, key: str, value: Any) -> Array:
+        if not isinstance(value, list) or len(value) != 3:
+            raise self.wrong(key, value, "three numbers")
+        return np.array([self.number(key, component) for component in value])
+
+    def number(self, key: str, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e300:
+            raise self.wrong(key, value, "a finite number")
+        return float(value)
+
+    def only(self, where: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
+        for key in table:
+            if key not in known:
+                raise LightError(f"{self.path}: {where}: unknown key {key!r}; known are {', '.join(known)}")
+
+    def wrong(self, key: str, value: Any, expected: str) -> LightError:
+        found = "missing" if value is None else repr(value)
+        return LightError(f"{self.path}: {key} is {found}; it must be {expected}")
+
+
+AXIS_KEYS = ("axis", "azimuth_degrees", "elevation_degrees")

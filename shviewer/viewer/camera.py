@@ -1,0 +1,73 @@
+"""The shared camera and the light's rotation. The only module that imports pyrr.
+
+pyrr turns some matrices the wrong way round; only its quaternion functions are used, in float64, and
+tests/viewer/test_camera.py holds them to independent formulas. A quaternion is (x, y, z, w); rotations are v_out = M v_in.
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+from pyrr import quaternion
+
+from shviewer.harmonics.basis import Array
+
+Quaternion = tuple[float, float, float, float]
+
+IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
+VIEW_AXES: Quaternion = (0.5, 0.5, 0.5, 0.5)
+"""Takes the view's x (right), y (up), z (to the viewer) to the world's y, z, x: a camera on +x with +z up."""
+
+
+def about_axis(axis: tuple[float, float, float], degrees: float) -> Quaternion:
+    """The rotation by `degrees`, counterclockwise seen from the tip of `axis`."""
+    turned = quaternion.create_from_axis_rotation(
+        np.array(axis, dtype=np.float64), np.radians(degrees), dtype=np.float64
+    )
+    return _normalised(turned)
+
+
+def compose(second: Quaternion, first: Quaternion) -> Quaternion:
+    """First `first`, then `second`."""
+    return _normalised(quaternion.cross(np.array(second), np.array(first)))
+
+
+def matrix(rotation: Quaternion) -> Array:
+    """The 3 x 3 matrix M of a rotation, v_out = M v_in."""
+    columns = [quaternion.apply_to_vector(np.array(rotation), unit) for unit in np.eye(3)]
+    return np.asarray(np.stack(columns, axis=1), dtype=np.float64)
+
+
+def towards(azimuth_degrees: float, elevation_degrees: float) -> Quaternion:
+    """The rotation that takes +x to an azimuth (from +x towards +y) and an elevation above the x-y plane."""
+    return compose(about_axis((0, 0, 1), azimuth_degrees), about_axis((0, 1, 0), -elevation_degrees))
+
+
+def world_from_view(azimuth_degrees: float, elevation_degrees: float) -> Array:
+    """A camera standing in that direction and looking at the centre; its columns are right, up, and to the viewer."""
+    return matrix(compose(towards(azimuth_degrees, elevation_degrees), VIEW_AXES))
+
+
+def light_from_world(light_rotation: Quaternion) -> Array:
+    """What turns a world direction into the frame in which the light was defined: the inverse of its rotation."""
+    return matrix(light_rotation).T
+
+
+def turned_by_drag(rotation: Quaternion, camera: tuple[float, float], right: float, up: float) -> Quaternion:
+    """`rotation` followed by the turn that moves the front of a sphere `right` and `up`, in radii of the sphere."""
+    azimuth, elevation = camera
+    axes = world_from_view(azimuth, elevation)
+    turn = compose(
+        about_axis(_triple(axes[:, 1]), float(np.degrees(right))),
+        about_axis(_triple(axes[:, 0]), -float(np.degrees(up))),
+    )
+    return compose(turn, rotation)
+
+
+def _normalised(value: Array) -> Quaternion:
+    return cast(Quaternion, tuple(float(part) for part in quaternion.normalize(value)))
+
+
+def _triple(vector: Array) -> tuple[float, float, float]:
+    return float(vector[0]), float(vector[1]), float(vector[2])

@@ -1,0 +1,90 @@
+"""What CPU and GPU share: limits, numbers of cases, the contents of uniform blocks, and the GLSL constants made from them."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, count_bands, index, normalisation
+from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
+from shviewer.lights.lobes import MAX_LOBES, Lobe
+
+MAX_DIRECT_BANDS = 32
+"""The most bands the fragment shader sums: 32**2 vec4 fill the 16 KiB that every driver grants a uniform block."""
+
+MAX_SHOWN_BANDS = 128
+"""Beyond MAX_DIRECT_BANDS the reconstruction is drawn from a map, up to here."""
+
+SOURCE_LOBES, SOURCE_MAP, SOURCE_HARMONICS, SOURCE_SMOOTH_MAP = range(4)
+"""What a sphere shows: lobes, a map interpolated linearly, a sum of harmonics, a map interpolated by cubics."""
+
+BACKGROUND = (0.0203, 0.0203, 0.0232)
+"""Linear RGB around the spheres: a little above black, so that an unlit sphere is still seen."""
+
+NEGATIVE_HUE = (0.06, 0.40, 1.0)
+"""Linear RGB that negative luminance tends to."""
+
+NEGATIVE_KNEE = 0.3
+"""The magnitude, in units of white, that gets half of it."""
+
+SH_TERMS = MAX_DIRECT_BANDS**2
+
+
+def glsl_constants() -> str:
+    """constants.glsl, which every shader that needs a number from here includes."""
+    integers = {
+        "SH_TERMS": SH_TERMS,
+        "MAX_LOBES": MAX_LOBES,
+        "SOURCE_LOBES": SOURCE_LOBES,
+        "SOURCE_MAP": SOURCE_MAP,
+        "SOURCE_HARMONICS": SOURCE_HARMONICS,
+        "SOURCE_SMOOTH_MAP": SOURCE_SMOOTH_MAP,
+        "PROFILE_CONSTANT": Constant.kind,
+        "PROFILE_CLAMPED_LINEAR": ClampedLinear.kind,
+        "PROFILE_DISC": Disc.kind,
+        "PROFILE_GAUSSIAN": Gaussian.kind,
+    }
+    vectors = {"BACKGROUND": BACKGROUND, "NEGATIVE_HUE": NEGATIVE_HUE}
+    lines = [f"#define {name} {value}" for name, value in integers.items()]
+    lines.append(f"const float NEGATIVE_KNEE = {NEGATIVE_KNEE!r};")
+    lines += [f"const vec3 {name} = vec3({', '.join(map(repr, value))});" for name, value in vectors.items()]
+    return "\n".join(lines) + "\n"
+
+
+def pack_coefficients(coefficients: Array) -> NDArray[np.float32]:
+    """The block ShBlock of shaders/sh.glsl, (SH_TERMS, 4): coefficients (n**2, 3) in the order in which the shader reads them.
+
+    For m = 0, 1, ... and l = m, m+1, ...: the term of cos(m phi), then for m > 0 that of sin(m phi). A term is the
+    coefficient times N(l, m) of basis.py, and in w the recurrence's q(l+1, m) = (2l+1)/(l+1+m).
+    """
+    rows, factors, steps = _term_order(count_bands(coefficients))
+    packed = np.zeros((SH_TERMS, 4), dtype=np.float32)
+    packed[: len(rows), :3] = coefficients[rows] * factors[:, None]
+    packed[: len(rows), 3] = steps
+    return packed
+
+
+@lru_cache(maxsize=MAX_DIRECT_BANDS)
+def _term_order(n_bands: int) -> tuple[NDArray[np.int64], Array, Array]:
+    """Index, factor N and step q of each term."""
+    norms = normalisation(n_bands)
+    terms = [
+        (index(l, sign * m), norms[l, m], (2 * l + 1) / (l + 1 + m))
+        for m in range(n_bands)
+        for l in range(m, n_bands)
+        for sign in ((1, -1) if m else (1,))
+    ]
+    rows, factors, steps = zip(*terms, strict=True)
+    return np.array(rows), np.array(factors), np.array(steps)
+
+
+def pack_lobes(lobes: tuple[Lobe, ...]) -> NDArray[np.float32]:
+    """The block LobeBlock of shaders/lobes.glsl, (MAX_LOBES, 3, 4): axis and kind, radiance, parameters."""
+    packed = np.zeros((MAX_LOBES, 3, 4), dtype=np.float32)
+    for row, lobe in zip(packed, lobes, strict=False):
+        row[0] = *lobe.axis, lobe.profile.kind
+        row[1, :3] = lobe.radiance
+        row[2, :2] = lobe.profile.parameters
+    return packed

@@ -1,0 +1,241 @@
+"""Captions, figures, band bars and the help sheet: one RGBA image as large as the frame, drawn when something changes.
+
+What does not fit is left out, least important first: the hint, then the bars, then all figures but the relative error.
+Every piece reports its box, so that a click finds its bar and a test can see that nothing overlaps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.help_sheet import draw_help
+from shviewer.viewer.picture import Picture
+from shviewer.viewer.state import describe_exposure, describe_muted
+
+INK, GREY, FAINT, RULE = (236, 236, 240, 255), (168, 168, 178, 255), (122, 122, 132, 255), (62, 62, 68, 255)
+ACCENT, ACCENT_MUTED = (100, 160, 255, 255), (100, 160, 255, 110)
+UNUSED = (78, 78, 86, 255)
+WARNING = (255, 196, 92, 255)
+
+SLOT_COUNTS = (10, 16, 32, 64, 128)
+"""Bars shown: the smallest of these that holds the bands in use, so that a bar stays where it is while keys are pressed."""
+
+MIN_TYPE = 10
+"""Pixels; smaller type of the built-in face cannot be read."""
+
+HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
+
+
+@dataclass
+class Overlay:
+    """image: (height, width, 4) uint8, straight alpha. boxes: name -> where it was drawn. bars: band -> where to click."""
+
+    image: NDArray[np.uint8]
+    boxes: dict[str, Box] = field(default_factory=dict)
+    bars: dict[int, Box] = field(default_factory=dict)
+
+
+@lru_cache(maxsize=64)
+def font(size: float) -> ImageFont.FreeTypeFont:
+    """Pillow's built-in face; its digits all have the same width. size: pixels."""
+    face = ImageFont.load_default(size)
+    if not isinstance(face, ImageFont.FreeTypeFont):
+        raise RuntimeError("this Pillow was built without FreeType; reinstall it from a wheel")
+    return face
+
+
+def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "") -> Overlay:
+    """Everything that is written over the spheres.
+
+    timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
+    """
+    sheet = Image.new("RGBA", (composition.width, composition.height))
+    painter = _Painter(ImageDraw.Draw(sheet), composition)
+    painter.captions(picture, timing)
+    painter.figures(picture)
+    painter.hint(picture)
+    if picture.state.help_visible:
+        draw_help(sheet, picture.state, composition, opengl)
+    return Overlay(np.asarray(sheet), painter.boxes, painter.bars)
+
+
+class _Painter:
+    """Draws pieces one after the other and remembers their boxes."""
+
+    def __init__(self, draw: ImageDraw.ImageDraw, composition: Composition) -> None:
+        self.draw = draw
+        self.at = composition
+        self.boxes: dict[str, Box] = {}
+        self.bars: dict[int, Box] = {}
+
+    def face(self, size: float) -> ImageFont.FreeTypeFont:
+        """Type of `size` pixels of the design, but never too small to read."""
+        return font(max(round(self.at.px(size)), MIN_TYPE))
+
+    def text(self, name: str, x: float, y: float, text: str, size: float, ink: tuple[int, ...], anchor: str) -> bool:
+        """Draw unless it would leave the frame or touch another piece; `size` in pixels of the design."""
+        face = self.face(size)
+        box = Box(*self.draw.textbbox((x, y), text, font=face, anchor=anchor))
+        if not text or not self.free(box):
+            return False
+        self.draw.text((x, y), text, font=face, fill=ink, anchor=anchor)
+        self.boxes[name] = box
+        return True
+
+    def free(self, box: Box) -> bool:
+        gap = self.at.px(6)
+        inside = box.left >= 0 and box.top >= 0 and box.right <= self.at.width and box.bottom <= self.at.height
+        return inside and not any(
+            box.left < other.right + gap
+            and other.left < box.right + gap
+            and box.top < other.bottom
+            and other.top < box.bottom
+            for other in self.boxes.values()
+        )
+
+    def captions(self, picture: Picture, timing: bool) -> None:
+        """What each sphere is; in the corners what light it is and how it was projected."""
+        at, state = self.at, picture.state
+        y = at.caption_y
+        left, right = (sphere.x for sphere in at.spheres)
+        muted = describe_muted(state)
+        bands = f"{state.n_bands} band{'s' if state.n_bands > 1 else ''}, {state.n_bands**2} coefficient" + "s" * (
+            state.n_bands > 1
+        )
+        self.text("original", left, y, "Original", 17, INK, "mm")
+        full = f"{bands}, {muted}" if muted else bands
+        self.text("reconstruction", right, y, full, 17, INK, "mm") or self.text(
+            "reconstruction", right, y, bands, 17, INK, "mm"
+        )
+        projection = picture.projection
+        method = projection.method
+        if projection.evaluations is not None:
+            method = f"{_grouped(projection.evaluations)} {method}"
+        time = f"{_grouped_number(projection.milliseconds)} ms for {projection.n_bands} bands" if timing else ""
+        far = at.width - at.margin
+        self.text("light", at.margin, y, picture.light.name, 15, GREY, "lm")
+        self.text("method", far, y, method, 13, FAINT, "rm")
+        if not muted:
+            self.text("description", at.margin, y + at.px(20), picture.light.description, 12, FAINT, "lm")
+        elif "reconstruction" in self.boxes and muted not in full:
+            self.text("muted", right, y + at.px(20), muted, 12, FAINT, "mm")
+        self.text("time", far, y + at.px(20), time, 12, FAINT, "rm")
+        if "description" not in self.boxes:
+            self.text("description", at.margin, y + at.px(20), picture.light.description, 12, FAINT, "lm")
+
+    def figures(self, picture: Picture) -> None:
+        """Four numbers in fixed places, then a bar per band."""
+        at, figures = self.at, picture.figures
+        y = at.hairline_y
+        self.draw.rectangle((at.margin, y, at.width - at.margin, y + max(0, round(at.scale) - 1)), fill=RULE)
+        extremes = figures.extremes
+        columns = (
+            ("relative_l2", _percent(figures.relative_l2), "relative L2 error"),
+            ("max_error", _radiance(extremes.max_error), "largest error"),
+            ("minimum", _radiance(extremes.minimum), "minimum"),
+            ("negative_area", _percent(extremes.negative_area, 2), "of the sphere negative"),
+        )
+        x = at.margin
+        for name, value, label in columns:
+            if self.text(name, x, y + at.px(36), value, 24, INK, "lm"):
+                self.text(f"{name}_label", x, y + at.px(66), label, 13, GREY, "lm")
+            x += at.px(150)
+        self.band_bars(picture)
+
+    def band_bars(self, picture: Picture) -> None:
+        """Energy of each band: filled in use, hollow when muted, dim above n; the spot of a band never moves within a page."""
+        at, state = self.at, picture.state
+        slots = next(count for count in SLOT_COUNTS if count >= min(state.n_bands, SLOT_COUNTS[-1]))
+        left = max((box.right for name, box in self.boxes.items() if name.startswith("negative")), default=0) + at.px(
+            24
+        )
+        face = self.face(12)
+        label_width = face.getlength("energy, %")
+        first, last = left + label_width + at.px(16), at.width - at.margin
+        pitch = (last - first) / slots
+        if pitch < 3:
+            return
+        base, tallest = at.hairline_y + at.px(79), at.px(46)
+        shares = picture.figures.energy_share[:slots]
+        scale = tallest / max(max(shares, default=0.0), 1e-300)
+        bar = max(1.0, min(pitch * 0.62, at.px(31)))
+        numbers = pitch > face.getlength("888") + 2
+        self.draw.text(
+            (first - at.px(16), base - at.px(5)), "energy, %" if numbers else "energy", FAINT, face, anchor="rm"
+        )
+        self.draw.text((first - at.px(16), base + at.px(13)), "band", FAINT, face, anchor="rm")
+        step = next(step for step in (1, 2, 4, 8, 16, 32) if pitch * step > face.getlength("128") + 4 or step == 32)
+        for band in range(slots):
+            middle = first + (band + 0.5) * pitch
+            share = shares[band] if band < len(shares) else 0.0
+            top = base - max(share * scale, 1.0)
+            edge = (middle - bar / 2, top, middle + bar / 2, base)
+            used, muted = band < state.n_bands, band in state.muted
+            if not used:
+                self.draw.rectangle(edge, fill=RULE)
+            elif muted:
+                self.draw.rectangle(edge, outline=ACCENT, width=max(1, round(at.scale)))
+            else:
+                self.draw.rectangle(edge, fill=ACCENT)
+            if numbers and used:
+                self.draw.text((middle, top - at.px(9)), f"{100 * share:.0f}", GREY, face, anchor="mm")
+            if band % step == 0:
+                ink = UNUSED if not used else FAINT if muted else GREY
+                self.draw.text((middle, base + at.px(13)), str(band), ink, face, anchor="mm")
+            if used and band == state.cursor and state.cursor_visible:
+                y = base + at.px(24)
+                self.draw.rectangle((middle - bar / 2, y, middle + bar / 2, y + max(1, at.px(1.5))), fill=INK)
+            self.bars[band] = Box(middle - pitch / 2, base - tallest - at.px(16), middle + pitch / 2, base + at.px(26))
+        self.boxes["bars"] = Box(left, base - tallest - at.px(16), last, base + at.px(26))
+
+    def hint(self, picture: Picture) -> None:
+        """A message, or else the most useful keys; on the right the exposure."""
+        at, state = self.at, picture.state
+        y = at.hairline_y + at.px(102)
+        if state.message:
+            face = self.face(13)
+            text = state.message
+            while text and face.getlength(text) > at.width - 2 * at.margin:
+                text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
+            self.text("message", at.margin, y, text, 13, WARNING, "lm")
+            return
+        stops = f"exposure {picture.exposure_stops:+.1f} stops ({describe_exposure(state)})"
+        self.text("exposure", at.width - at.margin, y, stops, 12, FAINT, "rm")
+        self.text("hint", at.margin, y, HINT, 12, FAINT, "lm")
+
+
+def _percent(share: float, digits: int = 3) -> str:
+    """A share of 1 in percent; below a ten-thousandth of a percent Parseval's difference is only rounding."""
+    percent = 100 * share
+    if not np.isfinite(percent):
+        return "infinite"
+    if percent == 0:
+        return "0 %"
+    if percent < 1e-4:
+        return "< 0.0001 %"
+    decimals = min(max(0, digits - 1 - int(np.floor(np.log10(percent) + 1e-9))), 4)
+    return f"{percent:.{decimals}f} %"
+
+
+def _radiance(value: float) -> str:
+    """Three digits, with a power of ten where that is shorter."""
+    if value == 0 or abs(value) < 1e-12:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        return f"{value:.{max(0, 2 - int(np.floor(np.log10(abs(value)))))}f}"
+    mantissa, exponent = f"{value:.2e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def _grouped(count: int) -> str:
+    return f"{count:,}".replace(",", " ")
+
+
+def _grouped_number(value: float) -> str:
+    return f"{value:.2f}" if value < 10 else _grouped(round(value))

@@ -1,0 +1,196 @@
+"""From a state to a Picture: plain arrays for the GPU and figures for the overlay. No OpenGL, so a test can look inside.
+
+What is expensive is remembered: a light is read once, projected once per method to at least MAX_DIRECT_BANDS bands, and
+sampled once for its error figures. A band key then costs a sum of what is there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from time import perf_counter
+
+import numpy as np
+
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.metrics import ErrorGrid, Extremes, band_power, band_weights, relative, squared_error
+from shviewer.harmonics.projection import Synthesis, project_product, project_samples
+from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.light import Light, find_light
+from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.viewer import camera
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.state import METHODS, ViewState
+
+WHITE_PERCENTILE = 0.99
+"""Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
+
+WHITE_LEVEL = 0.9
+MAP_SIZE = (1025, 2048)
+"""Rows and columns of the reconstruction's map: interpolated by cubics it is good to 1.5e-10 n^3 of the peak."""
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """Coefficients (n**2, 3) of all bands computed, by which method, from how many evaluations, in what time."""
+
+    coefficients: Array
+    method: str
+    evaluations: int | None
+    milliseconds: float
+
+    @property
+    def n_bands(self) -> int:
+        return count_bands(self.coefficients)
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What the overlay and the metadata say. Radiance is linear; errors are relative to the L2 norm over all channels."""
+
+    relative_l2: float
+    left_out: float
+    """The part of relative_l2 that the bands above n leave out (Parseval)."""
+    added: float
+    """The part that muted bands and sampling add; relative_l2**2 = left_out**2 + added**2."""
+    extremes: Extremes
+    energy_share: tuple[float, ...]
+    """Energy of each band over that of the light; as many bands as were projected exactly."""
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What the GPU and the overlay need for one state."""
+
+    state: ViewState
+    light: Light
+    lobes: tuple[Lobe, ...]
+    original_map: LatLongMap | None
+    coefficients: Array
+    """Shown, (n_bands**2, 3): muted ones are zero."""
+    reconstruction_map: LatLongMap | None
+    """In place of the direct sum above MAX_DIRECT_BANDS."""
+    world_from_view: Array
+    light_from_world: Array
+    exposure_stops: float
+    projection: Projection
+    figures: Figures
+
+
+def prepare(state: ViewState) -> Picture:
+    """Everything to be drawn and said. LightError if the light cannot be read, UsageError for a state out of range."""
+    check(state)
+    light = load_light(state)
+    projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
+    projection = _project(light, state.method, state.samples, state.seed, projected)
+    coefficients, figures = _reconstruct(light, projection, state.n_bands, state.muted_shown)
+    return Picture(
+        state=state,
+        light=light,
+        lobes=light.lobes if isinstance(light, LobeLight) else (),
+        original_map=light.radiance_map(),
+        coefficients=coefficients,
+        reconstruction_map=None
+        if state.n_bands <= MAX_DIRECT_BANDS
+        else _reconstruction_map(light, projection, state.n_bands, state.muted_shown),
+        world_from_view=camera.world_from_view(*state.camera),
+        light_from_world=camera.light_from_world(state.light_rotation),
+        exposure_stops=exposure_stops(state, light),
+        projection=projection,
+        figures=figures,
+    )
+
+
+def check(state: ViewState) -> None:
+    """UsageError unless bands, muted bands and method are ones the viewer has."""
+    if not 1 <= state.n_bands <= MAX_SHOWN_BANDS:
+        raise UsageError(f"{state.n_bands} bands: the viewer shows 1 to {MAX_SHOWN_BANDS}")
+    if state.method not in METHODS:
+        raise UsageError(f"method {state.method!r}: it must be one of {', '.join(METHODS)}")
+
+
+def load_light(state: ViewState) -> Light:
+    """The state's light; one named by text is read once."""
+    return _find(state.light, state.sanitize) if isinstance(state.light, str) else state.light
+
+
+def exposure_stops(state: ViewState, light: Light) -> float:
+    """The exposure in use: fixed by the state, or such that 99 % of the original stays just below white."""
+    base = _automatic_exposure(light) if state.exposure_stops is None else state.exposure_stops
+    return base + state.exposure_offset
+
+
+@lru_cache(maxsize=32)
+def _find(text: str, sanitize: bool) -> Light:
+    return find_light(text, sanitize=sanitize)
+
+
+@lru_cache(maxsize=32)
+def _project(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+    start = perf_counter()
+    evaluations = None
+    if method == "jittered":
+        directions = jittered(samples, seed)
+        evaluations = len(directions.weights)
+        coefficients = project_samples(light.radiance, directions, n_bands)
+        words = "jittered samples"
+    elif method == "gauss-legendre":
+        rule = gauss_legendre(samples)
+        evaluations = len(rule.theta) * rule.n_columns
+        coefficients = project_product(light.radiance, rule, n_bands)[0]
+        words = "Gauss-Legendre"
+    else:
+        coefficients = light.coefficients(n_bands)
+        words = light.best_method
+    return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))
+
+
+@lru_cache(maxsize=256)
+def _reconstruct(light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...]) -> tuple[Array, Figures]:
+    exact = _project(light, "best", 0, 0, projection.n_bands).coefficients
+    norm_squared = light.norm_squared()
+    shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
+    left_out, added = squared_error(norm_squared, exact[: n_bands**2], shown)
+    total = float(norm_squared.sum())
+    power = band_power(exact).sum(axis=1)
+    figures = Figures(
+        relative_l2=relative(left_out + added, norm_squared),
+        left_out=relative(left_out, norm_squared),
+        added=relative(added, norm_squared),
+        extremes=_error_grid(light, _grid_rows(n_bands)).compare(shown),
+        energy_share=tuple(float(p) / total if total else 0.0 for p in power),
+    )
+    return shown, figures
+
+
+@lru_cache(maxsize=4)
+def _reconstruction_map(light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...]) -> LatLongMap:
+    shown, _ = _reconstruct(light, projection, n_bands, muted)
+    rows, columns = MAP_SIZE
+    values = Synthesis(shown).on_rows(np.linspace(0, np.pi, rows), columns)
+    return LatLongMap(np.ascontiguousarray(values.transpose(0, 2, 1), dtype=np.float32), rows_on_poles=True)
+
+
+def _grid_rows(n_bands: int) -> int:
+    """Four rows per band, and never so few that a built-in light is seen coarsely."""
+    return max(128, 4 * n_bands)
+
+
+@lru_cache(maxsize=8)
+def _error_grid(light: Light, rows: int) -> ErrorGrid:
+    return ErrorGrid(light.radiance, light.landmarks(), rows)
+
+
+@lru_cache(maxsize=32)
+def _automatic_exposure(light: Light) -> float:
+    grid = _error_grid(light, _grid_rows(1))
+    brightest = grid.original.max(axis=1)
+    order = np.argsort(brightest, axis=None)
+    share = np.cumsum(np.broadcast_to(grid.row_share[:, None], brightest.shape).ravel()[order])
+    position = min(int(np.searchsorted(share, WHITE_PERCENTILE)), len(order) - 1)
+    level = float(brightest.ravel()[order[position]])
+    if level <= 0:
+        level = grid.peak
+    return float(np.log2(WHITE_LEVEL / level)) if level > 0 else 0.0

@@ -1,0 +1,308 @@
+"""Everything a frame depends on, and the one table of keys that drives it.
+
+The table makes the help sheet, `--list-keys` and the key list in README.md. Keys are names ("PageUp", "Shift+3"), so
+nothing here needs a window; viewer/window.py turns what GLFW reports into these names.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from shviewer.lights.light import Light
+from shviewer.viewer.camera import IDENTITY, Quaternion, turned_by_drag
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+
+METHODS = ("best", "jittered", "gauss-legendre")
+MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
+CAMERA_HOME = (78.0, 22.0)
+"""Azimuth and elevation of the camera, degrees: both lobes of Green's light are in sight."""
+
+EXPOSURE_STEP = 0.5
+MAX_EXPOSURE = 64.0
+ZOOM_RANGE = (0.25, 16.0)
+
+
+@dataclass(frozen=True)
+class ViewState:
+    """Equal states of equal size give equal pixels; the last four fields are wishes to the window, not to the picture."""
+
+    lights: tuple[str | Light, ...] = ("green",)
+    light_index: int = 0
+    sanitize: bool = False
+    n_bands: int = 5
+    muted: frozenset[int] = frozenset()
+    cursor: int = 0
+    cursor_visible: bool = False
+    method: str = "best"
+    samples: int = 10_000
+    seed: int = 0
+    exposure_stops: float | None = None
+    exposure_offset: float = 0.0
+    """Stops added to the exposure, which is `exposure_stops` or, where that is None, chosen from the light."""
+    camera: tuple[float, float] = CAMERA_HOME
+    light_rotation: Quaternion = IDENTITY
+    zoom: float = 1.0
+    help_visible: bool = False
+    message: str = ""
+    fullscreen: bool = field(default=False, compare=False)
+    closing: bool = field(default=False, compare=False)
+    screenshots: int = field(default=0, compare=False)
+
+    @property
+    def light(self) -> str | Light:
+        return self.lights[self.light_index]
+
+    @property
+    def muted_shown(self) -> tuple[int, ...]:
+        """The muted bands among those in use."""
+        return tuple(sorted(band for band in self.muted if band < self.n_bands))
+
+
+Action = Callable[[ViewState], ViewState]
+
+
+class Binding(NamedTuple):
+    """One row of the key table: what stands for it, what each of its keys does, and its present value."""
+
+    label: str
+    group: str
+    help: str
+    actions: Mapping[str, Action]
+    value: Callable[[ViewState], str] = lambda state: ""
+
+
+def more_bands(count: int) -> Action:
+    return lambda state: with_bands(state, state.n_bands + count)
+
+
+def with_bands(state: ViewState, n_bands: int) -> ViewState:
+    n_bands = min(max(n_bands, 1), MAX_SHOWN_BANDS)
+    return replace(state, n_bands=n_bands, cursor=min(state.cursor, n_bands - 1))
+
+
+def toggle_band(state: ViewState, band: int) -> ViewState:
+    """Mute a band or take it back; one that is not in use changes nothing."""
+    return replace(state, muted=state.muted ^ {band}) if band < state.n_bands else state
+
+
+def solo_band(state: ViewState, band: int) -> ViewState:
+    """Only this band; once more: all of them."""
+    others = frozenset(range(MAX_SHOWN_BANDS)) - {band}
+    if band >= state.n_bands:
+        return state
+    return replace(state, muted=frozenset() if state.muted == others else others)
+
+
+def move_cursor(step: int) -> Action:
+    """Along the band bars; the first press only shows where the cursor is."""
+
+    def action(state: ViewState) -> ViewState:
+        moved = (state.cursor + step) % state.n_bands if state.cursor_visible else state.cursor
+        return replace(state, cursor=moved, cursor_visible=True)
+
+    return action
+
+
+def toggle_cursor(state: ViewState) -> ViewState:
+    return replace(toggle_band(state, state.cursor), cursor_visible=True)
+
+
+def next_light(step: int) -> Action:
+    return lambda state: replace(state, light_index=(state.light_index + step) % len(state.lights))
+
+
+def next_method(state: ViewState) -> ViewState:
+    return replace(state, method=METHODS[(METHODS.index(state.method) + 1) % len(METHODS)])
+
+
+def scale_samples(factor: float) -> Action:
+    def action(state: ViewState) -> ViewState:
+        return replace(
+            state, samples=int(min(max(state.samples * factor, MIN_SAMPLES), max(state.samples, MAX_KEY_SAMPLES)))
+        )
+
+    return action
+
+
+def expose(step: float) -> Action:
+    def action(state: ViewState) -> ViewState:
+        return replace(state, exposure_offset=min(max(state.exposure_offset + step, -MAX_EXPOSURE), MAX_EXPOSURE))
+
+    return action
+
+
+def auto_exposure(state: ViewState) -> ViewState:
+    return replace(state, exposure_stops=None, exposure_offset=0.0)
+
+
+def reset(state: ViewState) -> ViewState:
+    """Everything but the light and the window as it was at the start."""
+    return ViewState(
+        lights=state.lights,
+        light_index=state.light_index,
+        sanitize=state.sanitize,
+        fullscreen=state.fullscreen,
+        screenshots=state.screenshots,
+    )
+
+
+def escape(state: ViewState) -> ViewState:
+    """Close the help, or else the window."""
+    return replace(state, help_visible=False) if state.help_visible else replace(state, closing=True)
+
+
+def orbit(state: ViewState, right: float, up: float) -> ViewState:
+    """Turn both spheres as if their front was dragged, in radii of a sphere."""
+    azimuth, elevation = state.camera
+    azimuth = (azimuth - right * 180 / math.pi) % 360
+    elevation = min(max(elevation - up * 180 / math.pi, -90.0), 90.0)
+    return replace(state, camera=(azimuth, elevation))
+
+
+def rotate_light(state: ViewState, right: float, up: float) -> ViewState:
+    """Turn the light as if the front of a sphere was dragged, in radii of a sphere."""
+    return replace(state, light_rotation=turned_by_drag(state.light_rotation, state.camera, right, up))
+
+
+def zoom(state: ViewState, steps: float) -> ViewState:
+    low, high = ZOOM_RANGE
+    return replace(state, zoom=min(max(state.zoom * 1.1**steps, low), high))
+
+
+def open_light(state: ViewState, light: str | Light) -> ViewState:
+    """Show `light`, adding it to those that Left and Right go through."""
+    lights = state.lights if light in state.lights else (*state.lights, light)
+    return replace(state, lights=lights, light_index=lights.index(light), message="")
+
+
+def describe_muted(state: ViewState) -> str:
+    """ "muted 1, 3-5", "only band 2", or "" """
+    bands = state.muted_shown
+    if not bands:
+        return ""
+    if len(bands) == state.n_bands - 1 and state.n_bands > 2:
+        return f"only band {next(band for band in range(state.n_bands) if band not in bands)}"
+    runs: list[list[int]] = []
+    for band in bands:
+        if runs and band == runs[-1][-1] + 1:
+            runs[-1].append(band)
+        else:
+            runs.append([band])
+    return "muted " + ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs)
+
+
+def light_name(light: str | Light) -> str:
+    return light.replace("\\", "/").rpartition("/")[2] if isinstance(light, str) else light.name
+
+
+def describe_exposure(state: ViewState) -> str:
+    base = "auto" if state.exposure_stops is None else f"{state.exposure_stops:+g}"
+    return base if not state.exposure_offset else f"{base} {state.exposure_offset:+g}"
+
+
+DIGITS = tuple("0123456789")
+BANDS, LIGHT, PICTURE, PROGRAM = "Bands", "Light", "Picture", "Program"
+
+BINDINGS = (
+    Binding(
+        "Up / Down",
+        BANDS,
+        "one band more, one fewer",
+        {"Up": more_bands(1), "Down": more_bands(-1)},
+        lambda s: f"{s.n_bands}",
+    ),
+    Binding(
+        "PageUp / PageDown", BANDS, "four bands more, four fewer", {"PageUp": more_bands(4), "PageDown": more_bands(-4)}
+    ),
+    Binding(
+        "Home / End",
+        BANDS,
+        "1 band, 32 bands",
+        {"Home": lambda s: with_bands(s, 1), "End": lambda s: with_bands(s, MAX_DIRECT_BANDS)},
+    ),
+    Binding(
+        "0-9",
+        BANDS,
+        "mute or unmute that band",
+        {digit: lambda s, band=int(digit): toggle_band(s, band) for digit in DIGITS},  # type: ignore[misc]
+        lambda s: describe_muted(s) or "none muted",
+    ),
+    Binding(
+        "Shift+0-9",
+        BANDS,
+        "that band alone; again: all",
+        {f"Shift+{digit}": lambda s, band=int(digit): solo_band(s, band) for digit in DIGITS},  # type: ignore[misc]
+    ),
+    Binding(
+        ", / .",
+        BANDS,
+        "cursor to the band before, after",
+        {",": move_cursor(-1), ".": move_cursor(1)},
+        lambda s: f"band {s.cursor}",
+    ),
+    Binding("Enter / click", BANDS, "mute or unmute the band there", {"Enter": toggle_cursor}),
+    Binding("A", BANDS, "all bands on", {"A": lambda s: replace(s, muted=frozenset())}),
+    Binding(
+        "Left / Right",
+        LIGHT,
+        "light before, after",
+        {"Left": next_light(-1), "Right": next_light(1)},
+        lambda s: light_name(s.light),
+    ),
+    Binding("M", LIGHT, "projection method", {"M": next_method}, lambda s: s.method),
+    Binding(
+        "S / Shift+S",
+        LIGHT,
+        "samples x 4, / 4",
+        {"S": scale_samples(4), "Shift+S": scale_samples(0.25)},
+        lambda s: f"{s.samples}",
+    ),
+    Binding("Shift+drag", LIGHT, "turn the light", {}),
+    Binding("drop a file", LIGHT, "open it", {}),
+    Binding(
+        "E / Shift+E",
+        PICTURE,
+        "half a stop brighter, darker",
+        {"E": expose(EXPOSURE_STEP), "Shift+E": expose(-EXPOSURE_STEP)},
+        describe_exposure,
+    ),
+    Binding("N", PICTURE, "exposure from the light", {"N": auto_exposure}),
+    Binding("drag", PICTURE, "turn both spheres", {}, lambda s: f"{s.camera[0]:.0f}, {s.camera[1]:.0f} deg"),
+    Binding("scroll", PICTURE, "zoom", {}, lambda s: f"{s.zoom:.2f} x"),
+    Binding("F", PICTURE, "camera back", {"F": lambda s: replace(s, camera=CAMERA_HOME, zoom=1.0)}),
+    Binding("R", PICTURE, "reset all but the light", {"R": reset}),
+    Binding(
+        "P / Ctrl+S",
+        PROGRAM,
+        "save this picture",
+        dict.fromkeys(("P", "Ctrl+S"), lambda s: replace(s, screenshots=s.screenshots + 1)),
+    ),
+    Binding("F11", PROGRAM, "full screen", {"F11": lambda s: replace(s, fullscreen=not s.fullscreen)}),
+    Binding(
+        "H / ?", PROGRAM, "this help", dict.fromkeys(("H", "?"), lambda s: replace(s, help_visible=not s.help_visible))
+    ),
+    Binding("Esc", PROGRAM, "close help, then quit", {"Esc": escape}),
+)
+
+ACTIONS: Mapping[str, Action] = {key: action for binding in BINDINGS for key, action in binding.actions.items()}
+
+
+def press(state: ViewState, key: str) -> ViewState:
+    """The state after `key`; a key without a binding changes nothing. Any bound key takes a message away."""
+    action = ACTIONS.get(key)
+    return state if action is None else action(replace(state, message=""))
+
+
+def key_table() -> str:
+    """One line per row of the table, grouped: the text of `--list-keys` and of README.md."""
+    lines: list[str] = []
+    group = ""
+    for binding in BINDINGS:
+        if binding.group != group:
+            group = binding.group
+            lines += ([""] if lines else []) + [group]
+        lines.append(f"  {binding.label:<20}{binding.help}")
+    return "\n".join(lines)
