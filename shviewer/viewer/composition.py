@@ -63,9 +63,9 @@ def compose(width: int, height: int, zoom: float = 1.0, content_scale: float = 1
     first = max((height - block) / 2, 0.0)  # a tall window centres the whole
     centre_y = first + top + radius
     hairline = min(centre_y + radius + gap, max(height - strip, centre_y + radius))
-    half = width / 2
+    half, ceiling = width / 2, first + top + (10 * scale if zoom > 1 else -2)  # under the captions
     spheres = (
-        Sphere(width / 4, centre_y, radius * zoom, Box(0, 0, half, hairline)),
-        Sphere(3 * width / 4, centre_y, radius * zoom, Box(half, 0, width, hairline)),
+        Sphere(width / 4, centre_y, radius * zoom, Box(0, ceiling, half - scale, hairline)),
+        Sphere(3 * width / 4, centre_y, radius * zoom, Box(half + scale, ceiling, width, hairline)),
     )
     return Composition(width, height, scale, spheres, first + 28 * scale, hairline)

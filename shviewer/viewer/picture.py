@@ -16,13 +16,14 @@ from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import ErrorGrid, Extremes, band_power, band_weights, relative, squared_error
 from shviewer.harmonics.projection import Synthesis, project_product, project_samples
-from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.harmonics.quadrature import MAX_SAMPLES, gauss_legendre, jittered
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light, find_light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer import camera
+from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
-from shviewer.viewer.state import METHODS, ViewState
+from shviewer.viewer.state import MAX_EXPOSURE, METHODS, ZOOM_RANGE, ViewState
 
 WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
@@ -103,12 +104,25 @@ def prepare(state: ViewState) -> Picture:
     )
 
 
-def check(state: ViewState) -> None:
-    """UsageError unless bands, muted bands and method are ones the viewer has."""
+def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> None:
+    """UsageError unless state and size (width, height) are within the limits of the viewer."""
     if not 1 <= state.n_bands <= MAX_SHOWN_BANDS:
         raise UsageError(f"{state.n_bands} bands: the viewer shows 1 to {MAX_SHOWN_BANDS}")
+    for band in sorted(state.muted):
+        if not 0 <= band < MAX_SHOWN_BANDS:
+            raise UsageError(f"muted band {band}: bands are counted from 0 to {MAX_SHOWN_BANDS - 1}")
     if state.method not in METHODS:
         raise UsageError(f"method {state.method!r}: it must be one of {', '.join(METHODS)}")
+    if not 1 <= state.samples <= MAX_SAMPLES:
+        raise UsageError(f"{state.samples} samples: there must be 1 to {MAX_SAMPLES}")
+    if state.seed < 0:
+        raise UsageError(f"seed {state.seed}: it must not be negative")
+    if state.exposure_stops is not None and abs(state.exposure_stops) > MAX_EXPOSURE:
+        raise UsageError(f"exposure {state.exposure_stops:g}: it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops")
+    if not ZOOM_RANGE[0] <= state.zoom <= ZOOM_RANGE[1]:
+        raise UsageError(f"zoom {state.zoom:g}: it must be {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g}")
+    if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
+        raise UsageError(f"size {size[0]} x {size[1]}: each side must be {MIN_SIDE} to {MAX_SIDE} pixels")
 
 
 def load_light(state: ViewState) -> Light:

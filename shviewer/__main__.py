@@ -1,0 +1,8 @@
+"""python -m shviewer, and the command shviewer."""
+
+import sys
+
+from shviewer.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,315 @@
+"""The window: what GLFW reports becomes a new state, and a changed state becomes a frame. The only importer of glfw.
+
+Nothing is drawn and no time is spent while nothing happens. GLFW is asked to return four times a second all the same, so
+that Ctrl-C in the terminal is heard at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import glfw
+import moderngl
+
+from shviewer.errors import GraphicsError, ShviewerError
+from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.overlay import Overlay, draw_overlay
+from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.picture_files import metadata, write_numbered
+from shviewer.viewer.renderer import GL_VERSIONS, Renderer
+from shviewer.viewer.screenshot import render_rgb
+from shviewer.viewer.state import ViewState, open_light, orbit, press, rotate_light, toggle_band, zoom
+
+IDLE_SECONDS = 0.25
+CLICK_PIXELS = 4.0
+"""A press that moves less than this before its release is a click."""
+
+SPECIAL_KEYS = {
+    glfw.KEY_UP: "Up",
+    glfw.KEY_DOWN: "Down",
+    glfw.KEY_LEFT: "Left",
+    glfw.KEY_RIGHT: "Right",
+    glfw.KEY_PAGE_UP: "PageUp",
+    glfw.KEY_PAGE_DOWN: "PageDown",
+    glfw.KEY_HOME: "Home",
+    glfw.KEY_END: "End",
+    glfw.KEY_ENTER: "Enter",
+    glfw.KEY_KP_ENTER: "Enter",
+    glfw.KEY_ESCAPE: "Esc",
+    glfw.KEY_F11: "F11",
+    **{getattr(glfw, f"KEY_{digit}"): str(digit) for digit in range(10)},
+    **{getattr(glfw, f"KEY_KP_{digit}"): str(digit) for digit in range(10)},
+}
+"""Keys known by their place; digits, too, because on some layouts they are typed with Shift."""
+
+
+class NoDisplayError(GraphicsError):
+    """There is nothing to open a window on."""
+
+
+def key_name(code: int, scancode: int, modifiers: int) -> str:
+    """The name under which state.py binds a key: letters by what they type, so that the keyboard's layout is respected."""
+    name = SPECIAL_KEYS.get(code)
+    if name is None:
+        typed = glfw.get_key_name(code, scancode)
+        name = typed.upper() if typed and len(typed) == 1 else ""
+    shift = "Shift+" if modifiers & glfw.MOD_SHIFT else ""
+    control = "Ctrl+" if modifiers & (glfw.MOD_CONTROL | glfw.MOD_SUPER) else ""
+    return f"{control}{shift}{name}"
+
+
+def run(state: ViewState, size: tuple[int, int], *, verbose: bool = False) -> None:
+    """Open a window of `size` screen coordinates and stay until it is closed.
+
+    NoDisplayError without a display, GraphicsError without OpenGL 3.3. verbose: one line on stderr per frame.
+    """
+    with _glfw_window(size) as handle:
+        window = Window(handle, state, verbose)
+        try:
+            window.loop()
+        finally:
+            window.renderer.release()
+
+
+class Window:
+    """One window, one state, one renderer."""
+
+    def __init__(self, handle: Any, state: ViewState, verbose: bool) -> None:
+        self.handle = handle
+        self.state = state
+        self.verbose = verbose
+        self.renderer = Renderer(moderngl.create_context(require=330))
+        self.picture: Picture = prepare(state)
+        self.overlay: Overlay | None = None
+        self.overlay_key: object = None
+        self.frames_due = 2  # the first swap may still have the old size
+        self.frame_count = 0
+        self.pressed_at: tuple[float, float] | None = None
+        self.last_cursor = (0.0, 0.0)
+        self.dragged = False
+        self.windowed_place = (0, 0, 1280, 640)
+        glfw.set_key_callback(handle, self._on_key)
+        glfw.set_char_callback(handle, self._on_char)
+        glfw.set_mouse_button_callback(handle, self._on_button)
+        glfw.set_cursor_pos_callback(handle, self._on_cursor)
+        glfw.set_scroll_callback(handle, lambda window, dx, dy: self.change(zoom(self.state, dy)))
+        glfw.set_drop_callback(handle, self._on_drop)  # type: ignore[arg-type]  # the stub shows the C signature
+        glfw.set_framebuffer_size_callback(handle, lambda *_: self.redraw())
+        glfw.set_window_refresh_callback(handle, lambda *_: self.redraw())
+        glfw.set_window_title(handle, f"shviewer - {self.picture.light.name}")
+
+    def loop(self) -> None:
+        """Draw what is due, then sleep until something happens."""
+        while not glfw.window_should_close(self.handle):
+            if self.frames_due:
+                self.frame()
+            if self.frames_due:
+                glfw.poll_events()
+            else:
+                glfw.wait_events_timeout(IDLE_SECONDS)
+
+    def redraw(self) -> None:
+        self.frames_due = 2
+
+    def change(self, state: ViewState) -> None:
+        """Take a new state and grant its wishes; one that cannot be shown leaves the present light and says why."""
+        last = self.state
+        self.state = state
+        if state.closing:
+            glfw.set_window_should_close(self.handle, True)
+        if state.fullscreen != last.fullscreen:
+            self._set_fullscreen(state.fullscreen)
+        if state.screenshots != last.screenshots:
+            self._save()
+        self.frames_due = max(self.frames_due, 1)
+
+    def frame(self) -> None:
+        """Draw the present state."""
+        self.frames_due -= 1
+        composition = self.composition()
+        if composition is None:
+            return
+        start = perf_counter()
+        self._prepare()
+        self._draw_overlay(composition)
+        assert self.overlay is not None
+        self.renderer.show(self.picture, self.overlay.image)
+        self.renderer.draw(self.renderer.context.screen, composition)
+        glfw.swap_buffers(self.handle)
+        self.frame_count += 1
+        if self.verbose:
+            milliseconds = 1000 * (perf_counter() - start)
+            print(
+                f"frame {self.frame_count}: {self.picture.light.name}, {self.state.n_bands} bands, "
+                f"{composition.width} x {composition.height}, {milliseconds:.1f} ms",
+                file=sys.stderr,
+                flush=True,
+            )
+
+    def composition(self) -> Composition | None:
+        """The layout of the framebuffer, which may be larger than the window (HiDPI); None while minimised."""
+        width, height = glfw.get_framebuffer_size(self.handle)
+        if width * height == 0:
+            return None
+        scale = float(glfw.get_window_content_scale(self.handle)[1])
+        return compose(width, height, self.state.zoom, scale if scale > 0 else 1.0)
+
+    def _prepare(self) -> None:
+        if self.picture.state == self.state:
+            return
+        try:
+            picture = prepare(self.state)
+        except ShviewerError as error:
+            wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots")}
+            self.state = replace(self.picture.state, message=str(error), **wishes)
+            picture = prepare(self.state)
+        if picture.light is not self.picture.light:
+            glfw.set_window_title(self.handle, f"shviewer - {picture.light.name}")
+            if picture.light.notes and not self.state.message:
+                self.state = replace(self.state, message=f"{picture.light.name}: {'; '.join(picture.light.notes)}")
+                picture = prepare(self.state)
+        self.picture = picture
+
+    def _draw_overlay(self, composition: Composition) -> None:
+        """Anew only if something written in it changed: turning and zooming write nothing unless the help shows them."""
+        state = self.picture.state
+        if not state.help_visible:
+            home = ViewState()
+            state = replace(state, camera=home.camera, light_rotation=home.light_rotation, zoom=home.zoom)
+        key = (state, composition.width, composition.height, composition.scale)
+        if key != self.overlay_key:
+            self.overlay_key = key
+            self.overlay = draw_overlay(self.picture, composition, timing=True, opengl=self.renderer.version)
+
+    def _save(self) -> None:
+        composition = self.composition()
+        if composition is None:
+            return
+        self._prepare()
+        self.state = replace(self.state, message="")
+        self._prepare()
+        pixels = render_rgb(self.renderer, self.picture, composition)
+        text = metadata(self.picture, composition, self.renderer.version)
+        try:
+            path = write_numbered(f"shviewer-{file_stem(self.picture.light.name)}", pixels, text)
+        except ShviewerError as error:
+            self.state = replace(self.state, message=str(error))
+        else:
+            self.state = replace(self.state, message=f"saved {path}")
+            if self.verbose:
+                print(f"saved {path}", file=sys.stderr, flush=True)
+
+    def _set_fullscreen(self, fullscreen: bool) -> None:
+        if fullscreen:
+            self.windowed_place = (*glfw.get_window_pos(self.handle), *glfw.get_window_size(self.handle))
+            monitor = glfw.get_primary_monitor()
+            mode = glfw.get_video_mode(monitor)
+            glfw.set_window_monitor(self.handle, monitor, 0, 0, mode.size.width, mode.size.height, mode.refresh_rate)
+        else:
+            glfw.set_window_monitor(self.handle, None, *self.windowed_place, 0)  # type: ignore[arg-type]  # None: no monitor
+        self.redraw()
+
+    def _on_key(self, window: Any, code: int, scancode: int, action: int, modifiers: int) -> None:
+        if action != glfw.RELEASE:  # a key held down repeats
+            self.change(press(self.state, key_name(code, scancode, modifiers)))
+
+    def _on_char(self, window: Any, codepoint: int) -> None:
+        if chr(codepoint) == "?":  # wherever the layout has it
+            self.change(press(self.state, "?"))
+
+    def _cursor(self) -> tuple[float, float]:
+        """The mouse in pixels of the framebuffer."""
+        x, y = glfw.get_cursor_pos(self.handle)
+        window, pixels = glfw.get_window_size(self.handle), glfw.get_framebuffer_size(self.handle)
+        return x * pixels[0] / max(window[0], 1), y * pixels[1] / max(window[1], 1)
+
+    def _on_button(self, window: Any, button: int, action: int, modifiers: int) -> None:
+        if button != glfw.MOUSE_BUTTON_LEFT:
+            return
+        if action == glfw.PRESS:
+            self.pressed_at = self.last_cursor = self._cursor()
+            self.dragged = False
+        elif self.pressed_at is not None:
+            x, y = self.pressed_at
+            self.pressed_at = None
+            bars = self.overlay.bars if self.overlay is not None and not self.dragged else {}
+            for band, box in bars.items():
+                if box.contains(x, y):
+                    self.change(toggle_band(replace(self.state, message=""), band))
+
+    def _on_cursor(self, window: Any, x: float, y: float) -> None:
+        composition = self.composition()
+        if self.pressed_at is None or composition is None:
+            return
+        here = self._cursor()
+        if (
+            not self.dragged
+            and max(abs(here[0] - self.pressed_at[0]), abs(here[1] - self.pressed_at[1])) < CLICK_PIXELS
+        ):
+            return
+        self.dragged = True
+        radius = composition.spheres[0].radius
+        right, up = (here[0] - self.last_cursor[0]) / radius, (self.last_cursor[1] - here[1]) / radius
+        self.last_cursor = here
+        shift = any(glfw.get_key(self.handle, key) for key in (glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT))
+        self.change((rotate_light if shift else orbit)(self.state, right, up))
+
+    def _on_drop(self, window: Any, paths: list[str]) -> None:
+        if paths:
+            self.change(open_light(self.state, paths[0]))
+
+
+def file_stem(name: str) -> str:
+    """A light's name as part of a file name."""
+    return "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in Path(name).name) or "light"
+
+
+@contextmanager
+def _glfw_window(size: tuple[int, int]) -> Iterator[Any]:
+    """A window with a current context of the newest version there is, from 4.5 down to 3.3."""
+    glfw.ERROR_REPORTING = "ignore"  # asked for below; a warning would be a second line for one mistake
+    if not glfw.init():
+        raise NoDisplayError(f"no display to open a window on ({_last_error()})")
+    try:
+        handle = None
+        for version in GL_VERSIONS:
+            handle = _create_window(size, version)
+            if handle:
+                break
+        else:
+            raise GraphicsError(
+                f"no OpenGL 3.3 for a window ({_last_error()}): update the graphics driver, or use shviewer screenshot"
+            )
+        glfw.make_context_current(handle)
+        glfw.swap_interval(1)
+        yield handle
+    finally:
+        glfw.terminate()
+
+
+def _create_window(size: tuple[int, int], version: int) -> Any:
+    glfw.default_window_hints()
+    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version // 100)
+    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version % 100 // 10)
+    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
+    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
+    glfw.window_hint(glfw.DEPTH_BITS, 0)
+    glfw.window_hint(glfw.STENCIL_BITS, 0)
+    glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
+    handle = glfw.create_window(*size, "shviewer", None, None)
+    if handle:
+        glfw.set_window_size_limits(handle, 320, 160, glfw.DONT_CARE, glfw.DONT_CARE)
+    return handle
+
+
+def _last_error() -> str:
+    code, text = glfw.get_error()
+    if not text:
+        return f"GLFW error {code}" if code else "GLFW gave no reason"
+    return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
