@@ -31,6 +31,16 @@ class Sphere(NamedTuple):
     radius: float
     clip: Box
 
+    def touches(self, box: Box) -> bool:
+        """Whether any of the sphere that is seen lies in the box."""
+        left, right = max(box.left, self.clip.left), min(box.right, self.clip.right)
+        top, bottom = max(box.top, self.clip.top), min(box.bottom, self.clip.bottom)
+        if left >= right or top >= bottom:
+            return False
+        across = self.x - min(max(self.x, left), right)
+        down = self.y - min(max(self.y, top), bottom)
+        return across * across + down * down < self.radius * self.radius
+
 
 @dataclass(frozen=True)
 class Composition:

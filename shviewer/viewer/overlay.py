@@ -6,6 +6,7 @@ Every piece reports its box, so that a click finds its bar and a test can see th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -20,6 +21,7 @@ from shviewer.viewer.state import describe_exposure, describe_muted
 
 INK, GREY, FAINT, RULE = (236, 236, 240, 255), (168, 168, 178, 255), (122, 122, 132, 255), (62, 62, 68, 255)
 ACCENT, ACCENT_MUTED = (100, 160, 255, 255), (100, 160, 255, 110)
+Ink = tuple[int, int, int, int]
 UNUSED = (78, 78, 86, 255)
 WARNING = (255, 196, 92, 255)
 
@@ -78,25 +80,38 @@ class _Painter:
         """Type of `size` pixels of the design, but never too small to read."""
         return font(max(round(self.at.px(size)), MIN_TYPE))
 
-    def text(self, name: str, x: float, y: float, text: str, size: float, ink: tuple[int, ...], anchor: str) -> bool:
+    def text(self, name: str, x: float, y: float, text: str, size: float, ink: Ink, anchor: str) -> bool:
         """Draw unless it would leave the frame or touch another piece; `size` in pixels of the design."""
-        face = self.face(size)
-        box = Box(*self.draw.textbbox((x, y), text, font=face, anchor=anchor))
-        if not text or not self.free(box):
+        return self.texts(x, ((name, y, text, size, ink),), anchor)
+
+    def texts(self, x: float, lines: Sequence[tuple[str, float, str, float, Ink]], anchor: str) -> bool:
+        """All of (name, y, text, size, ink) at one x, or none of them."""
+        faces = [self.face(size) for _, _, _, size, _ in lines]
+        boxes = {
+            name: Box(*self.draw.textbbox((x, y), text, font=face, anchor=anchor))
+            for (name, y, text, _, _), face in zip(lines, faces, strict=True)
+            if text
+        }
+        if not boxes or not all(self.free(box) for box in boxes.values()):
             return False
-        self.draw.text((x, y), text, font=face, fill=ink, anchor=anchor)
-        self.boxes[name] = box
+        for (_, y, text, _, ink), face in zip(lines, faces, strict=True):
+            self.draw.text((x, y), text, font=face, fill=ink, anchor=anchor)
+        self.boxes.update(boxes)
         return True
 
     def free(self, box: Box) -> bool:
         gap = self.at.px(6)
         inside = box.left >= 0 and box.top >= 0 and box.right <= self.at.width and box.bottom <= self.at.height
-        return inside and not any(
-            box.left < other.right + gap
-            and other.left < box.right + gap
-            and box.top < other.bottom
-            and other.top < box.bottom
-            for other in self.boxes.values()
+        return (
+            inside
+            and not any(sphere.touches(box) for sphere in self.at.spheres)
+            and not any(
+                box.left < other.right + gap
+                and other.left < box.right + gap
+                and box.top < other.bottom + 1
+                and other.top < box.bottom + 1
+                for other in self.boxes.values()
+            )
         )
 
     def captions(self, picture: Picture, timing: bool) -> None:
@@ -105,9 +120,8 @@ class _Painter:
         y = at.caption_y
         left, right = (sphere.x for sphere in at.spheres)
         muted = describe_muted(state)
-        bands = f"{state.n_bands} band{'s' if state.n_bands > 1 else ''}, {state.n_bands**2} coefficient" + "s" * (
-            state.n_bands > 1
-        )
+        plural = "s" if state.n_bands > 1 else ""
+        bands = f"{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
         self.text("original", left, y, "Original", 17, INK, "mm")
         full = f"{bands}, {muted}" if muted else bands
         self.text("reconstruction", right, y, full, 17, INK, "mm") or self.text(
@@ -118,16 +132,18 @@ class _Painter:
         if projection.evaluations is not None:
             method = f"{_grouped(projection.evaluations)} {method}"
         time = f"{_grouped_number(projection.milliseconds)} ms for {projection.n_bands} bands" if timing else ""
-        far = at.width - at.margin
-        self.text("light", at.margin, y, picture.light.name, 15, GREY, "lm")
-        self.text("method", far, y, method, 13, FAINT, "rm")
-        if not muted:
-            self.text("description", at.margin, y + at.px(20), picture.light.description, 12, FAINT, "lm")
-        elif "reconstruction" in self.boxes and muted not in full:
-            self.text("muted", right, y + at.px(20), muted, 12, FAINT, "mm")
-        self.text("time", far, y + at.px(20), time, 12, FAINT, "rm")
-        if "description" not in self.boxes:
-            self.text("description", at.margin, y + at.px(20), picture.light.description, 12, FAINT, "lm")
+        far, below = at.width - at.margin, y + at.px(20)
+        if self.text("light", at.margin, y, picture.light.name, 15, GREY, "lm"):
+            self.text("description", at.margin, below, picture.light.description, 12, FAINT, "lm")
+        else:
+            self.text("light", at.margin, below, picture.light.name, 15, GREY, "lm")
+        if self.text("method", far, y, method, 13, FAINT, "rm"):
+            self.text("time", far, below, time, 12, FAINT, "rm")
+        else:
+            both = f"{method}, {time}" if time else method
+            self.text("method", far, below, both, 12, FAINT, "rm") or self.text(
+                "method", far, below, method, 12, FAINT, "rm"
+            )
 
     def figures(self, picture: Picture) -> None:
         """Four numbers in fixed places, then a bar per band."""
@@ -143,8 +159,8 @@ class _Painter:
         )
         x = at.margin
         for name, value, label in columns:
-            if self.text(name, x, y + at.px(36), value, 24, INK, "lm"):
-                self.text(f"{name}_label", x, y + at.px(66), label, 13, GREY, "lm")
+            lines = ((name, y + at.px(36), value, 24, INK), (f"{name}_label", y + at.px(66), label, 13, GREY))
+            self.texts(x, lines, "lm")
             x += at.px(150)
         self.band_bars(picture)
 
@@ -152,16 +168,14 @@ class _Painter:
         """Energy of each band: filled in use, hollow when muted, dim above n; the spot of a band never moves within a page."""
         at, state = self.at, picture.state
         slots = next(count for count in SLOT_COUNTS if count >= min(state.n_bands, SLOT_COUNTS[-1]))
-        left = max((box.right for name, box in self.boxes.items() if name.startswith("negative")), default=0) + at.px(
-            24
-        )
+        left = max(box.right for box in self.boxes.values() if box.top > at.hairline_y) + at.px(24)
         face = self.face(12)
         label_width = face.getlength("energy, %")
         first, last = left + label_width + at.px(16), at.width - at.margin
         pitch = (last - first) / slots
-        if pitch < 3:
+        if pitch < 3 or last - first < at.px(160):
             return
-        base, tallest = at.hairline_y + at.px(79), at.px(46)
+        base, tallest = at.hairline_y + at.px(74), at.px(44)
         shares = picture.figures.energy_share[:slots]
         scale = tallest / max(max(shares, default=0.0), 1e-300)
         bar = max(1.0, min(pitch * 0.62, at.px(31)))
@@ -189,10 +203,10 @@ class _Painter:
                 ink = UNUSED if not used else FAINT if muted else GREY
                 self.draw.text((middle, base + at.px(13)), str(band), ink, face, anchor="mm")
             if used and band == state.cursor and state.cursor_visible:
-                y = base + at.px(24)
+                y = base + at.px(3)
                 self.draw.rectangle((middle - bar / 2, y, middle + bar / 2, y + max(1, at.px(1.5))), fill=INK)
-            self.bars[band] = Box(middle - pitch / 2, base - tallest - at.px(16), middle + pitch / 2, base + at.px(26))
-        self.boxes["bars"] = Box(left, base - tallest - at.px(16), last, base + at.px(26))
+            self.bars[band] = Box(middle - pitch / 2, base - tallest - at.px(16), middle + pitch / 2, base + at.px(20))
+        self.boxes["bars"] = Box(left, base - tallest - at.px(16), last, base + at.px(20))
 
     def hint(self, picture: Picture) -> None:
         """A message, or else the most useful keys; on the right the exposure."""
@@ -220,6 +234,8 @@ def _percent(share: float, digits: int = 3) -> str:
     if percent < 1e-4:
         return "< 0.0001 %"
     decimals = min(max(0, digits - 1 - int(np.floor(np.log10(percent) + 1e-9))), 4)
+    while percent < 100 and decimals < 4 and f"{percent:.{decimals}f}".startswith("100"):
+        decimals += 1
     return f"{percent:.{decimals}f} %"
 
 

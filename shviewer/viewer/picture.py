@@ -28,7 +28,9 @@ from shviewer.viewer.state import MAX_EXPOSURE, METHODS, ZOOM_RANGE, ViewState
 WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
 
-WHITE_LEVEL = 0.9
+WHITE_LEVEL = 0.8
+"""Linear; the brightest hundredth still stands out above it."""
+
 MAP_SIZE = (1025, 2048)
 """Rows and columns of the reconstruction's map: interpolated by cubics it is good to 1.5e-10 n^3 of the peak."""
 
