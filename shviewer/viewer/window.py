@@ -91,7 +91,7 @@ class Window:
         self.frames_due = 2  # the first swap may still have the old size
         self.frame_count = 0
         self.pressed_at: tuple[float, float] | None = None
-        self.last_cursor = (0.0, 0.0)
+        self.mouse = self.dragged_to = (0.0, 0.0)
         self.dragged = False
         self.windowed_place = (0, 0, 1280, 640)
         glfw.set_key_callback(handle, self._on_key)
@@ -223,40 +223,36 @@ class Window:
         if chr(codepoint) == "?":  # wherever the layout has it
             self.change(press(self.state, "?"))
 
-    def _cursor(self) -> tuple[float, float]:
-        """The mouse in pixels of the framebuffer."""
-        x, y = glfw.get_cursor_pos(self.handle)
-        window, pixels = glfw.get_window_size(self.handle), glfw.get_framebuffer_size(self.handle)
-        return x * pixels[0] / max(window[0], 1), y * pixels[1] / max(window[1], 1)
-
     def _on_button(self, window: Any, button: int, action: int, modifiers: int) -> None:
         if button != glfw.MOUSE_BUTTON_LEFT:
             return
         if action == glfw.PRESS:
-            self.pressed_at = self.last_cursor = self._cursor()
+            self.pressed_at = self.dragged_to = self.mouse
             self.dragged = False
         elif self.pressed_at is not None:
-            x, y = self.pressed_at
-            self.pressed_at = None
             bars = self.overlay.bars if self.overlay is not None and not self.dragged else {}
             for band, box in bars.items():
-                if box.contains(x, y):
+                if box.contains(*self.pressed_at):
                     self.change(toggle_band(replace(self.state, message=""), band))
+            self.pressed_at = None
 
     def _on_cursor(self, window: Any, x: float, y: float) -> None:
+        """Remember where the mouse is, in pixels of the framebuffer, and drag.
+
+        The place comes with the event: asking for it would give where the mouse is by now, events later.
+        """
+        window_size, pixels = glfw.get_window_size(self.handle), glfw.get_framebuffer_size(self.handle)
+        self.mouse = x * pixels[0] / max(window_size[0], 1), y * pixels[1] / max(window_size[1], 1)
         composition = self.composition()
         if self.pressed_at is None or composition is None:
             return
-        here = self._cursor()
-        if (
-            not self.dragged
-            and max(abs(here[0] - self.pressed_at[0]), abs(here[1] - self.pressed_at[1])) < CLICK_PIXELS
-        ):
+        moved = max(abs(self.mouse[0] - self.pressed_at[0]), abs(self.mouse[1] - self.pressed_at[1]))
+        if not self.dragged and moved < CLICK_PIXELS:
             return
         self.dragged = True
         radius = composition.spheres[0].radius
-        right, up = (here[0] - self.last_cursor[0]) / radius, (self.last_cursor[1] - here[1]) / radius
-        self.last_cursor = here
+        right, up = (self.mouse[0] - self.dragged_to[0]) / radius, (self.dragged_to[1] - self.mouse[1]) / radius
+        self.dragged_to = self.mouse
         shift = any(glfw.get_key(self.handle, key) for key in (glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT))
         self.change((rotate_light if shift else orbit)(self.state, right, up))
 

@@ -1,0 +1,35 @@
+"""Lint, format and types are part of the tests."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [("ruff", "check", "."), ("ruff", "format", "--check", "."), ("mypy",)],
+    ids=["lint", "format", "types"],
+)
+def test_the_tree_is_clean(command: tuple[str, ...]) -> None:
+    done = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_nothing_names_a_machine() -> None:
+    """Paths of the machine that wrote a file, and hosts of package registries, mean nothing to anybody else."""
+    words = ["/" + name + "/" for name in ("work", "root", "home/")] + ["pypi." + "org", "pythonhosted" + ".org"]
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False)
+    if listed.returncode:
+        pytest.skip("not a git checkout, so there is no list of the project's files")
+    for name in filter(None, listed.stdout.decode().split("\0")):
+        path = ROOT / name
+        if path.suffix in (".png", ".exr", ".hdr") or not path.is_file():
+            continue
+        text = path.read_text(encoding="utf-8")
+        assert not [word for word in words if word in text], name

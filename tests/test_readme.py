@@ -1,0 +1,72 @@
+"""README, --help, the key table and .ci/run say the same."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from shviewer.cli import EXIT_CODES, screenshot_parser, view_parser
+from shviewer.lights.scene import PROFILES, read_scene
+from shviewer.viewer.layout import MAX_SHOWN_BANDS
+from shviewer.viewer.state import METHODS, ViewState, key_table
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def code_blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+
+
+def test_the_key_list_is_the_key_table() -> None:
+    assert key_table() + "\n" in code_blocks("text")
+
+
+def test_the_exit_codes_are_those_of_the_help() -> None:
+    indented = "\n".join(f"  {line}".rstrip() for line in code_blocks("text")[-1].splitlines())
+    assert indented in EXIT_CODES
+
+
+@pytest.mark.parametrize("parser", [view_parser(), screenshot_parser()], ids=["view", "screenshot"])
+def test_every_option_is_explained(parser: object) -> None:
+    options = [text for action in parser._actions for text in action.option_strings if text.startswith("--")]  # type: ignore[attr-defined]
+    assert options
+    for option in options:
+        assert re.search(rf"`{option}\b", README), option
+
+
+def test_the_help_names_the_methods_the_default_bands_and_their_limit() -> None:
+    text = "".join(view_parser().format_help().split())  # argparse breaks lines at hyphens, too
+    assert all(method in text for method in METHODS)
+    assert f"1to{MAX_SHOWN_BANDS}(default{ViewState().n_bands})" in text
+
+
+def test_the_two_commands_are_single_lines_and_ci_runs_the_second() -> None:
+    commands = [block.strip() for block in code_blocks("sh") if "venv" in block]
+    assert len(commands) == 2
+    assert not any("\n" in command for command in commands)
+    assert commands[0].endswith("shviewer")
+    assert commands[1].endswith("pytest")
+    script = (ROOT / ".ci" / "run").read_text()
+    wanted = re.search(r"grep -F -- \"(.*)\" README.md", script)
+    assert wanted is not None
+    assert [line for line in README.splitlines() if wanted[1] in line] == [commands[1]]
+
+
+def test_the_scene_in_the_readme_can_be_read_and_shows_every_profile(tmp_path: Path) -> None:
+    (text,) = code_blocks("toml")
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    assert len(read_scene(path).lobes) == len(PROFILES)
+    assert all(f'"{profile}"' in text for profile in PROFILES)
+
+
+def test_the_python_example_prints_what_it_says(capsys: pytest.CaptureFixture[str]) -> None:
+    example = next(block for block in code_blocks("python") if "find_light" in block)
+    exec(compile(example, "README.md", "exec"), {})
+    printed = capsys.readouterr().out.strip()
+    promised = re.search(r"# (0\.\d+)\.\.\.", example)
+    assert promised is not None
+    assert printed.startswith(promised[1])

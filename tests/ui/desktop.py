@@ -1,0 +1,141 @@
+"""A virtual screen and a viewer on it, driven by real keys and a real mouse (Xvfb, xdotool)."""
+
+from __future__ import annotations
+
+import os
+import queue
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+NEEDED = ("Xvfb", "xdotool")
+PATIENCE = 30.0
+"""Seconds to wait for anything: the machines are slow and shared."""
+
+
+def missing_programs() -> list[str]:
+    return [name for name in NEEDED if shutil.which(name) is None]
+
+
+@contextmanager
+def virtual_display(size: str = "1400x900x24") -> Iterator[str]:
+    """Start Xvfb on a free number; yields the DISPLAY."""
+    reading, writing = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp"],
+        pass_fds=(writing,),
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as pipe:
+            yield f":{pipe.readline().strip()}"
+    finally:
+        server.terminate()
+        server.wait(PATIENCE)
+
+
+class Viewer:
+    """A running viewer. Its --verbose lines say when a frame has been drawn, so nothing waits for a fixed time."""
+
+    def __init__(self, display: str, folder: Path, *arguments: str) -> None:
+        environment = {**os.environ, "DISPLAY": display, "PYTHONUNBUFFERED": "1"}
+        environment.pop("WAYLAND_DISPLAY", None)
+        environment.pop("XDG_SESSION_TYPE", None)
+        self.display = display
+        self.folder = folder
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "shviewer", "--verbose", *arguments],
+            cwd=folder,
+            env=environment,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.lines: queue.Queue[str] = queue.Queue()
+        self.seen: list[str] = []
+        self.reader = threading.Thread(target=self._read, daemon=True)
+        self.reader.start()
+        self.wait_for("frame 2:")
+        self.window = self.xdotool("search", "--sync", "--pid", str(self.process.pid), "--name", "shviewer").split()[0]
+        self.xdotool("windowfocus", self.window)
+
+    def _read(self) -> None:
+        assert self.process.stderr is not None
+        with self.process.stderr:
+            for line in self.process.stderr:
+                self.lines.put(line.rstrip())
+
+    def xdotool(self, *arguments: str) -> str:
+        done = subprocess.run(
+            ["xdotool", *arguments],
+            env={**os.environ, "DISPLAY": self.display},
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            check=True,
+        )
+        return done.stdout
+
+    def wait_for(self, text: str) -> str:
+        """The next line that contains `text`."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            try:
+                line = self.lines.get(timeout=0.2)
+            except queue.Empty:
+                if self.process.poll() is not None:
+                    break
+                continue
+            self.seen.append(line)
+            if text in line:
+                return line
+        raise AssertionError(f"no line with {text!r} came; the viewer said: {self.seen}")
+
+    def press(self, key: str, until: str) -> str:
+        """Type one key and wait for the frame or message that it causes."""
+        self.forget()
+        self.xdotool("key", key)
+        return self.wait_for(until)
+
+    def forget(self) -> None:
+        """Drop what has been said so far."""
+        while not self.lines.empty():
+            self.seen.append(self.lines.get())
+
+    def mouse(self, *steps: str) -> None:
+        """xdotool mouse commands relative to the window: "320,270", "down", "up", "scroll-up"."""
+        for step in steps:
+            if step == "down":
+                self.xdotool("mousedown", "1")
+            elif step == "up":
+                self.xdotool("mouseup", "1")
+            elif step == "scroll-up":
+                self.xdotool("click", "4")
+            else:
+                x, y = step.split(",")
+                self.xdotool("mousemove", "--window", self.window, x, y)
+
+    def saved_picture(self) -> tuple[np.ndarray, str]:
+        """Press P; the picture and its metadata."""
+        line = self.press("p", "saved ")
+        path = self.folder / line.rpartition("saved ")[2]
+        with Image.open(path) as image:
+            return np.asarray(image.convert("RGB")), str(image.text["shviewer"])  # type: ignore[attr-defined]
+
+    def cpu_seconds(self) -> float:
+        fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def close(self) -> int:
+        if self.process.poll() is None:
+            self.process.terminate()
+        self.reader.join(PATIENCE)
+        return self.process.wait(PATIENCE)
