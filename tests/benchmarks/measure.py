@@ -1,0 +1,46 @@
+"""What the benchmarks share: interleaved medians, because the machines are noisy, and the machine's own description."""
+
+from __future__ import annotations
+
+import os
+import platform
+import statistics
+import time
+from collections.abc import Callable, Mapping
+
+os.environ.pop("OPENBLAS_CORETYPE", None)  # may be set to slow numpy down; read when numpy is first imported
+os.environ.pop("OPENBLAS_L2_SIZE", None)
+
+
+def cpu_milliseconds(work: Callable[[], object]) -> float:
+    """CPU time of all threads of this process."""
+    start = time.process_time()
+    work()
+    return 1000 * (time.process_time() - start)
+
+
+def wall_milliseconds(work: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    work()
+    return 1000 * (time.perf_counter() - start)
+
+
+def medians(
+    candidates: Mapping[str, Callable[[], object]],
+    repeats: int,
+    clock: Callable[[Callable[[], object]], float] = wall_milliseconds,
+) -> dict[str, float]:
+    """Milliseconds of each candidate: one warm-up, then A B C A B C ..., the median of `repeats`."""
+    for work in candidates.values():
+        work()
+    times: dict[str, list[float]] = {name: [] for name in candidates}
+    for _ in range(repeats):
+        for name, work in candidates.items():
+            times[name].append(clock(work))
+    return {name: statistics.median(values) for name, values in times.items()}
+
+
+def machine() -> str:
+    import numpy as np
+
+    return f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, numpy {np.__version__}"
