@@ -26,6 +26,8 @@ EXIT_CODES = """exit codes:
   6    a shader that does not compile
   130  interrupted"""
 
+DEFAULT_BANDS = 5
+
 LIGHT_HELP = "a built-in name (--list-lights), a .toml scene, a .hdr or .exr lat-long image, or file.py:function"
 
 
@@ -94,7 +96,26 @@ def screenshot_parser() -> argparse.ArgumentParser:
 
 def _add_view_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
-    parser.add_argument("--bands", metavar="N", type=int, default=5, help="number of bands, 1 to 128 (default 5)")
+    parser.add_argument("--bands", metavar="N", type=int, help="number of bands, 1 to 128 (default 5)")
+    parser.add_argument(
+        "--tolerance",
+        metavar="T",
+        type=_tolerance,
+        help="as many bands as keep the relative L2 error within T, such as 5%% or 0.05, instead of --bands",
+    )
+    parser.add_argument(
+        "--for",
+        metavar="WHAT",
+        dest="quantity",
+        default="radiance",
+        help="radiance (default), or irradiance: what a white Lambertian surface receives",
+    )
+    parser.add_argument(
+        "--window",
+        metavar="W[:WIDTH]",
+        default="none",
+        help="none, hann, lanczos, gauss (WIDTH in bands, default N) or dering",
+    )
     parser.add_argument(
         "--mute", metavar="L,L", type=_band_list, default=frozenset(), help="bands to leave out, such as 1,3"
     )
@@ -191,11 +212,15 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
     if any(abs(elevation) > 90 for elevation in elevations):
         raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
+    window, separator, width = options.window.partition(":")
     state = ViewState(
         lights=tuple(built_in_lights()) if all_lights else (options.light,),
         sanitize=options.sanitize,
-        n_bands=options.bands,
+        n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
         muted=options.mute,
+        quantity=options.quantity,
+        window=window,
+        window_width=_finite_width(width) if separator else None,
         method=options.method,
         samples=options.samples,
         seed=options.seed,
@@ -205,8 +230,34 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     )
     if options.camera:
         state = replace(state, camera=(options.camera[0] % 360, options.camera[1]))
+    if options.tolerance is not None:
+        state = replace(state, tolerance=options.tolerance)
     check(state, tuple(options.size))
-    return open_light(state, options.light)
+    state = open_light(state, options.light)
+    return state if options.tolerance is None else _fitted(state, options)
+
+
+def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:
+    """As many bands as the tolerance needs, said on stderr; where none are enough, the best there is."""
+    from shviewer.viewer.picture import estimate_from_samples, needs
+
+    if options.bands is not None:
+        raise UsageError(f"--bands {options.bands} and --tolerance {options.tolerance:g}: give one of them")
+    found = needs(state)
+    counts = {"radiance": found.radiance, "irradiance": found.irradiance}
+    says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
+    print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
+    wanted = counts[state.quantity]
+    if wanted is None:
+        print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
+    if state.method == "jittered":
+        guess = estimate_from_samples(state)
+        if guess.decided:
+            says = f"{guess.likely} bands" if guess.likely else "no count up to 32"
+        else:
+            says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
+        print(f"shviewer: the samples alone say {says}", file=sys.stderr)
+    return replace(state, n_bands=wanted or found.best_bands)
 
 
 def _print_notes(notes: tuple[str, ...]) -> None:
@@ -231,6 +282,20 @@ def _finite(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
     return value
+
+
+def _tolerance(text: str) -> float:
+    value = _finite(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+    if not 0 < value < 1:
+        raise argparse.ArgumentTypeError(f"{text!r}: a tolerance is between 0 and 1, such as 0.05 or 5%")
+    return value
+
+
+def _finite_width(text: str) -> float:
+    try:
+        return _finite(text)
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"window width {error}") from error
 
 
 def _share(text: str) -> float:

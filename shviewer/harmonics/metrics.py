@@ -1,49 +1,50 @@
-"""How far a reconstruction is from its light. Every figure is exact or measured in float64, weighted by solid angle.
+"""How far a reconstruction is from its light, from coefficients alone.
 
-Shown coefficients s(l, m) need not be the exact ones c(l, m): bands may be muted, or a sampled method estimates them. Since
-the basis is orthonormal, the squared L2 error splits without any quadrature (Parseval):
-    ||f - sum of s Y||^2 = (||f||^2 - sum of c^2) + sum of (c - s)^2
-The first bracket is what the bands left out hold; the last sum is what muting and sampling add.
+Shown coefficients s(l, m) need not be the exact ones c(l, m): bands may be muted or windowed, or a sampled method
+estimates them. Since the basis is orthonormal, the squared L2 error splits without any quadrature (Parseval):
+    ||f - sum of s Y||^2 = (||f||^2 - sum of c^2) + sum of (c - s)^2.
+The first bracket is what the bands left out hold (truncation); the last sum is what muting, windows and sampling add. With a
+window h the latter is (1 - h)^2 c^2, so that the whole is ||f||^2 - sum of (2h - h^2) c^2.
+
+A light's *products* are the 3 x 3 integrals of f_i f_j over its channels. They give ||f||^2 of every linear combination of
+channels; the figures are made for R, G, B, their sum and Rec. 709 luminance. Everything is divided by a power of two near
+the largest value before it is squared, so that radiances from 1e-300 to 1e300 work.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, count_bands, degrees, evaluate_basis
-from shviewer.harmonics.projection import Synthesis
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-"""Rec. 709 luminance of linear RGB [ITU-R BT.709-6, item 3.2]."""
-
-Triple = tuple[float, float, float]
-Objective = Callable[[Array, Array], Array]
-"""Directions (k, 3) and the reconstruction there (k, 3) -> (k,)."""
-
-PATCH = np.stack(np.meshgrid(np.arange(-2.0, 3.0), np.arange(-2.0, 3.0), indexing="ij"), axis=-1).reshape(-1, 2)
-ROUNDS = 4
-"""Halvings of a patch: from the grid's cell to a sixteenth of it."""
+from shviewer.harmonics.basis import Array, count_bands, degrees
+from shviewer.harmonics.extremes import LUMINANCE
 
 ROUNDING = 1e-11
 """How far, relative to ||f||^2, a sum of squared coefficients may exceed it: rounding of up to 128**2 terms."""
 
+PARSEVAL_FLOOR = 1e-7
+"""A relative error below this cannot be told from rounding by a difference of squares in float64."""
+
+CHANNELS = ("red", "green", "blue", "luminance")
+
 
 def band_power(coefficients: Array) -> Array:
     """Sum over m of c(l, m)^2, which no rotation changes: (n**2, 3) -> (n, 3)."""
-    n_bands = count_bands(coefficients)
-    first = np.arange(n_bands) ** 2
+    first = np.arange(count_bands(coefficients)) ** 2
     return np.asarray(np.add.reduceat(coefficients**2, first, axis=0))
+
+
+def band_weights(n_bands: int, muted: frozenset[int]) -> Array:
+    """1 for every coefficient of a band that is on, 0 for a muted one, (n_bands**2, 1)."""
+    return np.isin(degrees(n_bands), list(muted), invert=True).astype(np.float64)[:, None]
 
 
 def squared_error(norm_squared: Array, exact: Array, shown: Array) -> tuple[float, float]:
     """(left-out, added) squared L2 error over all channels: the two terms of the module docstring.
 
-    norm_squared: (3,); exact, shown: (n**2, 3). ValueError if `exact` holds more energy than the light: then the two
-    come from different quadratures and no error can be read off them.
+    norm_squared: (k,) for k channels; exact, shown: (n**2, k). ValueError if `exact` holds more energy than the light:
+    then the two come from different quadratures and no error can be read off them.
     """
     missing = norm_squared - (exact**2).sum(axis=0)
     if (missing < -ROUNDING * norm_squared).any():
@@ -60,88 +61,105 @@ def relative(squared: float, norm_squared: Array) -> float:
 
 
 @dataclass(frozen=True)
-class Extremes:
-    """Where a reconstruction is worst, over all channels: the extremes of a grid, followed uphill to the function's own."""
+class ChannelFigures:
+    """Of one channel, or of all: relative L2 errors and PSNR in decibels."""
 
-    max_error: float
-    max_error_direction: Triple
-    minimum: float
-    minimum_direction: Triple
-    negative_area: float
-    """Share of the sphere with negative Rec. 709 luminance, 0 to 1."""
-    peak: float
-    """The largest |radiance| of the original seen on the same grid."""
+    relative_l2: float
+    left_out: float
+    """The part of relative_l2 that the bands left out cause; relative_l2^2 = left_out^2 + added^2."""
+    added: float
+    """The part that muted bands, windows and sampling add."""
+    psnr: float
+    """10 log10(peak^2 / mean of the squared error over the sphere); infinite for no error."""
 
 
-class ErrorGrid:
-    """A light seen on a lat-long grid and at its landmarks, ready to be compared with any reconstruction.
+def channel_figures(products: Array, exact: Array, shown: Array, peak: float) -> dict[str, ChannelFigures]:
+    """Figures "all", "red", "green", "blue" and "luminance".
 
-    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions where a grid would miss something.
+    products: (3, 3); exact, shown: (n**2, 3); peak: the largest |radiance|, to which PSNR refers.
     """
-
-    def __init__(self, radiance: Callable[[Array], Array], landmarks: Array, n_rows: int) -> None:
-        self.radiance = radiance
-        self.theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
-        self.phi = column_azimuths(2 * n_rows)
-        directions = directions_from_angles(self.theta[:, None], self.phi)
-        grid = radiance(directions.reshape(-1, 3)).reshape(n_rows, 2 * n_rows, 3)
-        self.original = np.ascontiguousarray(grid.transpose(0, 2, 1))
-        self.landmarks = landmarks
-        self.landmark_radiance = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
-        self.peak = float(max(np.abs(self.original).max(), np.abs(self.landmark_radiance).max(initial=0)))
-        edges = np.cos(np.pi * np.arange(n_rows + 1) / n_rows)
-        self.row_share = (edges[:-1] - edges[1:]) / (2 * 2 * n_rows)
-        """Solid angle of one cell of a row over 4 pi; exact."""
-
-    def compare(self, shown: Array) -> Extremes:
-        """The extremes of the reconstruction with coefficients `shown`, (n**2, 3)."""
-        synthesis = Synthesis(shown)
-        values = synthesis.on_rows(self.theta, len(self.phi))
-        error, error_direction = self._largest_error(values, synthesis, shown)
-        minimum, direction = self._smallest(values, synthesis)
-        luminance = sum(weight * values[:, channel] for channel, weight in enumerate(LUMINANCE))
-        negative = float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share)
-        return Extremes(error, error_direction, minimum, direction, negative, self.peak)
-
-    def _largest_error(self, values: Array, synthesis: Synthesis, shown: Array) -> tuple[float, Triple]:
-        def error(directions: Array, reconstruction: Array) -> Array:
-            return np.asarray(np.abs(reconstruction - self.radiance(directions)).max(axis=1))
-
-        difference = values - self.original
-        row, _, column = np.unravel_index(int(np.abs(difference, out=difference).argmax()), difference.shape)
-        best = self._climb(error, int(row), int(column), synthesis)
-        if len(self.landmarks):
-            there = error(self.landmarks, evaluate_basis(self.landmarks, synthesis.n_bands) @ shown)
-            best = max(best, (float(there.max()), _triple(self.landmarks[int(there.argmax())])))
-        return best
-
-    def _smallest(self, values: Array, synthesis: Synthesis) -> tuple[float, Triple]:
-        row, channel, column = np.unravel_index(int(values.argmin()), values.shape)
-        highest, direction = self._climb(
-            lambda _, reconstruction: -reconstruction[:, channel], int(row), int(column), synthesis
+    scale = _power_of_two(
+        max(float(np.sqrt(np.diag(products).max())), float(np.abs(exact).max()), float(np.abs(shown).max()))
+    )
+    products, exact, shown, peak = products / scale / scale, exact / scale, shown / scale, peak / scale
+    mixes = {"all": np.eye(3)} | {
+        name: row[:, None] for name, row in zip(CHANNELS, [*np.eye(3), LUMINANCE], strict=True)
+    }
+    figures = {}
+    for name, mix in mixes.items():
+        norm = np.maximum(np.einsum("ik,ij,jk->k", mix, products, mix), 0)
+        left_out, added = squared_error(norm, exact @ mix, shown @ mix)
+        mean = (left_out + added) / (4 * np.pi * mix.shape[1])
+        psnr = 10 * np.log10(peak**2 / mean) if mean > 0 and peak > 0 else np.inf if mean == 0 else -np.inf
+        figures[name] = ChannelFigures(
+            relative(left_out + added, norm), relative(left_out, norm), relative(added, norm), float(psnr)
         )
-        return -highest, direction
-
-    def _climb(self, objective: Objective, row: float, column: float, synthesis: Synthesis) -> tuple[float, Triple]:
-        """The largest value of `objective` in ever smaller 5 x 5 patches, the first one as wide as the cells around."""
-        best, place = -np.inf, np.zeros(3)
-        for step in 0.5 ** np.arange(1, ROUNDS + 1):
-            rows, columns = row + step * PATCH[:, 0], column + step * PATCH[:, 1]
-            theta = np.pi * (rows + 0.5) / len(self.theta)
-            phi = np.pi * (1 - (2 * columns + 1) / len(self.phi))
-            directions = directions_from_angles(theta, phi)
-            values = objective(directions, synthesis.at(theta, phi))
-            at = int(values.argmax())
-            if values[at] > best:
-                best, place, row, column = float(values[at]), directions[at], float(rows[at]), float(columns[at])
-        return best, _triple(place)
+    return figures
 
 
-def band_weights(n_bands: int, muted: frozenset[int]) -> Array:
-    """1 for every coefficient of a band that is on, 0 for a muted one, (n_bands**2, 1)."""
-    return np.isin(degrees(n_bands), list(muted), invert=True).astype(np.float64)[:, None]
+def errors_by_band_count(products: Array, exact: Array, shown: Array) -> Array:
+    """Relative L2 error over all channels with the first n bands of `shown`, for n = 1 ... N: (N,)."""
+    scale = _power_of_two(max(float(np.sqrt(np.diag(products).max())), float(np.abs(shown).max())))
+    norm = np.diag(products) / scale / scale
+    kept = np.cumsum(band_power(exact / scale).sum(axis=1))
+    added = np.cumsum(band_power((exact - shown) / scale).sum(axis=1))
+    if norm.sum() == 0:
+        return np.where(added > 0, np.inf, 0.0)
+    if kept[-1] > norm.sum() * (1 + ROUNDING):
+        raise ValueError(
+            f"coefficients hold {kept[-1] / norm.sum() - 1:.3g} more energy than the light: mixed quadratures"
+        )
+    return np.asarray(np.sqrt(((norm.sum() - kept).clip(min=0) + added) / norm.sum()))
 
 
-def _triple(direction: Array) -> Triple:
-    x, y, z = (float(component) for component in direction)
-    return x, y, z
+def smallest_band_count(errors: Array, tolerance: float) -> int | None:
+    """The smallest n whose error is within `tolerance`; None if there is none. ValueError unless 0 < tolerance < 1.
+
+    errors: (N,) for n = 1 ... N bands.
+    """
+    if not 0 < tolerance < 1:
+        raise ValueError(f"tolerance {tolerance:g}: it must be between 0 and 1, such as 0.05 or 5%")
+    within = np.nonzero(errors <= tolerance * (1 + 1e-12))[0]
+    return int(within[0]) + 1 if len(within) else None
+
+
+@dataclass(frozen=True)
+class SampleEstimate:
+    """What samples alone say of the band count: the likely one, and the fewest and most that their noise allows."""
+
+    likely: int | None
+    fewest: int | None
+    most: int | None
+
+    @property
+    def decided(self) -> bool:
+        return self.fewest == self.most
+
+
+def split_half_estimate(
+    first: Array, second: Array, norm_squared: float, norm_deviation: float, tolerance: float
+) -> SampleEstimate:
+    """Choose a band count from two independent projections of a light, (n**2, 3) each, without knowing the light.
+
+    A squared coefficient holds the variance of its estimate, too, and would make every band look needed; products of
+    two halves do not. ||f||^2 - sum of first * second therefore estimates what is left out without bias, and with
+    d = first - second, s = first + second the variance of one product is about d^2 s^2 / 4 + d^4 / 4. `norm_squared` over
+    all channels comes from the same samples, with the standard deviation `norm_deviation`. None where no count will do.
+    """
+    starts = np.arange(count_bands(first)) ** 2
+    difference, total = first - second, first + second
+    kept = np.cumsum(np.add.reduceat((first * second).sum(axis=1), starts))
+    variance = np.add.reduceat(((difference * total) ** 2 / 4 + difference**4 / 4).sum(axis=1), starts)
+    deviation = np.sqrt(np.cumsum(variance) + norm_deviation**2)
+    left_out = norm_squared - kept
+
+    def count(excess: Array) -> int | None:
+        within = np.nonzero(left_out + excess <= tolerance**2 * norm_squared)[0]
+        return int(within[0]) + 1 if len(within) else None
+
+    return SampleEstimate(count(0 * deviation), count(-2 * deviation), count(2 * deviation))
+
+
+def _power_of_two(value: float) -> float:
+    """A power of two near `value`, by which division is exact; 1 for 0."""
+    return float(np.ldexp(1.0, np.frexp(value)[1])) if value > 0 else 1.0

@@ -9,62 +9,58 @@ variable is left, which Gauss-Legendre nodes take to rounding once its pieces ar
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
 
 NODES = 64
+BLOCK = 128
+"""Angles at a time, so that the nodes of all their pieces stay in the cache."""
 
 
-def inner_product(first: Profile, second: Profile, angle: float) -> float:
-    """Integral of first * second over the sphere, in steradians; `angle` radians lie between their axes."""
+def inner_product(first: Profile, second: Profile, angle: ArrayLike) -> Array:
+    """Integral of first * second over the sphere, in steradians, where `angle` radians lie between their axes; same shape."""
+    angle = np.asarray(angle, dtype=np.float64)
     if isinstance(first, Constant) or isinstance(second, Constant):
         other = second if isinstance(first, Constant) else first
-        return float(other.zonal(1)[0])
+        return np.full(angle.shape, other.zonal(1)[0])
     if isinstance(first, Gaussian) and isinstance(second, Gaussian):
         return _gaussian_product(first.sharpness, second.sharpness, angle)
-    if isinstance(second, Gaussian) or (
-        isinstance(first, ClampedLinear | Disc) and first.half_angle > second.half_angle
-    ):
+    if isinstance(second, Gaussian) or (not isinstance(first, Gaussian) and first.half_angle > second.half_angle):
         first, second = second, first
-    if angle >= first.half_angle + second.half_angle:
-        return 0.0
-    return _ring_by_ring(first, second, angle)
+    flat = angle.ravel()
+    blocks = [_ring_by_ring(first, second, flat[start : start + BLOCK]) for start in range(0, len(flat), BLOCK)]
+    return np.concatenate(blocks).reshape(angle.shape)
 
 
-def _gaussian_product(k1: float, k2: float, angle: float) -> float:
+def _gaussian_product(k1: float, k2: float, angle: Array) -> Array:
     """exp(k1 (x1 - 1)) exp(k2 (x2 - 1)) is a Gaussian about k1 a1 + k2 a2, of sharpness |k1 a1 + k2 a2|."""
     total = k1 + k2
     deficit = 4 * k1 * k2 * np.sin(angle / 2) ** 2  # total**2 - sharpness**2, without cancellation
-    sharpness = np.sqrt(max(0.0, total**2 - deficit))
+    sharpness = np.maximum(np.sqrt(np.maximum(0, total**2 - deficit)), 1e-12 * total)
     peak = np.exp(-deficit / (total + sharpness))
-    if sharpness < 1e-8 * total:
-        return float(4 * np.pi * peak * np.exp(-sharpness))
-    return float(-2 * np.pi * peak * np.expm1(-2 * sharpness) / sharpness)
+    return np.asarray(-2 * np.pi * peak * np.expm1(-2 * sharpness) / sharpness)
 
 
-def _ring_by_ring(first: Profile, second: Profile, angle: float) -> float:
+def _ring_by_ring(first: Profile, second: Profile, angle: Array) -> Array:
     """Sum over the angle t from the axis of `first`; between two edges a cosine map removes the square roots there."""
-    edges = {0.0, first.half_angle}
     reach = second.half_angle
-    edges |= {abs(angle - reach), angle + reach, 2 * np.pi - angle - reach}
+    edges = [0 * angle, np.abs(angle - reach), angle + reach, 2 * np.pi - angle - reach]
     if isinstance(first, Gaussian):
-        edges |= {float(step / np.sqrt(first.sharpness)) for step in (1, 2, 4, 8, 16)}
-    inside = sorted(edge for edge in edges if 0 <= edge <= first.half_angle)
+        edges += [np.full(angle.shape, step / np.sqrt(first.sharpness)) for step in (1, 2, 4, 8, 16)]
+    pieces = np.sort(np.clip(np.stack([*edges, np.full(angle.shape, np.pi)]), 0, first.half_angle), axis=0)
     nodes, weights = _gauss_legendre_unit(NODES)
     bend, slope = (1 - np.cos(np.pi * nodes)) / 2, np.pi / 2 * np.sin(np.pi * nodes)
-    total = 0.0
-    for low, high in pairwise(inside):
-        t = low + (high - low) * bend
-        values = first.value(4 * np.sin(t / 2) ** 2) * np.sin(t) * _ring_integral(second, t, angle)
-        total += float((weights * slope * values).sum() * (high - low))
-    return total
+    low, length = pieces[:-1, :, None], np.diff(pieces, axis=0)[..., None]
+    t = low + length * bend  # piece, angle, node
+    values = first.value(4 * np.sin(t / 2) ** 2) * np.sin(t) * _ring_integral(second, t, angle[:, None])
+    return np.asarray((weights * slope * values * length).sum(axis=(0, 2)))
 
 
-def _ring_integral(profile: Profile, t: Array, angle: float) -> Array:
+def _ring_integral(profile: Profile, t: Array, angle: Array) -> Array:
     """Integral of a Disc or ClampedLinear over the circle at angle `t` round an axis that is `angle` away from its own."""
     middle, swing = np.cos(t) * np.cos(angle), np.sin(t) * np.sin(angle)
     edge = np.cos(profile.half_angle)

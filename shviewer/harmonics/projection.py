@@ -42,9 +42,9 @@ def project_samples(radiance: Radiance, samples: DirectionSet, n_bands: int) -> 
 
 
 def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tuple[Array, Array]:
-    """The same sum over a product rule, separably: (coefficients (n_bands**2, 3), norm squared (3,)).
+    """The same sum over a product rule, separably: (coefficients (n_bands**2, 3), products (3, 3)).
 
-    The norm is the integral of radiance**2 by the same rule, so that Bessel's inequality holds between the two.
+    Products are the integrals of f_i f_j over the channels by the same rule, so that Bessel's inequality holds exactly.
     """
     values = np.empty((len(rule.theta), rule.n_columns, 3))
     block = max(1, BLOCK_VALUES // (8 * rule.n_columns))
@@ -54,8 +54,16 @@ def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tupl
     angle = np.arange(n_bands)[:, None] * rule.theta
     row_weights = rule.row_weights * (2 * np.pi / rule.n_columns)
     coefficients = _project_rows(values, row_weights * np.cos(angle), row_weights * np.sin(angle), np.ones(n_bands))
-    norm_squared = np.einsum("r,rcx,rcx->x", row_weights, values, values)
-    return coefficients, np.asarray(norm_squared)
+    return coefficients, channel_products(values, row_weights)
+
+
+def channel_products(values: NDArray[np.floating], row_weights: Array) -> Array:
+    """Integrals of f_i f_j over the sphere, (3, 3): values (rows, columns, 3), steradians of one value per row (rows,)."""
+    products = np.zeros((3, 3))
+    for row, weight in zip(values, row_weights, strict=True):
+        wide = row.astype(np.float64, copy=False)
+        products += weight * (wide.T @ wide)
+    return products
 
 
 def project_image(image: NDArray[np.floating], n_bands: int) -> Array:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection import channel_products, project_image
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.radiance_files import read_radiance_image
@@ -41,16 +41,18 @@ class EnvironmentLight:
     def coefficients(self, n_bands: int) -> Array:
         return project_image(self.map.texels, n_bands)
 
-    def norm_squared(self) -> Array:
-        return self._norm_squared
+    def accuracy(self) -> float:
+        return 0.0
+
+    def products(self) -> Array:
+        return self._products
 
     @cached_property
-    def _norm_squared(self) -> Array:
+    def _products(self) -> Array:
         height, width = self.map.texels.shape[:2]
         edges = np.linspace(0, np.pi, height + 1)
         solid_angle = 2 * np.sin((edges[1:] + edges[:-1]) / 2) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width
-        squares = np.stack([np.einsum("cx,cx->x", row, row, dtype=np.float64) for row in self.map.texels])
-        return np.asarray(solid_angle @ squares)
+        return channel_products(self.map.texels, solid_angle)
 
     def landmarks(self) -> Array:
         """The centre of the brightest texel."""

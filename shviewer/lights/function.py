@@ -15,15 +15,33 @@ from numpy.typing import ArrayLike, NDArray
 
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
 from shviewer.lights.lat_long import LatLongMap
 
-EVALUATIONS = 2 * 256**2
-"""Gauss-Legendre points: 256 rows, exact for the product of two functions of 256 bands."""
+SAMPLED_BANDS = 128
+"""Bands by which the quadrature is judged; more are projected on request."""
+
+FIRST_ROWS, LAST_ROWS = 160, 640
+"""Gauss-Legendre rows to begin with (exact for products of two functions of 160 bands) and to stop at."""
+
+MOVEMENT = 5e-4
+"""The rows are doubled until no relative L2 error, whatever the number of bands, moves by more than this."""
 
 MAP_ROWS = 513
 """Rows of the map that the GPU samples, from pole to pole."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Sampling:
+    """What a Gauss-Legendre rule of `rows` rows found, and how much the figures moved at the last doubling."""
+
+    rows: int
+    coefficients: Array
+    products: Array
+    movement: float
+
 
 DirectionFunction = Callable[[Array], ArrayLike]
 """Unit directions (k, 3) -> radiance (k, 3), or (k,) for grey."""
@@ -38,7 +56,6 @@ class FunctionLight:
 
     function: DirectionFunction
     name: str = "function"
-    notes: tuple[str, ...] = ()
 
     @property
     def description(self) -> str:
@@ -46,7 +63,14 @@ class FunctionLight:
 
     @property
     def best_method(self) -> str:
-        return f"Gauss-Legendre, {EVALUATIONS:,} points".replace(",", " ")
+        return f"Gauss-Legendre, {2 * self._sampling.rows**2:,} points".replace(",", " ")
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        sampling = self._sampling
+        if sampling.movement <= MOVEMENT:
+            return ()
+        return (f"not smooth: {2 * sampling.rows**2} points leave the figures uncertain by {sampling.movement:.2%}",)
 
     def radiance(self, directions: Array) -> Array:
         try:
@@ -71,14 +95,28 @@ class FunctionLight:
         return values
 
     def coefficients(self, n_bands: int) -> Array:
-        return project_product(self.radiance, gauss_legendre(max(EVALUATIONS, 2 * (n_bands + 1) ** 2)), n_bands)[0]
+        sampling = self._sampling
+        if n_bands <= SAMPLED_BANDS:
+            return sampling.coefficients[: n_bands**2]
+        return project_product(self.radiance, gauss_legendre(2 * max(sampling.rows, n_bands + 1) ** 2), n_bands)[0]
 
-    def norm_squared(self) -> Array:
-        return self._norm_squared
+    def products(self) -> Array:
+        return self._sampling.products
+
+    def accuracy(self) -> float:
+        return self._sampling.movement
 
     @cached_property
-    def _norm_squared(self) -> Array:
-        return project_product(self.radiance, gauss_legendre(EVALUATIONS), 1)[1]
+    def _sampling(self) -> _Sampling:
+        """As many points as the function's sharpness asks for, up to a limit."""
+        rows, last = FIRST_ROWS, None
+        while True:
+            coefficients, products = project_product(self.radiance, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
+            errors = errors_by_band_count(products, coefficients, coefficients)
+            movement = float("inf") if last is None else float(np.abs(errors - last).max())
+            if movement <= MOVEMENT or 2 * rows > LAST_ROWS:
+                return _Sampling(rows, coefficients, products, movement)
+            rows, last = 2 * rows, errors
 
     def landmarks(self) -> Array:
         return np.zeros((0, 3))

@@ -39,8 +39,11 @@ class Light(Protocol):
     def coefficients(self, n_bands: int) -> Array:
         """(n_bands**2, 3) by the best way this light knows."""
 
-    def norm_squared(self) -> Array:
-        """Integral of radiance**2 per channel, (3,), by the same quadrature as `coefficients`."""
+    def products(self) -> Array:
+        """Integrals of f_i f_j over the channels, (3, 3), by the same quadrature as `coefficients`."""
+
+    def accuracy(self) -> float:
+        """How far a relative L2 error of this light may be off for want of quadrature points; 0 where it is exact."""
 
     def landmarks(self) -> Array:
         """Directions (j, 3) of features that a grid might step over, such as the axis of a sun."""

@@ -55,19 +55,24 @@ class LobeLight:
             total += orient(lobe.profile.zonal(n_bands), lobe.axis)[:, None] * lobe.radiance
         return total
 
-    def norm_squared(self) -> Array:
-        return self._norm_squared
+    def accuracy(self) -> float:
+        return 0.0
+
+    def products(self) -> Array:
+        return self._products
 
     @cached_property
-    def _norm_squared(self) -> Array:
-        total = np.zeros(3)
+    def _products(self) -> Array:
+        total = np.zeros((3, 3))
         for i, first in enumerate(self.lobes):
             for second in self.lobes[: i + 1]:
                 half_chord = np.linalg.norm(first.axis - second.axis) / 2
                 angle = 2 * np.arctan2(half_chord, np.linalg.norm(first.axis + second.axis) / 2)
-                product = inner_product(first.profile, second.profile, float(angle))
-                total += (1 if first is second else 2) * product * first.radiance * second.radiance
-        return np.maximum(total, 0)
+                overlap = inner_product(first.profile, second.profile, angle) * np.outer(
+                    first.radiance, second.radiance
+                )
+                total += overlap if first is second else overlap + overlap.T
+        return total
 
     def landmarks(self) -> Array:
         return np.stack([lobe.axis for lobe in self.lobes])

@@ -17,7 +17,7 @@ from PIL import Image, ImageDraw, ImageFont
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.help_sheet import draw_help
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.state import describe_exposure, describe_muted
+from shviewer.viewer.state import describe_exposure, describe_muted, describe_window
 
 INK, GREY, FAINT, RULE = (236, 236, 240, 255), (168, 168, 178, 255), (122, 122, 132, 255), (62, 62, 68, 255)
 ACCENT, ACCENT_MUTED = (100, 160, 255, 255), (100, 160, 255, 110)
@@ -122,11 +122,11 @@ class _Painter:
         muted = describe_muted(state)
         plural = "s" if state.n_bands > 1 else ""
         bands = f"{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
-        self.text("original", left, y, "Original", 17, INK, "mm")
-        full = f"{bands}, {muted}" if muted else bands
-        self.text("reconstruction", right, y, full, 17, INK, "mm") or self.text(
-            "reconstruction", right, y, bands, 17, INK, "mm"
-        )
+        original = "Original" if state.quantity == "radiance" else "Irradiance"
+        self.text("original", left, y, original, 17, INK, "mm")
+        changes = [change for change in (describe_window(state), muted) if change]
+        captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
+        any(self.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
         projection = picture.projection
         method = projection.method
         if projection.evaluations is not None:
@@ -152,9 +152,9 @@ class _Painter:
         self.draw.rectangle((at.margin, y, at.width - at.margin, y + max(0, round(at.scale) - 1)), fill=RULE)
         extremes = figures.extremes
         columns = (
-            ("relative_l2", _percent(figures.relative_l2), "relative L2 error"),
-            ("max_error", _radiance(extremes.max_error), "largest error"),
-            ("minimum", _radiance(extremes.minimum), "minimum"),
+            ("relative_l2", _percent(figures.relative_l2, floor=figures.floor), "relative L2 error"),
+            ("max_error", _radiance(extremes.max_error, extremes.peak), "largest error"),
+            ("minimum", _radiance(extremes.minimum, extremes.peak), "minimum"),
             ("negative_area", _percent(extremes.negative_area, 2), "of the sphere negative"),
         )
         x = at.margin
@@ -165,7 +165,7 @@ class _Painter:
         self.band_bars(picture)
 
     def band_bars(self, picture: Picture) -> None:
-        """Energy of each band: filled in use, hollow when muted, dim above n; the spot of a band never moves within a page."""
+        """Energy of each band: filled as far as it is kept, hollow when muted, dim above n. A bar stays where it is."""
         at, state = self.at, picture.state
         slots = next(count for count in SLOT_COUNTS if count >= min(state.n_bands, SLOT_COUNTS[-1]))
         left = max(box.right for box in self.boxes.values() if box.top > at.hairline_y) + at.px(24)
@@ -190,17 +190,19 @@ class _Painter:
             share = shares[band] if band < len(shares) else 0.0
             top = base - max(share * scale, 1.0)
             edge = (middle - bar / 2, top, middle + bar / 2, base)
-            used, muted = band < state.n_bands, band in state.muted
+            used = band < state.n_bands
+            factor = min(max(picture.figures.factors[band], 0.0), 1.0) if used else 0.0
             if not used:
                 self.draw.rectangle(edge, fill=RULE)
-            elif muted:
-                self.draw.rectangle(edge, outline=ACCENT, width=max(1, round(at.scale)))
             else:
-                self.draw.rectangle(edge, fill=ACCENT)
+                kept = base - (2 * factor - factor**2) * (base - top)  # what a window leaves of the energy
+                self.draw.rectangle(edge, outline=ACCENT, width=max(1, round(at.scale)))
+                if factor:
+                    self.draw.rectangle((edge[0], min(kept, base), edge[2], base), fill=ACCENT)
             if numbers and used:
                 self.draw.text((middle, top - at.px(9)), f"{100 * share:.0f}", GREY, face, anchor="mm")
             if band % step == 0:
-                ink = UNUSED if not used else FAINT if muted else GREY
+                ink = UNUSED if not used else FAINT if not factor else GREY
                 self.draw.text((middle, base + at.px(13)), str(band), ink, face, anchor="mm")
             if used and band == state.cursor and state.cursor_visible:
                 y = base + at.px(3)
@@ -220,28 +222,31 @@ class _Painter:
             self.text("message", at.margin, y, text, 13, WARNING, "lm")
             return
         stops = f"exposure {picture.exposure_stops:+.1f} stops ({describe_exposure(state)})"
-        self.text("exposure", at.width - at.margin, y, stops, 12, FAINT, "rm")
+        needs, far = picture.needs, at.width - at.margin
+        radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
+        within = f"{100 * needs.tolerance:g} % needs {radiance} bands, irradiance {irradiance}"
+        any(self.text("exposure", far, y, text, 12, FAINT, "rm") for text in (f"{within}     {stops}", within, stops))
         self.text("hint", at.margin, y, HINT, 12, FAINT, "lm")
 
 
-def _percent(share: float, digits: int = 3) -> str:
-    """A share of 1 in percent; below a ten-thousandth of a percent Parseval's difference is only rounding."""
+def _percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
+    """A share of 1 in percent; one below the floor of its method only says so."""
     percent = 100 * share
     if not np.isfinite(percent):
         return "infinite"
-    if percent == 0:
+    if share < floor:
+        return f"< {_percent(floor, 1)}"
+    if percent < 1e-5:
         return "0 %"
-    if percent < 1e-4:
-        return "< 0.0001 %"
-    decimals = min(max(0, digits - 1 - int(np.floor(np.log10(percent) + 1e-9))), 4)
-    while percent < 100 and decimals < 4 and f"{percent:.{decimals}f}".startswith("100"):
+    decimals = min(max(0, digits - 1 - int(np.floor(np.log10(percent) + 1e-9))), 5)
+    while percent < 100 and decimals < 5 and f"{percent:.{decimals}f}".startswith("100"):
         decimals += 1
     return f"{percent:.{decimals}f} %"
 
 
-def _radiance(value: float) -> str:
-    """Three digits, with a power of ten where that is shorter."""
-    if value == 0 or abs(value) < 1e-12:
+def _radiance(value: float, peak: float) -> str:
+    """Three digits, with a power of ten where that is shorter; 0 below a millionth of the light's peak."""
+    if abs(value) <= 1e-6 * peak:
         return "0"
     if 1e-3 <= abs(value) < 1e5:
         return f"{value:.{max(0, 2 - int(np.floor(np.log10(abs(value)))))}f}"

@@ -6,7 +6,7 @@ sampled once for its error figures. A band key then costs a sum of what is there
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from time import perf_counter
 
@@ -14,16 +14,30 @@ import numpy as np
 
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.metrics import ErrorGrid, Extremes, band_power, band_weights, relative, squared_error
+from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
+from shviewer.harmonics.extremes import ErrorGrid, Extremes
+from shviewer.harmonics.filters import per_coefficient, window
+from shviewer.harmonics.metrics import (
+    PARSEVAL_FLOOR,
+    ChannelFigures,
+    SampleEstimate,
+    band_power,
+    band_weights,
+    channel_figures,
+    errors_by_band_count,
+    smallest_band_count,
+    split_half_estimate,
+)
 from shviewer.harmonics.projection import Synthesis, project_product, project_samples
-from shviewer.harmonics.quadrature import MAX_SAMPLES, gauss_legendre, jittered
+from shviewer.harmonics.quadrature import MAX_SAMPLES, DirectionSet, gauss_legendre, jittered
+from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light, find_light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer import camera
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
-from shviewer.viewer.state import MAX_EXPOSURE, METHODS, ZOOM_RANGE, ViewState
+from shviewer.viewer.state import MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
 
 WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
@@ -50,17 +64,36 @@ class Projection:
 
 
 @dataclass(frozen=True)
-class Figures:
-    """What the overlay and the metadata say. Radiance is linear; errors are relative to the L2 norm over all channels."""
+class Needs:
+    """How many bands are within a tolerance, for the radiance and for the irradiance of a light; None if no count is."""
 
-    relative_l2: float
-    left_out: float
-    """The part of relative_l2 that the bands above n leave out (Parseval)."""
-    added: float
-    """The part that muted bands and sampling add; relative_l2**2 = left_out**2 + added**2."""
+    tolerance: float
+    radiance: int | None
+    irradiance: int | None
+    best: float
+    """The relative L2 error, of the quantity shown, with as many bands as are best."""
+    best_bands: int
+    searched: int
+    """Up to how many bands the quantity shown was searched: fewer for samples, which are rarely good for more."""
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What the overlay and the metadata say. Radiance is linear."""
+
+    channels: dict[str, ChannelFigures]
+    """Of "all" channels together, "red", "green", "blue" and "luminance"."""
+    floor: float
+    """Relative L2 errors below this cannot be told from rounding, or from a quadrature's own error."""
     extremes: Extremes
     energy_share: tuple[float, ...]
     """Energy of each band over that of the light; as many bands as were projected exactly."""
+    factors: tuple[float, ...]
+    """What each band in use is multiplied with: the window, 0 if muted."""
+
+    @property
+    def relative_l2(self) -> float:
+        return self.channels["all"].relative_l2
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +102,7 @@ class Picture:
 
     state: ViewState
     light: Light
+    """What is shown on the left: the state's light, or its irradiance."""
     lobes: tuple[Lobe, ...]
     original_map: LatLongMap | None
     coefficients: Array
@@ -80,6 +114,7 @@ class Picture:
     exposure_stops: float
     projection: Projection
     figures: Figures
+    needs: Needs
 
 
 def prepare(state: ViewState) -> Picture:
@@ -88,7 +123,8 @@ def prepare(state: ViewState) -> Picture:
     light = load_light(state)
     projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
     projection = _project(light, state.method, state.samples, state.seed, projected)
-    coefficients, figures = _reconstruct(light, projection, state.n_bands, state.muted_shown)
+    shape = state.n_bands, state.muted_shown, state.window, state.window_width
+    coefficients, figures = _reconstruct(light, projection, *shape)
     return Picture(
         state=state,
         light=light,
@@ -97,12 +133,13 @@ def prepare(state: ViewState) -> Picture:
         coefficients=coefficients,
         reconstruction_map=None
         if state.n_bands <= MAX_DIRECT_BANDS
-        else _reconstruction_map(light, projection, state.n_bands, state.muted_shown),
+        else _reconstruction_map(light, projection, *shape),
         world_from_view=camera.world_from_view(*state.camera),
         light_from_world=camera.light_from_world(state.light_rotation),
         exposure_stops=exposure_stops(state, light),
         projection=projection,
         figures=figures,
+        needs=needs(state),
     )
 
 
@@ -115,6 +152,14 @@ def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> Non
             raise UsageError(f"muted band {band}: bands are counted from 0 to {MAX_SHOWN_BANDS - 1}")
     if state.method not in METHODS:
         raise UsageError(f"method {state.method!r}: it must be one of {', '.join(METHODS)}")
+    if state.quantity not in QUANTITIES:
+        raise UsageError(f"quantity {state.quantity!r}: it must be one of {', '.join(QUANTITIES)}")
+    if state.window not in WINDOWS:
+        raise UsageError(f"window {state.window!r}: it must be one of {', '.join(WINDOWS)}")
+    if state.window_width is not None and not 0 < state.window_width < float("inf"):
+        raise UsageError(f"window width {state.window_width:g}: it must be positive and finite, in bands")
+    if not 0 < state.tolerance < 1:
+        raise UsageError(f"tolerance {state.tolerance:g}: it must be between 0 and 1, such as 0.05 or 5%")
     if not 1 <= state.samples <= MAX_SAMPLES:
         raise UsageError(f"{state.samples} samples: there must be 1 to {MAX_SAMPLES}")
     if state.seed < 0:
@@ -128,8 +173,38 @@ def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> Non
 
 
 def load_light(state: ViewState) -> Light:
-    """The state's light; one named by text is read once."""
-    return _find(state.light, state.sanitize) if isinstance(state.light, str) else state.light
+    """The state's light, or its irradiance; one named by text is read once."""
+    light = _find(state.light, state.sanitize) if isinstance(state.light, str) else state.light
+    return _irradiance(light) if state.quantity == "irradiance" else light
+
+
+def needs(state: ViewState) -> Needs:
+    """How many bands the state's light needs for its tolerance, by the best way and for both quantities.
+
+    With a sampled method the answer for the quantity shown is that of the samples' own error.
+    """
+    answers = {}
+    for quantity in QUANTITIES:
+        light = load_light(replace(state, quantity=quantity))
+        method = state.method if quantity == state.quantity else "best"
+        errors = _errors(light, method, state.samples, state.seed)
+        answers[quantity] = smallest_band_count(errors, state.tolerance), errors
+    errors = answers[state.quantity][1]
+    best = int(errors.argmin())
+    return Needs(
+        state.tolerance, answers["radiance"][0], answers["irradiance"][0], float(errors[best]), best + 1, len(errors)
+    )
+
+
+def estimate_from_samples(state: ViewState) -> SampleEstimate:
+    """What the state's jittered samples alone say, as if the light were not known otherwise: two halves of the cells."""
+    light = load_light(state)
+    samples = jittered(state.samples, state.seed)
+    halves = [DirectionSet(samples.directions[start::2], 2 * samples.weights[start::2]) for start in (0, 1)]
+    first, second = (project_samples(light.radiance, half, MAX_DIRECT_BANDS) for half in halves)
+    squares = (light.radiance(samples.directions) ** 2).sum(axis=1)
+    deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
+    return split_half_estimate(first, second, float(samples.weights @ squares), deviation, state.tolerance)
 
 
 def exposure_stops(state: ViewState, light: Light) -> float:
@@ -163,27 +238,60 @@ def _project(light: Light, method: str, samples: int, seed: int, n_bands: int) -
     return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))
 
 
+@lru_cache(maxsize=32)
+def _irradiance(light: Light) -> Light:
+    return IrradianceLight(light)
+
+
+@lru_cache(maxsize=64)
+def _errors(light: Light, method: str, samples: int, seed: int) -> Array:
+    exact = _project(light, "best", 0, 0, MAX_SHOWN_BANDS).coefficients
+    n_bands = MAX_SHOWN_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
+    shown = exact if method == "best" else _project(light, method, samples, seed, n_bands).coefficients
+    return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
+
+
 @lru_cache(maxsize=256)
-def _reconstruct(light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...]) -> tuple[Array, Figures]:
+def _reconstruct(
+    light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
+) -> tuple[Array, Figures]:
     exact = _project(light, "best", 0, 0, projection.n_bands).coefficients
-    norm_squared = light.norm_squared()
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
-    left_out, added = squared_error(norm_squared, exact[: n_bands**2], shown)
-    total = float(norm_squared.sum())
+    factors = _window_factors(shown, window_name, width)
+    shown = shown * per_coefficient(factors)
+    total = float(np.trace(light.products()))
     power = band_power(exact).sum(axis=1)
+    extremes = _error_grid(light, _grid_rows(n_bands)).compare(shown)
     figures = Figures(
-        relative_l2=relative(left_out + added, norm_squared),
-        left_out=relative(left_out, norm_squared),
-        added=relative(added, norm_squared),
-        extremes=_error_grid(light, _grid_rows(n_bands)).compare(shown),
+        channels=channel_figures(light.products(), exact[: n_bands**2], shown, extremes.peak),
+        floor=max(PARSEVAL_FLOOR, light.accuracy()),
+        extremes=extremes,
         energy_share=tuple(float(p) / total if total else 0.0 for p in power),
+        factors=tuple(0.0 if band in muted else float(factor) for band, factor in enumerate(factors)),
     )
     return shown, figures
 
 
+def _window_factors(coefficients: Array, name: str, width: float | None) -> Array:
+    """The window's factor per band, (n,). UsageError where it cannot be had."""
+    n_bands = count_bands(coefficients)
+    if name == "none":
+        return np.ones(n_bands)
+    if name == "dering":
+        if n_bands > MAX_DERINGED_BANDS:
+            raise UsageError(f"{n_bands} bands: dering takes at most {MAX_DERINGED_BANDS}")
+        try:
+            return dering(coefficients).factors
+        except ValueError as error:
+            raise UsageError(f"dering: {error}") from error
+    return window(name, n_bands, width or n_bands)
+
+
 @lru_cache(maxsize=4)
-def _reconstruction_map(light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...]) -> LatLongMap:
-    shown, _ = _reconstruct(light, projection, n_bands, muted)
+def _reconstruction_map(
+    light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
+) -> LatLongMap:
+    shown, _ = _reconstruct(light, projection, n_bands, muted, window_name, width)
     rows, columns = MAP_SIZE
     values = Synthesis(shown).on_rows(np.linspace(0, np.pi, rows), columns)
     return LatLongMap(np.ascontiguousarray(values.transpose(0, 2, 1), dtype=np.float32), rows_on_poles=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import tempfile
 from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +36,9 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "light_notes": list(picture.light.notes),
         "bands": state.n_bands,
         "muted": list(state.muted_shown),
+        "quantity": state.quantity,
+        "window": state.window,
+        "factors": list(figures.factors),
         "method": state.method,
         "method_words": projection.method,
         "samples": projection.evaluations,
@@ -51,19 +56,30 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         },
         "opengl": opengl,
         "figures": {
+            **{name: asdict(channel) for name, channel in figures.channels.items()},
             "relative_l2": figures.relative_l2,
-            "relative_l2_left_out": figures.left_out,
-            "relative_l2_muted_and_sampling": figures.added,
+            "relative_l2_floor": figures.floor,
             "max_error": extremes.max_error,
             "max_error_direction_in_light": list(extremes.max_error_direction),
             "minimum": extremes.minimum,
             "minimum_direction_in_light": list(extremes.minimum_direction),
             "negative_area": extremes.negative_area,
+            "negative_energy": extremes.negative_energy,
             "peak": extremes.peak,
             "energy_share": list(figures.energy_share),
+            "bands_needed": asdict(picture.needs),
         },
     }
-    return json.dumps(description, ensure_ascii=False)
+    return json.dumps(_finite(description), ensure_ascii=False, allow_nan=False)
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no infinity: an infinite PSNR (no error at all) is null."""
+    if isinstance(value, dict):
+        return {key: _finite(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def write_png(path: Path, pixels: NDArray[np.uint8], text: str, *, exclusive: bool = False) -> None:

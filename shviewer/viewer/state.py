@@ -16,6 +16,8 @@ from shviewer.viewer.camera import IDENTITY, Quaternion, turned_by_drag
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 
 METHODS = ("best", "jittered", "gauss-legendre")
+QUANTITIES = ("radiance", "irradiance")
+WINDOWS = ("none", "hann", "lanczos", "gauss", "dering")
 MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
 CAMERA_HOME = (78.0, 22.0)
 """Azimuth and elevation of the camera, degrees: both lobes of Green's light are in sight."""
@@ -27,7 +29,7 @@ ZOOM_RANGE = (0.25, 16.0)
 
 @dataclass(frozen=True)
 class ViewState:
-    """Equal states of equal size give equal pixels; the last four fields are wishes to the window, not to the picture."""
+    """Equal states of equal size give equal pixels; the last four are wishes to the window, not to the picture."""
 
     lights: tuple[str | Light, ...] = ("green",)
     light_index: int = 0
@@ -36,6 +38,11 @@ class ViewState:
     muted: frozenset[int] = frozenset()
     cursor: int = 0
     cursor_visible: bool = False
+    quantity: str = "radiance"
+    window: str = "none"
+    window_width: float | None = None
+    """In bands; where it is None, as many as are shown."""
+    tolerance: float = 0.05
     method: str = "best"
     samples: int = 10_000
     seed: int = 0
@@ -50,6 +57,8 @@ class ViewState:
     fullscreen: bool = field(default=False, compare=False)
     closing: bool = field(default=False, compare=False)
     screenshots: int = field(default=0, compare=False)
+    fits: int = field(default=0, compare=False)
+    """Counts the wishes for as many bands as the tolerance asks for, which depends on the light."""
 
     @property
     def light(self) -> str | Light:
@@ -114,6 +123,14 @@ def next_light(step: int) -> Action:
     return lambda state: replace(state, light_index=(state.light_index + step) % len(state.lights))
 
 
+def next_window(state: ViewState) -> ViewState:
+    return replace(state, window=WINDOWS[(WINDOWS.index(state.window) + 1) % len(WINDOWS)])
+
+
+def next_quantity(state: ViewState) -> ViewState:
+    return replace(state, quantity=QUANTITIES[(QUANTITIES.index(state.quantity) + 1) % len(QUANTITIES)])
+
+
 def next_method(state: ViewState) -> ViewState:
     return replace(state, method=METHODS[(METHODS.index(state.method) + 1) % len(METHODS)])
 
@@ -146,6 +163,8 @@ def reset(state: ViewState) -> ViewState:
         sanitize=state.sanitize,
         fullscreen=state.fullscreen,
         screenshots=state.screenshots,
+        fits=state.fits,
+        tolerance=state.tolerance,
     )
 
 
@@ -192,6 +211,14 @@ def describe_muted(state: ViewState) -> str:
         else:
             runs.append([band])
     return "muted " + ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs)
+
+
+def describe_window(state: ViewState) -> str:
+    """ "Hann window", "Hann window of 6", "deringed", or "" """
+    if state.window in ("none", "dering"):
+        return "deringed" if state.window == "dering" else ""
+    width = f" of {state.window_width:g}" if state.window_width else ""
+    return f"{state.window.capitalize()} window{width}"
 
 
 def light_name(light: str | Light) -> str:
@@ -244,6 +271,14 @@ BINDINGS = (
         lambda s: f"band {s.cursor}",
     ),
     Binding("Enter / click", BANDS, "mute or unmute the band there", {"Enter": toggle_cursor}),
+    Binding(
+        "T",
+        BANDS,
+        "as many as the tolerance needs",
+        {"T": lambda s: replace(s, fits=s.fits + 1)},
+        lambda s: f"{100 * s.tolerance:g} %",
+    ),
+    Binding("W", BANDS, "window against ringing", {"W": next_window}, lambda s: s.window),
     Binding("A", BANDS, "all bands on", {"A": lambda s: replace(s, muted=frozenset())}),
     Binding(
         "Left / Right",
@@ -252,6 +287,7 @@ BINDINGS = (
         {"Left": next_light(-1), "Right": next_light(1)},
         lambda s: light_name(s.light),
     ),
+    Binding("I", LIGHT, "radiance or irradiance", {"I": next_quantity}, lambda s: s.quantity),
     Binding("M", LIGHT, "projection method", {"M": next_method}, lambda s: s.method),
     Binding(
         "S / Shift+S",

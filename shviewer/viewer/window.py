@@ -20,11 +20,11 @@ import moderngl
 from shviewer.errors import GraphicsError, ShviewerError
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.overlay import Overlay, draw_overlay
-from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.picture import Picture, needs, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
 from shviewer.viewer.renderer import GL_VERSIONS, Renderer
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import ViewState, open_light, orbit, press, rotate_light, toggle_band, zoom
+from shviewer.viewer.state import ViewState, open_light, orbit, press, rotate_light, toggle_band, with_bands, zoom
 
 IDLE_SECONDS = 0.25
 CLICK_PIXELS = 4.0
@@ -127,6 +127,8 @@ class Window:
             self._set_fullscreen(state.fullscreen)
         if state.screenshots != last.screenshots:
             self._save()
+        if state.fits != last.fits:
+            self._fit()
         self.frames_due = max(self.frames_due, 1)
 
     def frame(self) -> None:
@@ -166,7 +168,7 @@ class Window:
         try:
             picture = prepare(self.state)
         except ShviewerError as error:
-            wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots")}
+            wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots", "fits")}
             self.state = replace(self.picture.state, message=str(error), **wishes)
             picture = prepare(self.state)
         if picture.light is not self.picture.light:
@@ -204,6 +206,16 @@ class Window:
             self.state = replace(self.state, message=f"saved {path}")
             if self.verbose:
                 print(f"saved {path}", file=sys.stderr, flush=True)
+
+    def _fit(self) -> None:
+        """As many bands as the tolerance needs; where none are enough, say so and change nothing."""
+        found = needs(self.state)
+        wanted = found.irradiance if self.state.quantity == "irradiance" else found.radiance
+        if wanted is None:
+            best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"
+            self.state = replace(self.state, message=f"no band count is within {100 * found.tolerance:g} %: {best}")
+        else:
+            self.state = with_bands(self.state, wanted)
 
     def _set_fullscreen(self, fullscreen: bool) -> None:
         if fullscreen:

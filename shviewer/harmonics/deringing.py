@@ -1,0 +1,123 @@
+"""The smallest change per band that leaves no negative radiance.
+
+P.-P. Sloan ("Deringing Spherical Harmonics", 2017) narrows a window of one parameter until nothing is negative. No such
+family contains the best answer: for Green's light a Lanczos window has to go down to two bands. Here every band has a
+factor h(l) of its own, the mean excepted, and
+    sum over l of (1 - h(l))^2 p(l),   p(l) the energy of band l,
+which is exactly the squared L2 change, is made as small as possible while no channel is negative in any direction. That is a
+least-distance problem with one linear constraint per direction; only the few lowest valleys matter, and they are
+found on the function itself and added until none is below zero. It has a solution wherever the mean is
+not negative, since the mean alone is one.
+
+Source
+    [LH] C. Lawson, R. Hanson, "Solving Least Squares Problems" (1974), chapter 23: NNLS and LDP.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_basis
+from shviewer.harmonics.extremes import smallest_value, valleys
+from shviewer.harmonics.filters import per_coefficient
+from shviewer.harmonics.metrics import band_power
+
+MAX_DERINGED_BANDS = 32
+
+TOLERANCE = 1e-6
+"""Valleys this far below zero, relative to the mean radiance, get a constraint; a trace of the mean lifts the rest."""
+
+ROUNDS, QUICK_ROUNDS = 40, 7
+EMPTY = 1e-10
+"""A band with less than this share of the L2 norm is left as it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Deringing:
+    """factors: h(l), (n,). minimum: of the result, over all channels and directions. change: relative to the L2 norm."""
+
+    factors: Array
+    minimum: float
+    change: float
+
+
+def dering(coefficients: Array) -> Deringing:
+    """The factors of the module docstring for coefficients (n**2, 3), n up to MAX_DERINGED_BANDS.
+
+    One factor per band for all channels, so that no hue shifts; 1 where nothing is negative. ValueError for too many
+    bands, or for a negative mean, which no window can make non-negative.
+    """
+    n_bands = count_bands(coefficients)
+    check_bands(n_bands, MAX_DERINGED_BANDS)
+    mean = coefficients[0] / np.sqrt(4 * np.pi)
+    if (mean < 0).any():
+        raise ValueError(f"mean radiance {mean.min():.3g} in a channel: no window makes a negative mean non-negative")
+    power = band_power(coefficients).sum(axis=1)
+    norm = np.sqrt(power.sum())
+    if norm == 0:
+        return Deringing(np.ones(n_bands), 0.0, 0.0)
+    strength = np.sqrt(power) / norm
+    movable = (strength > EMPTY) & (np.arange(n_bands) > 0)
+    factors = np.ones(n_bands)
+    rows: list[Array] = []
+    limits: list[float] = []
+    for _ in range(ROUNDS):
+        lowest, directions, channels = valleys(coefficients * per_coefficient(factors), QUICK_ROUNDS)
+        below = lowest < -TOLERANCE * mean.max()
+        if not below.any():
+            break
+        by_band = _band_values(coefficients, directions[below], channels[below]) / norm
+        rows += list(-by_band[:, movable] / strength[movable])
+        limits += list(-by_band.sum(axis=1))
+        # with u(l) = strength(l) (1 - h(l)), a radiance is its value at u = 0 minus by_band / strength . u
+        factors[movable] = 1 - least_distance(np.array(rows), np.array(limits)) / strength[movable]
+    lowest, _, channels = valleys(coefficients * per_coefficient(factors))
+    missing = np.maximum(-lowest, 0) / np.maximum(mean[channels] - lowest, np.finfo(float).tiny)
+    factors[1:] *= 1 - missing.max()  # a trace of the mean lifts what the search's accuracy left below zero
+    change = float((power * (1 - factors) ** 2).sum())
+    return Deringing(factors, smallest_value(coefficients * per_coefficient(factors))[0], float(np.sqrt(change)) / norm)
+
+
+def least_distance(rows: Array, limits: Array) -> Array:
+    """The shortest u with rows @ u >= limits [LH, LDP]: (k, n), (k,) -> (n,). ValueError if there is none."""
+    system = np.vstack([rows.T, limits])
+    target = np.zeros(len(system))
+    target[-1] = 1
+    residual = system @ _non_negative_least_squares(system, target) - target
+    if abs(residual[-1]) < 1e-14:
+        raise ValueError("no vector satisfies all the inequalities")
+    return np.asarray(-residual[:-1] / residual[-1])
+
+
+def _non_negative_least_squares(system: Array, target: Array) -> Array:
+    """The y >= 0 that minimises |system @ y - target| [LH, NNLS]."""
+    count = system.shape[1]
+    free = np.zeros(count, dtype=bool)
+    y = np.zeros(count)
+    for _ in range(3 * count + 10):
+        gain = system.T @ (target - system @ y)
+        gain[free] = -np.inf
+        if gain.max(initial=-np.inf) <= 1e-13 * np.abs(system).max():
+            break
+        free[int(gain.argmax())] = True
+        while True:
+            trial = np.zeros(count)
+            trial[free] = np.linalg.lstsq(system[:, free], target, rcond=None)[0]
+            stuck = free & (trial <= 0)
+            if not stuck.any():
+                break
+            step = float((y[stuck] / (y[stuck] - trial[stuck])).min())
+            y += step * (trial - y)
+            free &= y > 1e-15 * y.max(initial=0)
+            y[~free] = 0
+        y = trial
+    return y
+
+
+def _band_values(coefficients: Array, directions: Array, channels: NDArray[np.int64]) -> Array:
+    """What each band adds to one channel in each direction: (k, n)."""
+    terms = evaluate_basis(directions, count_bands(coefficients)) * coefficients[:, channels].T
+    return np.asarray(np.add.reduceat(terms, np.arange(count_bands(coefficients)) ** 2, axis=1))

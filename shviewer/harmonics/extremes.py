@@ -1,0 +1,185 @@
+"""Where a reconstruction is lowest, and where it is farthest from its light.
+
+A grid finds the right valley; from there the search goes on in ever smaller patches of the function itself, so that what
+is reported is a value the function takes, and not one that depends on where the grid's points happen to lie.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
+from shviewer.harmonics.projection import Synthesis
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Rec. 709 luminance of linear RGB [ITU-R BT.709-6, item 3.2]."""
+
+PATCH = np.stack(np.meshgrid(np.arange(-2.0, 3.0), np.arange(-2.0, 3.0), indexing="ij"), axis=-1).reshape(-1, 2)
+DISPLAY_ROUNDS = 4
+"""Halvings of a patch for a figure that is shown: to a sixteenth of the grid's cell."""
+
+SEARCH_ROUNDS = 14
+VALLEYS = 12
+"""A search that must not miss the lowest valley follows this many of the grid's lowest."""
+
+Triple = tuple[float, float, float]
+Objective = Callable[[Array], Array]
+"""Unit directions (k, 3) -> (k,), to be maximised."""
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Radiance is linear; errors and minima are over all channels; areas and energies are shares, 0 to 1."""
+
+    max_error: float
+    max_error_direction: Triple
+    minimum: float
+    minimum_direction: Triple
+    negative_area: float
+    """Share of the sphere with negative Rec. 709 luminance."""
+    negative_energy: float
+    """Integral of min(reconstruction, 0)^2 over that of reconstruction^2, all channels."""
+    peak: float
+    """The largest |radiance| of the original seen on the same grid."""
+
+
+class ErrorGrid:
+    """A light seen on a lat-long grid and at its landmarks, ready to be compared with any reconstruction.
+
+    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions where a grid would miss something.
+    """
+
+    def __init__(self, radiance: Callable[[Array], Array], landmarks: Array, n_rows: int) -> None:
+        self.radiance = radiance
+        self.theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
+        self.phi = column_azimuths(2 * n_rows)
+        directions = directions_from_angles(self.theta[:, None], self.phi)
+        grid = radiance(directions.reshape(-1, 3)).reshape(n_rows, 2 * n_rows, 3)
+        self.original = np.ascontiguousarray(grid.transpose(0, 2, 1))
+        self.landmarks = landmarks
+        there = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
+        self.peak = float(max(np.abs(self.original).max(), np.abs(there).max(initial=0)))
+        edges = np.cos(np.pi * np.arange(n_rows + 1) / n_rows)
+        self.row_share = (edges[:-1] - edges[1:]) / (2 * 2 * n_rows)
+        """Solid angle of one cell of a row over 4 pi; exact."""
+
+    def compare(self, shown: Array) -> Extremes:
+        """The extremes of the reconstruction with coefficients `shown`, (n**2, 3)."""
+        synthesis = Synthesis(shown)
+        values = synthesis.on_rows(self.theta, len(self.phi))
+        error, error_direction = self._largest_error(values, synthesis, shown)
+        row, _, column = np.unravel_index(int(values.argmin()), values.shape)
+        start = self._direction(int(row), int(column))
+        lowest, place = climb(lambda d: -at_directions(synthesis, d).min(axis=1), start, self._step, DISPLAY_ROUNDS)
+        luminance = sum(weight * values[:, channel] for channel, weight in enumerate(LUMINANCE))
+        area = float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share)
+        minimum, energy = -float(lowest[0]), self._negative_energy(values)
+        return Extremes(error, error_direction, minimum, _triple(place[0]), area, energy, self.peak)
+
+    @property
+    def _step(self) -> float:
+        return float(np.pi / len(self.theta))
+
+    def _direction(self, row: int, column: int) -> Array:
+        return directions_from_angles(self.theta[[row]], self.phi[[column]])
+
+    def _largest_error(self, values: Array, synthesis: Synthesis, shown: Array) -> tuple[float, Triple]:
+        difference = values - self.original
+        row, _, column = np.unravel_index(int(np.abs(difference, out=difference).argmax()), difference.shape)
+        errors, places = climb(
+            lambda d: np.abs(at_directions(synthesis, d) - self.radiance(d)).max(axis=1),
+            self._direction(int(row), int(column)),
+            self._step,
+            DISPLAY_ROUNDS,
+        )
+        best = float(errors[0]), _triple(places[0])
+        if len(self.landmarks):
+            reconstruction = evaluate_basis(self.landmarks, synthesis.n_bands) @ shown
+            there = np.abs(reconstruction - self.radiance(self.landmarks)).max(axis=1)
+            best = max(best, (float(there.max()), _triple(self.landmarks[int(there.argmax())])))
+        return best
+
+    def _negative_energy(self, values: Array) -> float:
+        scale = float(np.abs(values).max())
+        if scale == 0 or values.min() >= 0:
+            return 0.0
+        squares = np.square(values / scale)
+        total = float(squares.sum(axis=(1, 2)) @ self.row_share)
+        squares[values >= 0] = 0
+        return float(squares.sum(axis=(1, 2)) @ self.row_share) / total
+
+
+def smallest_value(coefficients: Array) -> tuple[float, Triple]:
+    """The minimum of a reconstruction over all channels, and its direction: (n**2, 3) -> value, (x, y, z)."""
+    values, directions, _ = valleys(coefficients)
+    lowest = int(values.argmin())
+    return float(values[lowest]), _triple(directions[lowest])
+
+
+def valleys(coefficients: Array, rounds: int = SEARCH_ROUNDS) -> tuple[Array, Array, NDArray[np.int64]]:
+    """The lowest local minima of each channel of a reconstruction (n**2, 3): values (k,), directions (k, 3), channels (k,).
+
+    Valleys are no narrower than about pi/n, and the grid has 6 rows in each. At most VALLEYS a channel are followed
+    down; after SEARCH_ROUNDS a patch is 1e-4 of a cell wide and the values are good to about 1e-9 of the peak. A channel
+    that equals an earlier one is left out.
+    """
+    synthesis = Synthesis(coefficients)
+    n_rows = max(32, 6 * count_bands(coefficients))
+    theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
+    phi = column_azimuths(2 * n_rows)
+    grid = synthesis.on_rows(theta, len(phi))
+    found: list[tuple[Array, Array, NDArray[np.int64]]] = []
+    for channel in range(3):
+        if any(np.array_equal(coefficients[:, channel], coefficients[:, earlier]) for earlier in range(channel)):
+            continue
+        values = grid[:, channel]
+        around = np.pad(values, ((1, 1), (0, 0)), mode="edge")
+        valley = (values <= around[:-2]) & (values <= around[2:])
+        valley &= (values <= np.roll(values, 1, axis=1)) & (values <= np.roll(values, -1, axis=1))
+        rows, columns = np.nonzero(valley)
+        lowest = np.argsort(values[rows, columns], kind="stable")[:VALLEYS]
+        starts = directions_from_angles(theta[rows[lowest]], phi[columns[lowest]])
+        negated, places = climb(
+            lambda d, channel=channel: -at_directions(synthesis, d)[:, channel],  # type: ignore[misc]
+            starts,
+            float(np.pi / n_rows),
+            rounds,
+        )
+        found.append((-negated, places, np.full(len(places), channel)))
+    values, places, channels = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return values, places, channels
+
+
+def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tuple[Array, Array]:
+    """Uphill from each of the unit vectors `starts`, (k, 3), in 5 x 5 patches that reach `step`, step/2, ...
+
+    Returns the values (k,) and directions (k, 3) arrived at.
+    """
+    places = starts
+    for reach in step * 0.5 ** np.arange(rounds):
+        right = np.cross(places, np.eye(3)[np.abs(places).argmin(axis=1)])
+        right /= np.linalg.norm(right, axis=1, keepdims=True)
+        up = np.cross(places, right)
+        offsets = reach / 2 * (PATCH[:, :1] * right[:, None] + PATCH[:, 1:] * up[:, None])
+        patches = places[:, None] + offsets
+        patches /= np.linalg.norm(patches, axis=2, keepdims=True)
+        values = objective(patches.reshape(-1, 3)).reshape(len(places), len(PATCH))
+        best = values.argmax(axis=1)
+        places = patches[np.arange(len(places)), best]
+    return values[np.arange(len(places)), best], places
+
+
+def at_directions(synthesis: Synthesis, directions: Array) -> Array:
+    """The reconstruction (k, 3) in unit directions (k, 3)."""
+    x, y, z = directions.T
+    return synthesis.at(np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+
+
+def _triple(direction: Array) -> Triple:
+    x, y, z = (float(component) for component in direction)
+    return x, y, z
