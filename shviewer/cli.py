@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer import __version__
-from shviewer.errors import ShviewerError, UsageError
+from shviewer.errors import OutputError, ShviewerError, UsageError
 
 if TYPE_CHECKING:
     from shviewer.viewer.state import ViewState
 
 EXIT_CODES = """exit codes:
   0    done
-  1    --reference: the picture differs
+  1    --reference: the picture differs; --stability: a case failed
   2    bad arguments
   3    a light that is unknown, unreadable or damaged
   4    a file that could not be written
@@ -37,6 +37,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         if arguments[:1] == ["screenshot"]:
             return _screenshot(screenshot_parser().parse_args(arguments[1:]))
+        if arguments[:1] == ["report"]:
+            return _report(report_parser().parse_args(arguments[1:]))
         return _view(view_parser().parse_args(arguments))
     except ShviewerError as error:
         print(f"shviewer: {error}", file=sys.stderr)
@@ -49,7 +51,7 @@ def view_parser() -> argparse.ArgumentParser:
     """shviewer [LIGHT]: the window."""
     parser = argparse.ArgumentParser(
         prog="shviewer",
-        usage="shviewer [LIGHT] [options]\n       shviewer screenshot OUT [LIGHT] [options]",
+        usage="shviewer [LIGHT] [options]\n       shviewer screenshot OUT [LIGHT] [options]\n       shviewer report --stability",
         description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
         epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -91,6 +93,22 @@ def screenshot_parser() -> argparse.ArgumentParser:
         default=0.001,
         help="share of the pixels, 0 to 1, that may differ from the reference by more than 2/255 (default 0.001)",
     )
+    return parser
+
+
+def report_parser() -> argparse.ArgumentParser:
+    """shviewer report: measurements of the program itself."""
+    parser = argparse.ArgumentParser(
+        prog="shviewer report",
+        description="Measure the program on this machine. --stability runs every hard numerical case against its known answer.",
+        epilog=EXIT_CODES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--stability", action="store_true", required=True, help="the hard cases; exit 1 if one fails")
+    parser.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, help="also write stability.md and stability.json into this folder"
+    )
+    parser.add_argument("--no-shader", action="store_true", help="only the float64 columns; needs no OpenGL")
     return parser
 
 
@@ -200,6 +218,35 @@ def _screenshot(options: argparse.Namespace) -> int:
     if verdict:
         print(f"shviewer: {verdict}", file=sys.stderr)
     return 1 if verdict else 0
+
+
+def _report(options: argparse.Namespace) -> int:
+    from shviewer import stability
+    from shviewer.viewer.picture_files import write_atomically
+
+    progress = _Progress() if sys.stderr.isatty() else None
+    outcomes = stability.run(progress=progress, shader=not options.no_shader)
+    if progress:
+        progress.clear()
+    print(stability.as_text(outcomes))
+    if options.output is not None:
+        try:
+            options.output.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise OutputError(f"{options.output}: cannot be made a folder: {error.strerror}; choose another") from error
+        write_atomically(options.output / "stability.md", stability.as_markdown(outcomes).encode())
+        write_atomically(options.output / "stability.json", stability.as_json(outcomes).encode())
+    return 0 if all(outcome.passed for outcome in outcomes) else 1
+
+
+class _Progress:
+    """The case at work, on one line of the terminal."""
+
+    def __call__(self, name: str) -> None:
+        print(f"\r\033[K{name}", end="", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        self("")
 
 
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:

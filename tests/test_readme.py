@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.cli import EXIT_CODES, screenshot_parser, view_parser
+from shviewer.cli import EXIT_CODES, report_parser, screenshot_parser, view_parser
 from shviewer.lights.scene import PROFILES, read_scene
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.state import METHODS, ViewState, key_table
@@ -29,7 +29,9 @@ def test_the_exit_codes_are_those_of_the_help() -> None:
     assert indented in EXIT_CODES
 
 
-@pytest.mark.parametrize("parser", [view_parser(), screenshot_parser()], ids=["view", "screenshot"])
+@pytest.mark.parametrize(
+    "parser", [view_parser(), screenshot_parser(), report_parser()], ids=["view", "screenshot", "report"]
+)
 def test_every_option_is_explained(parser: object) -> None:
     options = [text for action in parser._actions for text in action.option_strings if text.startswith("--")]  # type: ignore[attr-defined]
     assert options

@@ -24,6 +24,7 @@ from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_b
 from shviewer.harmonics.extremes import smallest_value, valleys
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.metrics import band_power
+from shviewer.harmonics.projection import Synthesis
 
 MAX_DERINGED_BANDS = 32
 
@@ -74,9 +75,9 @@ def dering(coefficients: Array) -> Deringing:
         limits += list(-by_band.sum(axis=1))
         # with u(l) = strength(l) (1 - h(l)), a radiance is its value at u = 0 minus by_band / strength . u
         factors[movable] = 1 - least_distance(np.array(rows), np.array(limits)) / strength[movable]
-    lowest, _, channels = valleys(coefficients * per_coefficient(factors))
-    missing = np.maximum(-lowest, 0) / np.maximum(mean[channels] - lowest, np.finfo(float).tiny)
-    factors[1:] *= 1 - missing.max()  # a trace of the mean lifts what the search's accuracy left below zero
+    lowest = _lowest_everywhere(coefficients * per_coefficient(factors))
+    missing = np.maximum(-lowest, 0) / np.maximum(mean - lowest, np.finfo(float).tiny)
+    factors[1:] *= 1 - missing.max()  # a trace of the mean lifts what the rounds and the search's accuracy left below
     change = float((power * (1 - factors) ** 2).sum())
     return Deringing(factors, smallest_value(coefficients * per_coefficient(factors))[0], float(np.sqrt(change)) / norm)
 
@@ -115,6 +116,15 @@ def _non_negative_least_squares(system: Array, target: Array) -> Array:
             y[~free] = 0
         y = trial
     return y
+
+
+def _lowest_everywhere(shown: Array) -> Array:
+    """The minimum of each channel, (3,): of its valleys and, should one have been passed over, of a fine grid."""
+    rows = 16 * count_bands(shown)
+    lowest = Synthesis(shown).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows).min(axis=(0, 2))
+    values, _, channels = valleys(shown)
+    np.minimum.at(lowest, channels, values)
+    return np.asarray(lowest)
 
 
 def _band_values(coefficients: Array, directions: Array, channels: NDArray[np.int64]) -> Array:

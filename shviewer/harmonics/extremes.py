@@ -24,7 +24,7 @@ DISPLAY_ROUNDS = 4
 """Halvings of a patch for a figure that is shown: to a sixteenth of the grid's cell."""
 
 SEARCH_ROUNDS = 14
-VALLEYS = 12
+VALLEYS = 40
 """A search that must not miss the lowest valley follows this many of the grid's lowest."""
 
 Triple = tuple[float, float, float]
@@ -137,13 +137,9 @@ def valleys(coefficients: Array, rounds: int = SEARCH_ROUNDS) -> tuple[Array, Ar
     for channel in range(3):
         if any(np.array_equal(coefficients[:, channel], coefficients[:, earlier]) for earlier in range(channel)):
             continue
-        values = grid[:, channel]
-        around = np.pad(values, ((1, 1), (0, 0)), mode="edge")
-        valley = (values <= around[:-2]) & (values <= around[2:])
-        valley &= (values <= np.roll(values, 1, axis=1)) & (values <= np.roll(values, -1, axis=1))
-        rows, columns = np.nonzero(valley)
-        lowest = np.argsort(values[rows, columns], kind="stable")[:VALLEYS]
-        starts = directions_from_angles(theta[rows[lowest]], phi[columns[lowest]])
+        rows, columns, depth = _grid_valleys(grid[:, channel])
+        candidates = directions_from_angles(theta[rows], phi[columns])
+        starts = candidates[_spread_out(candidates, depth, np.pi / (2 * synthesis.n_bands))]
         negated, places = climb(
             lambda d, channel=channel: -at_directions(synthesis, d)[:, channel],  # type: ignore[misc]
             starts,
@@ -153,6 +149,46 @@ def valleys(coefficients: Array, rounds: int = SEARCH_ROUNDS) -> tuple[Array, Ar
         found.append((-negated, places, np.full(len(places), channel)))
     values, places, channels = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return values, places, channels
+
+
+def _grid_valleys(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
+    """Rows, columns and estimated depth of the local minima of a lat-long grid (rows, columns).
+
+    The estimate is the vertex of the paraboloid through the neighbours: on the grid itself a narrow deep valley may look
+    shallower than a wide one.
+    """
+    tall = np.pad(values, ((1, 1), (0, 0)), mode="edge")
+    wide = np.pad(tall, ((0, 0), (1, 1)), mode="wrap")
+    up, down, left, right = wide[:-2, 1:-1], wide[2:, 1:-1], wide[1:-1, :-2], wide[1:-1, 2:]
+    rows, columns = np.nonzero((values <= up) & (values <= down) & (values <= left) & (values <= right))
+    here, up, down, left, right = (part[rows, columns] for part in (values, up, down, left, right))
+    across = (wide[2:, 2:] - wide[2:, :-2] - wide[:-2, 2:] + wide[:-2, :-2])[rows, columns] / 4
+    slope_r, slope_c = (down - up) / 2, (right - left) / 2
+    bend_r, bend_c = down - 2 * here + up, right - 2 * here + left
+    determinant = bend_r * bend_c - across**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        both = (slope_r**2 * bend_c - 2 * slope_r * slope_c * across + slope_c**2 * bend_r) / (2 * determinant)
+        along = slope_r**2 / (2 * bend_r)
+    fall = np.where(determinant > 1e-12 * bend_r**2, both, np.where(bend_r > 0, along, 0))
+    return rows, columns, here - np.clip(np.nan_to_num(fall), 0, None)
+
+
+def _spread_out(candidates: Array, depth: Array, apart: float) -> NDArray[np.int64]:
+    """Which VALLEYS candidates (k, 3) to follow: the lowest, but no two within `apart` radians or of one depth.
+
+    Equal depths are the copies that a symmetry makes, such as all the points of a ring.
+    """
+    order = np.argsort(depth, kind="stable")
+    chosen: list[int] = []
+    open_ = np.ones(len(order), dtype=bool)
+    same = 1e-12 * float(np.ptp(depth)) if len(depth) else 0.0
+    for at in order:
+        if open_[at]:
+            chosen.append(int(at))
+            if len(chosen) == VALLEYS:
+                break
+            open_ &= (candidates @ candidates[at] < np.cos(apart)) & (np.abs(depth - depth[at]) > same)
+    return np.array(chosen)
 
 
 def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tuple[Array, Array]:

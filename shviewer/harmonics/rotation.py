@@ -39,7 +39,19 @@ def rotate(coefficients: Array, rotation: ArrayLike) -> Array:
         here = points.directions[start : start + block]
         values = evaluate_basis(here @ matrix, n_bands) @ columns  # row vectors: here @ M is M^T applied to each
         rotated += evaluate_basis(here, n_bands).T @ (points.weights[start : start + block, None] * values)
-    return rotated.reshape(coefficients.shape)
+    return (rotated * _power_kept(columns, rotated)).reshape(coefficients.shape)
+
+
+def _power_kept(before: Array, after: Array) -> Array:
+    """The factor per band and column, next to 1, that gives a band the power it had: (n**2, k).
+
+    A rotation keeps it exactly, the sum over the points to a few roundings, which would add up over many rotations.
+    """
+    starts = np.arange(count_bands(before)) ** 2
+    power, kept = (np.add.reduceat(columns**2, starts, axis=0) for columns in (before, after))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factors = np.where(kept > 0, np.sqrt(power / kept), 1.0)
+    return np.asarray(np.repeat(factors, 2 * np.arange(len(starts)) + 1, axis=0))
 
 
 def check_rotation(rotation: ArrayLike) -> Array:

@@ -29,7 +29,7 @@ from shviewer.harmonics.metrics import (
     split_half_estimate,
 )
 from shviewer.harmonics.projection import Synthesis, project_product, project_samples
-from shviewer.harmonics.quadrature import MAX_SAMPLES, DirectionSet, gauss_legendre, jittered
+from shviewer.harmonics.quadrature import MAX_SAMPLES, gauss_legendre, jittered
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light, find_light
@@ -38,6 +38,9 @@ from shviewer.viewer import camera
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.state import MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
+
+HALF_SEED = 2**31
+"""Added to the seed for the second, independent set of samples."""
 
 WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
@@ -197,14 +200,16 @@ def needs(state: ViewState) -> Needs:
 
 
 def estimate_from_samples(state: ViewState) -> SampleEstimate:
-    """What the state's jittered samples alone say, as if the light were not known otherwise: two halves of the cells."""
+    """What the state's number of jittered samples alone says, as if the light were not known otherwise.
+
+    Two sets of half as many, drawn independently: the halves of one set would share its cells, and depend on each other.
+    """
     light = load_light(state)
-    samples = jittered(state.samples, state.seed)
-    halves = [DirectionSet(samples.directions[start::2], 2 * samples.weights[start::2]) for start in (0, 1)]
+    halves = [jittered(max(state.samples // 2, 1), seed) for seed in (state.seed, state.seed + HALF_SEED)]
     first, second = (project_samples(light.radiance, half, MAX_DIRECT_BANDS) for half in halves)
-    squares = (light.radiance(samples.directions) ** 2).sum(axis=1)
+    squares = np.concatenate([(light.radiance(half.directions) ** 2).sum(axis=1) for half in halves])
     deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
-    return split_half_estimate(first, second, float(samples.weights @ squares), deviation, state.tolerance)
+    return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
 
 
 def exposure_stops(state: ViewState, light: Light) -> float:

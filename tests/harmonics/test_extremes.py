@@ -1,0 +1,71 @@
+"""Minima and largest errors are the function's own, not a grid's."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from shviewer.harmonics.basis import evaluate_basis, index
+from shviewer.harmonics.extremes import ErrorGrid, climb, smallest_value, valleys
+from shviewer.lights.light import find_light
+
+
+def grey(coefficients: np.ndarray) -> np.ndarray:
+    return np.repeat(coefficients[:, None], 3, axis=1)
+
+
+def test_the_minimum_of_one_harmonic_is_known() -> None:
+    zonal = np.zeros(9)
+    zonal[index(2, 0)] = 1
+    value, direction = smallest_value(grey(zonal))  # sqrt(5/16pi) (3 z^2 - 1), lowest on the equator
+    assert_allclose(value, -np.sqrt(5 / (16 * np.pi)), rtol=0, atol=1e-9)
+    assert abs(direction[2]) < 1e-4
+
+
+@pytest.mark.parametrize("n_bands", [3, 8, 20])
+def test_no_direction_is_lower_than_the_minimum(n_bands: int) -> None:
+    rng = np.random.default_rng(n_bands)
+    coefficients = rng.normal(size=(n_bands**2, 3))
+    value, direction = smallest_value(coefficients)
+    values = evaluate_basis(rng.normal(size=(50_000, 3)), n_bands) @ coefficients
+    assert values.min() >= value
+    assert_allclose((evaluate_basis(direction, n_bands) @ coefficients).min(), value, rtol=0, atol=1e-12 * n_bands)
+
+
+def test_valleys_of_equal_channels_are_listed_once() -> None:
+    coefficients = np.random.default_rng(0).normal(size=(25, 3))
+    coefficients[:, 2] = coefficients[:, 0]
+    _, _, channels = valleys(coefficients)
+    assert set(channels) == {0, 1}
+
+
+def test_climbing_reaches_the_top_from_both_poles_and_the_seam() -> None:
+    top = np.array([0.02, -0.01, 1.0]) / np.linalg.norm([0.02, -0.01, 1.0])
+    starts = np.array([[0.0, 0, 1], [0.1, 0, 0.995], [-0.1, 1e-9, 0.995]])
+    starts /= np.linalg.norm(starts, axis=1, keepdims=True)
+    values, places = climb(lambda d: d @ top, starts, 0.2, 20)
+    assert_allclose(values, 1, rtol=0, atol=1e-9)
+    assert_allclose(places, np.tile(top, (3, 1)), rtol=0, atol=1e-4)
+
+
+def test_a_constant_offset_is_the_largest_error_everywhere() -> None:
+    light = find_light("constant")
+    grid = ErrorGrid(light.radiance, light.landmarks(), 32)
+    extremes = grid.compare(light.coefficients(1) * 0.75)
+    assert_allclose([extremes.max_error, extremes.minimum, extremes.negative_area], [0.25, 0.75, 0], rtol=0, atol=1e-14)
+
+
+def test_half_of_a_dipole_is_negative_and_so_is_half_its_energy() -> None:
+    dipole = np.zeros(4)
+    dipole[index(1, 0)] = 1
+    light = find_light("constant")
+    extremes = ErrorGrid(light.radiance, light.landmarks(), 64).compare(grey(dipole))
+    assert_allclose([extremes.negative_area, extremes.negative_energy], [0.5, 0.5], rtol=0, atol=1e-12)
+
+
+def test_a_sun_between_the_points_of_the_grid_is_seen() -> None:
+    light = find_light("sun-sky")
+    grid = ErrorGrid(light.radiance, light.landmarks(), 32)
+    assert_allclose(grid.peak, 1.6e9, rtol=1e-12)
+    assert grid.compare(light.coefficients(2)).max_error > 1.59e9
