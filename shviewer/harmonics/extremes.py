@@ -198,9 +198,7 @@ def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tupl
     """
     places = starts
     for reach in step * 0.5 ** np.arange(rounds):
-        right = np.cross(places, np.eye(3)[np.abs(places).argmin(axis=1)])
-        right /= np.linalg.norm(right, axis=1, keepdims=True)
-        up = np.cross(places, right)
+        right, up = _tangents(places)
         offsets = reach / 2 * (PATCH[:, :1] * right[:, None] + PATCH[:, 1:] * up[:, None])
         patches = places[:, None] + offsets
         patches /= np.linalg.norm(patches, axis=2, keepdims=True)
@@ -208,6 +206,19 @@ def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tupl
         best = values.argmax(axis=1)
         places = patches[np.arange(len(places)), best]
     return values[np.arange(len(places)), best], places
+
+
+def _tangents(places: Array) -> tuple[Array, Array]:
+    """Two unit vectors (k, 3) across each of the unit vectors (k, 3) and across each other.
+
+    [T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017]: no pole, no square root.
+    """
+    x, y, z = places.T
+    sign = np.where(z < 0, -1.0, 1.0)
+    a = -1 / (sign + z)
+    b = x * y * a
+    right = np.stack([1 + sign * x * x * a, sign * b, -sign * x], axis=-1)
+    return right, np.stack([b, sign + y * y * a, -y], axis=-1)
 
 
 def at_directions(synthesis: Synthesis, directions: Array) -> Array:

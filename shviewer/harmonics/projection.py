@@ -139,17 +139,27 @@ class Synthesis:
 
 @lru_cache(maxsize=8)
 def theta_series(n_bands: int) -> Array:
-    """D(m, l, k) of the module docstring, shape (n, n, n), zero for l < m: read off the great circle phi = 0, pi."""
+    """D(m, l, k) of the module docstring, shape (n, n, n), zero for l < m: the Fourier series of the great circle phi = 0, pi.
+
+    Both the function and its row functions are even or odd about theta = 0 and about pi/2, so a quarter of the circle is
+    enough, its ends counted half; terms with k + l odd vanish.
+    """
     check_bands(n_bands, MAX_SEPARABLE_BANDS)
-    count = 2 * n_bands
-    angle = 2 * np.pi * np.arange(count) / count
-    circle = np.stack([np.sin(angle), np.zeros(count), np.cos(angle)], axis=-1)
-    series = np.zeros((n_bands, n_bands, n_bands))
+    quarter = (n_bands + 1) // 2
+    angle = np.pi / 2 * np.arange(quarter + 1) / quarter
+    circle = np.stack([np.sin(angle), np.zeros(quarter + 1), np.cos(angle)], axis=-1)
+    weights = np.full(quarter + 1, 2 / quarter)
+    weights[[0, -1]] /= 2
     basis = evaluate_basis(circle, n_bands).T
-    degree, order = np.tril_indices(n_bands)
-    spectrum = np.fft.rfft(basis[degree * (degree + 1) + order])[:, :n_bands] * (2 / count)
-    spectrum[:, 0] /= 2
-    series[order, degree] = np.where(order[:, None] % 2, -spectrum.imag, spectrum.real)
+    wave = angle[:, None] * np.arange(n_bands)
+    series = np.zeros((n_bands, n_bands, n_bands))
+    for m in range(n_bands):
+        degree = np.arange(m, n_bands)
+        row_functions = np.sin(wave) if m % 2 else np.cos(wave)
+        series[m, m:] = (basis[degree * (degree + 1) + m] * weights) @ row_functions
+    series[..., 0] /= 2
+    parity = np.arange(n_bands)
+    series *= (parity[:, None] + parity + 1) % 2
     series.flags.writeable = False
     return series
 

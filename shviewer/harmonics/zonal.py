@@ -176,9 +176,9 @@ def gegenbauer_ratios(z: float, one_minus_z: float, m: int, n_bands: int) -> Arr
 
 
 def orient(zonal: Array, axis: Array) -> Array:
-    """Coefficients of a profile about `axis`: zonal (n_bands,), axis (3,) -> (n_bands**2,)."""
-    n_bands = len(zonal)
-    return np.asarray(np.repeat(zonal, 2 * np.arange(n_bands) + 1) * evaluate_basis(axis, n_bands))
+    """Coefficients of profiles about their axes: zonal (..., n_bands), axis (..., 3) -> (..., n_bands**2)."""
+    n_bands = zonal.shape[-1]
+    return np.asarray(np.repeat(zonal, 2 * np.arange(n_bands) + 1, axis=-1) * evaluate_basis(axis, n_bands))
 
 
 def _leading(n_bands: int, *values: float) -> Array:

@@ -39,7 +39,15 @@ class EnvironmentLight:
         return self.map.sample(directions)
 
     def coefficients(self, n_bands: int) -> Array:
-        return project_image(self.map.texels, n_bands)
+        """Projected once to the most bands asked for so far; fewer are the first rows of more."""
+        held = self._projected
+        if not held or len(held[0]) < n_bands**2:
+            held[:] = [project_image(self.map.texels, n_bands)]
+        return held[0][: n_bands**2]
+
+    @cached_property
+    def _projected(self) -> list[Array]:
+        return []
 
     def accuracy(self) -> float:
         return 0.0

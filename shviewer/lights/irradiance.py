@@ -17,13 +17,13 @@ from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.projection import Synthesis
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
-from shviewer.harmonics.zonal import ClampedLinear
+from shviewer.harmonics.zonal import ClampedLinear, gegenbauer_ratios
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobes import Lobe, LobeLight, angle_between
 
-EXACT_BANDS = 1024
-"""Bands in the norm of a sum of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of it."""
+SERIES_BANDS = 1024
+"""Bands in the products of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of its norm."""
 
 MAP_BANDS = 128
 """Bands of an image or a function; a point light misses 6e-7 of its norm, any broader light far less."""
@@ -65,7 +65,9 @@ class IrradianceLight:
 
     @cached_property
     def _products(self) -> Array:
-        coefficients = self.coefficients(EXACT_BANDS if isinstance(self.source, LobeLight) else MAP_BANDS)
+        if isinstance(self.source, LobeLight):
+            return _lobe_products(self.source.lobes)
+        coefficients = self.coefficients(MAP_BANDS)
         return np.asarray(coefficients.T @ coefficients)
 
     def landmarks(self) -> Array:
@@ -98,6 +100,20 @@ class IrradianceLight:
         else:
             values = Synthesis(self.coefficients(MAP_BANDS)).on_rows(theta, width).transpose(0, 2, 1)
         return LatLongMap(np.ascontiguousarray(values, dtype=np.float32), rows_on_poles=True)
+
+
+def _lobe_products(lobes: tuple[Lobe, ...]) -> Array:
+    """Sum over bands and pairs of lobes, by the addition theorem: (2l+1)/4pi A^2 lambda lambda' P(l)(cos of the angle)."""
+    strength = irradiance_factors(SERIES_BANDS) ** 2 * (2 * np.arange(SERIES_BANDS) + 1) / (4 * np.pi)
+    zonal = [lobe.profile.zonal(SERIES_BANDS) for lobe in lobes]
+    products = np.zeros((3, 3))
+    for i, first in enumerate(lobes):
+        for j, second in enumerate(lobes[: i + 1]):
+            angle = angle_between(first, second)
+            legendre = gegenbauer_ratios(np.cos(angle), 2 * np.sin(angle / 2) ** 2, 0, SERIES_BANDS)
+            pair = float((strength * zonal[i] * zonal[j] * legendre).sum()) * np.outer(first.radiance, second.radiance)
+            products += pair if first is second else pair + pair.T
+    return products
 
 
 def _table(lobe: Lobe) -> tuple[Array, Array]:

@@ -28,6 +28,12 @@ class Lobe:
         object.__setattr__(self, "radiance", np.broadcast_to(np.asarray(self.radiance, dtype=np.float64), (3,)))
 
 
+def angle_between(first: Lobe, second: Lobe) -> float:
+    """The angle between two axes, radians, with all its digits near 0 and near pi."""
+    apart, along = np.linalg.norm(first.axis - second.axis), np.linalg.norm(first.axis + second.axis)
+    return float(2 * np.arctan2(apart, along))
+
+
 @dataclass(frozen=True, eq=False)
 class LobeLight:
     """The sum of up to MAX_LOBES lobes. ValueError for none or more."""
@@ -50,10 +56,9 @@ class LobeLight:
         return total
 
     def coefficients(self, n_bands: int) -> Array:
-        total = np.zeros((n_bands**2, 3))
-        for lobe in self.lobes:
-            total += orient(lobe.profile.zonal(n_bands), lobe.axis)[:, None] * lobe.radiance
-        return total
+        zonal = np.stack([lobe.profile.zonal(n_bands) for lobe in self.lobes])
+        oriented = orient(zonal, np.stack([lobe.axis for lobe in self.lobes]))
+        return np.asarray(oriented.T @ np.stack([lobe.radiance for lobe in self.lobes]))
 
     def accuracy(self) -> float:
         return 0.0
@@ -66,11 +71,8 @@ class LobeLight:
         total = np.zeros((3, 3))
         for i, first in enumerate(self.lobes):
             for second in self.lobes[: i + 1]:
-                half_chord = np.linalg.norm(first.axis - second.axis) / 2
-                angle = 2 * np.arctan2(half_chord, np.linalg.norm(first.axis + second.axis) / 2)
-                overlap = inner_product(first.profile, second.profile, angle) * np.outer(
-                    first.radiance, second.radiance
-                )
+                product = inner_product(first.profile, second.profile, angle_between(first, second))
+                overlap = product * np.outer(first.radiance, second.radiance)
                 total += overlap if first is second else overlap + overlap.T
         return total
 

@@ -6,6 +6,7 @@ tests/viewer/test_camera.py holds them to independent formulas. A quaternion is 
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import cast
 
 import numpy as np
@@ -44,9 +45,12 @@ def towards(azimuth_degrees: float, elevation_degrees: float) -> Quaternion:
     return compose(about_axis((0, 0, 1), azimuth_degrees), about_axis((0, 1, 0), -elevation_degrees))
 
 
+@lru_cache(maxsize=64)
 def world_from_view(azimuth_degrees: float, elevation_degrees: float) -> Array:
     """A camera standing in that direction and looking at the centre; its columns are right, up, and to the viewer."""
-    return matrix(compose(towards(azimuth_degrees, elevation_degrees), VIEW_AXES))
+    axes = matrix(compose(towards(azimuth_degrees, elevation_degrees), VIEW_AXES))
+    axes.flags.writeable = False
+    return axes
 
 
 def light_from_world(light_rotation: Quaternion) -> Array:
