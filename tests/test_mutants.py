@@ -1,0 +1,11 @@
+"""The mutation check itself stays alive; running it is a command, tests/mutants.py."""
+
+from __future__ import annotations
+
+import pytest
+from mutants import MUTANTS, ROOT, Mutant
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.name)
+def test_a_mutant_still_finds_the_one_line_it_breaks(mutant: Mutant) -> None:
+    assert (ROOT / mutant.file).read_text(encoding="utf-8").count(mutant.right) == 1
