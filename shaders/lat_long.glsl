@@ -35,25 +35,30 @@ vec2 map_position(vec3 direction) {
     return vec2(theta * row_scale_offset.x + row_scale_offset.y, (0.5 - phi / (2.0 * PI)) * width - 0.5);
 }
 
-// Any whole position: columns go round, and beyond a pole comes the same row half way round.
-vec3 texel_at(int row, int column) {
+// Columns go round; beyond a pole comes the same row half way round. Returns the row and column to read.
+int wrapped_row(int row, inout float column) {
     ivec2 size = textureSize(radiance_map, 0);
+    if (row >= 0 && row < size.y) return row;
+    column += 0.5 * float(size.x);
     int pole_row = rows_on_poles ? 0 : 1;
-    if (row < 0 || row >= size.y) {
-        row = row < 0 ? -row - pole_row : 2 * (size.y - 1) - row + pole_row;
-        column += size.x / 2;
-    }
-    column = column % size.x;
-    return texelFetch(radiance_map, ivec2(column < 0 ? column + size.x : column, clamp(row, 0, size.y - 1)), 0).rgb;
+    return clamp(row < 0 ? -row - pole_row : 2 * (size.y - 1) - row + pole_row, 0, size.y - 1);
+}
+
+vec3 texel_at(int row, int column) {
+    int width = textureSize(radiance_map, 0).x;
+    return texelFetch(radiance_map, ivec2((column + 2 * width) % width, row), 0).rgb;  // % of a negative is undefined
+}
+
+vec3 row_radiance(int row, float column) {
+    row = wrapped_row(row, column);
+    int left = int(floor(column));
+    return mix(texel_at(row, left), texel_at(row, left + 1), column - floor(column));
 }
 
 vec3 map_radiance(vec3 direction) {
     vec2 position = map_position(direction);
-    ivec2 corner = ivec2(floor(position));
-    vec2 weight = position - floor(position);
-    vec3 upper = mix(texel_at(corner.x, corner.y), texel_at(corner.x, corner.y + 1), weight.y);
-    vec3 lower = mix(texel_at(corner.x + 1, corner.y), texel_at(corner.x + 1, corner.y + 1), weight.y);
-    return mix(upper, lower, weight.x);
+    int top = int(floor(position.x));
+    return mix(row_radiance(top, position.y), row_radiance(top + 1, position.y), position.x - floor(position.x));
 }
 
 // Catmull-Rom weights of the texels at -1, 0, 1, 2 for a position t in [0, 1] between the middle two.
@@ -61,15 +66,18 @@ vec4 cubic_weights(float t) {
     return 0.5 * vec4(t * (t * (2.0 - t) - 1.0), t * t * (3.0 * t - 5.0) + 2.0, t * (t * (4.0 - 3.0 * t) + 1.0), t * t * (t - 1.0));
 }
 
+vec3 smooth_row_radiance(int row, float column) {
+    row = wrapped_row(row, column);
+    int left = int(floor(column));
+    vec4 weight = cubic_weights(column - floor(column));
+    return weight.x * texel_at(row, left - 1) + weight.y * texel_at(row, left) + weight.z * texel_at(row, left + 1)
+         + weight.w * texel_at(row, left + 2);
+}
+
 vec3 smooth_map_radiance(vec3 direction) {
     vec2 position = map_position(direction);
-    ivec2 corner = ivec2(floor(position));
-    vec4 down = cubic_weights(position.x - floor(position.x)), right = cubic_weights(position.y - floor(position.y));
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < 4; ++i) {
-        int row = corner.x + i - 1;
-        sum += down[i] * (right.x * texel_at(row, corner.y - 1) + right.y * texel_at(row, corner.y)
-                        + right.z * texel_at(row, corner.y + 1) + right.w * texel_at(row, corner.y + 2));
-    }
-    return sum;
+    int top = int(floor(position.x));
+    vec4 weight = cubic_weights(position.x - floor(position.x));
+    return weight.x * smooth_row_radiance(top - 1, position.y) + weight.y * smooth_row_radiance(top, position.y)
+         + weight.z * smooth_row_radiance(top + 1, position.y) + weight.w * smooth_row_radiance(top + 2, position.y);
 }

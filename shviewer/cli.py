@@ -51,7 +51,9 @@ def view_parser() -> argparse.ArgumentParser:
     """shviewer [LIGHT]: the window."""
     parser = argparse.ArgumentParser(
         prog="shviewer",
-        usage="shviewer [LIGHT] [options]\n       shviewer screenshot OUT [LIGHT] [options]\n       shviewer report --stability",
+        usage="shviewer [LIGHT] [options]\n"
+        "       shviewer screenshot OUT [LIGHT] [options]\n"
+        "       shviewer report --stability [-o DIR]",
         description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
         epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help",
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -10,6 +10,9 @@ class ShviewerError(Exception):
 
     exit_code = 1
 
+    def __init__(self, message: str) -> None:
+        super().__init__(" ".join(line.strip() for line in message.splitlines()))
+
 
 class UsageError(ShviewerError):
     """An argument outside its range; the same code as argparse's own."""

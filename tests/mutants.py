@@ -117,8 +117,8 @@ MUTANTS = (
     Mutant(
         "deringing on the grid alone",
         "shviewer/harmonics/deringing.py",
-        "    np.minimum.at(lowest, channels, values)\n",
-        "    lowest = np.zeros(3)\n",
+        "    factors[1:] *= 1 - lift",
+        "    factors[1:] *= 1",
     ),
 )
 

@@ -21,17 +21,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_basis
-from shviewer.harmonics.extremes import smallest_value, valleys
+from shviewer.harmonics.extremes import valleys
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.metrics import band_power
-from shviewer.harmonics.projection import Synthesis
 
 MAX_DERINGED_BANDS = 32
 
 TOLERANCE = 1e-6
 """Valleys this far below zero, relative to the mean radiance, get a constraint; a trace of the mean lifts the rest."""
 
-ROUNDS, QUICK_ROUNDS = 40, 7
+ROUNDS, QUICK_ROUNDS, QUICK_VALLEYS = 40, 7, 40
+"""The search is quick while constraints are collected, and thorough once at the end."""
 EMPTY = 1e-10
 """A band with less than this share of the L2 norm is left as it is."""
 
@@ -63,34 +63,40 @@ def dering(coefficients: Array) -> Deringing:
     strength = np.sqrt(power) / norm
     movable = (strength > EMPTY) & (np.arange(n_bands) > 0)
     factors = np.ones(n_bands)
-    rows: list[Array] = []
-    limits: list[float] = []
+    movables = int(movable.sum())
+    rows, limits = np.zeros((0, movables)), np.zeros(0)
     for _ in range(ROUNDS):
-        lowest, directions, channels = valleys(coefficients * per_coefficient(factors), QUICK_ROUNDS)
+        lowest, directions, channels = valleys(coefficients * per_coefficient(factors), QUICK_ROUNDS, QUICK_VALLEYS)
         below = lowest < -TOLERANCE * mean.max()
         if not below.any():
             break
         by_band = _band_values(coefficients, directions[below], channels[below]) / norm
-        rows += list(-by_band[:, movable] / strength[movable])
-        limits += list(-by_band.sum(axis=1))
+        rows = np.concatenate([rows, -by_band[:, movable] / strength[movable]])
+        limits = np.concatenate([limits, -by_band.sum(axis=1)])
         # with u(l) = strength(l) (1 - h(l)), a radiance is its value at u = 0 minus by_band / strength . u
-        factors[movable] = 1 - least_distance(np.array(rows), np.array(limits)) / strength[movable]
-    lowest = _lowest_everywhere(coefficients * per_coefficient(factors))
-    missing = np.maximum(-lowest, 0) / np.maximum(mean - lowest, np.finfo(float).tiny)
-    factors[1:] *= 1 - missing.max()  # a trace of the mean lifts what the rounds and the search's accuracy left below
+        u, binding = least_distance(rows, limits)
+        rows, limits = rows[binding], limits[binding]  # the others hold by themselves
+        factors[movable] = 1 - u / strength[movable]
+    values, _, channels = valleys(coefficients * per_coefficient(factors))
+    lift = float((np.maximum(-values, 0) / np.maximum(mean[channels] - values, np.finfo(float).tiny)).max())
+    factors[1:] *= 1 - lift  # a trace of the mean lifts what the rounds and the quick search left below zero
     change = float((power * (1 - factors) ** 2).sum())
-    return Deringing(factors, smallest_value(coefficients * per_coefficient(factors))[0], float(np.sqrt(change)) / norm)
+    return Deringing(factors, float(((1 - lift) * values + lift * mean[channels]).min()), float(np.sqrt(change)) / norm)
 
 
-def least_distance(rows: Array, limits: Array) -> Array:
-    """The shortest u with rows @ u >= limits [LH, LDP]: (k, n), (k,) -> (n,). ValueError if there is none."""
+def least_distance(rows: Array, limits: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """The shortest u with rows @ u >= limits [LH, LDP]: (k, n), (k,) -> (n,), and which of the rows hold it there, (k,).
+
+    ValueError if there is none.
+    """
     system = np.vstack([rows.T, limits])
     target = np.zeros(len(system))
     target[-1] = 1
-    residual = system @ _non_negative_least_squares(system, target) - target
+    pull = _non_negative_least_squares(system, target)
+    residual = system @ pull - target
     if abs(residual[-1]) < 1e-14:
         raise ValueError("no vector satisfies all the inequalities")
-    return np.asarray(-residual[:-1] / residual[-1])
+    return np.asarray(-residual[:-1] / residual[-1]), pull > 0
 
 
 def _non_negative_least_squares(system: Array, target: Array) -> Array:
@@ -116,15 +122,6 @@ def _non_negative_least_squares(system: Array, target: Array) -> Array:
             y[~free] = 0
         y = trial
     return y
-
-
-def _lowest_everywhere(shown: Array) -> Array:
-    """The minimum of each channel, (3,): of its valleys and, should one have been passed over, of a fine grid."""
-    rows = 16 * count_bands(shown)
-    lowest = Synthesis(shown).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows).min(axis=(0, 2))
-    values, _, channels = valleys(shown)
-    np.minimum.at(lowest, channels, values)
-    return np.asarray(lowest)
 
 
 def _band_values(coefficients: Array, directions: Array, channels: NDArray[np.int64]) -> Array:

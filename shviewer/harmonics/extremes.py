@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
+from shviewer.harmonics.basis import Array, count_bands, evaluate_basis, safe_unit
 from shviewer.harmonics.projection import Synthesis
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 
@@ -20,12 +20,18 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Rec. 709 luminance of linear RGB [ITU-R BT.709-6, item 3.2]."""
 
 PATCH = np.stack(np.meshgrid(np.arange(-2.0, 3.0), np.arange(-2.0, 3.0), indexing="ij"), axis=-1).reshape(-1, 2)
+PARABOLOID = np.linalg.pinv(
+    np.stack([np.ones(25), *PATCH.T, PATCH[:, 0] ** 2 / 2, PATCH[:, 0] * PATCH[:, 1], PATCH[:, 1] ** 2 / 2], axis=1)
+)
+"""Values on a patch -> value, slopes and curvatures of the best paraboloid, (6, 25)."""
+
+ON_RIM = np.append(np.abs(PATCH).max(axis=1) == 2, True)
+"""Of the points of a patch, the vertex of the last one behind them, those that ask for another one as wide."""
+
 DISPLAY_ROUNDS = 4
 """Halvings of a patch for a figure that is shown: to a sixteenth of the grid's cell."""
 
-SEARCH_ROUNDS = 14
-VALLEYS = 40
-"""A search that must not miss the lowest valley follows this many of the grid's lowest."""
+SEARCH_ROUNDS = 22
 
 Triple = tuple[float, float, float]
 Objective = Callable[[Array], Array]
@@ -121,12 +127,14 @@ def smallest_value(coefficients: Array) -> tuple[float, Triple]:
     return float(values[lowest]), _triple(directions[lowest])
 
 
-def valleys(coefficients: Array, rounds: int = SEARCH_ROUNDS) -> tuple[Array, Array, NDArray[np.int64]]:
+def valleys(
+    coefficients: Array, rounds: int = SEARCH_ROUNDS, most: int | None = None
+) -> tuple[Array, Array, NDArray[np.int64]]:
     """The lowest local minima of each channel of a reconstruction (n**2, 3): values (k,), directions (k, 3), channels (k,).
 
-    Valleys are no narrower than about pi/n, and the grid has 6 rows in each. At most VALLEYS a channel are followed
-    down; after SEARCH_ROUNDS a patch is 1e-4 of a cell wide and the values are good to about 1e-9 of the peak. A channel
-    that equals an earlier one is left out.
+    Valleys are no narrower than about pi/n, and the grid has 6 rows in each. All of them, or at most `most` a channel,
+    are followed down; after SEARCH_ROUNDS most patches are 1e-4 of a cell wide and the values are good to about 1e-9 of the
+    peak. A channel that equals an earlier one is left out.
     """
     synthesis = Synthesis(coefficients)
     n_rows = max(32, 6 * count_bands(coefficients))
@@ -139,7 +147,7 @@ def valleys(coefficients: Array, rounds: int = SEARCH_ROUNDS) -> tuple[Array, Ar
             continue
         rows, columns, depth = _grid_valleys(grid[:, channel])
         candidates = directions_from_angles(theta[rows], phi[columns])
-        starts = candidates[_spread_out(candidates, depth, np.pi / (2 * synthesis.n_bands))]
+        starts = candidates[_spread_out(candidates, depth, np.pi / synthesis.n_bands, most)]
         negated, places = climb(
             lambda d, channel=channel: -at_directions(synthesis, d)[:, channel],  # type: ignore[misc]
             starts,
@@ -173,10 +181,11 @@ def _grid_valleys(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], 
     return rows, columns, here - np.clip(np.nan_to_num(fall), 0, None)
 
 
-def _spread_out(candidates: Array, depth: Array, apart: float) -> NDArray[np.int64]:
-    """Which VALLEYS candidates (k, 3) to follow: the lowest, but no two within `apart` radians or of one depth.
+def _spread_out(candidates: Array, depth: Array, apart: float, most: int | None) -> NDArray[np.int64]:
+    """Which of the candidates (k, 3) to follow: the lowest first, but no two within `apart` radians or of one depth.
 
-    Equal depths are the copies that a symmetry makes, such as all the points of a ring.
+    Equal depths are the copies that a symmetry makes, such as all the points of a ring about z; a ring about another axis
+    takes many.
     """
     order = np.argsort(depth, kind="stable")
     chosen: list[int] = []
@@ -185,27 +194,46 @@ def _spread_out(candidates: Array, depth: Array, apart: float) -> NDArray[np.int
     for at in order:
         if open_[at]:
             chosen.append(int(at))
-            if len(chosen) == VALLEYS:
+            if len(chosen) == most:
                 break
             open_ &= (candidates @ candidates[at] < np.cos(apart)) & (np.abs(depth - depth[at]) > same)
     return np.array(chosen)
 
 
 def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tuple[Array, Array]:
-    """Uphill from each of the unit vectors `starts`, (k, 3), in 5 x 5 patches that reach `step`, step/2, ...
+    """Uphill from each of the unit vectors `starts`, (k, 3), in 5 x 5 patches that reach `step` at first.
 
-    Returns the values (k,) and directions (k, 3) arrived at.
+    A patch gets half as wide once its best point is not on its rim. It also gets the vertex of the paraboloid fitted to the
+    one before, which runs along narrow slanted ridges where the best of a few points would crawl. Returns the values
+    (k,) and directions (k, 3) arrived at.
     """
-    places = starts
-    for reach in step * 0.5 ** np.arange(rounds):
+    everyone = np.arange(len(starts))
+    places = vertices = starts
+    reach = np.full((len(starts), 1), step / 2)
+    for _ in range(rounds):
         right, up = _tangents(places)
-        offsets = reach / 2 * (PATCH[:, :1] * right[:, None] + PATCH[:, 1:] * up[:, None])
-        patches = places[:, None] + offsets
+        right, up = reach * right, reach * up
+        patches = places[:, None] + PATCH[:, :1] * right[:, None] + PATCH[:, 1:] * up[:, None]
+        patches = np.concatenate([patches, vertices[:, None]], axis=1)
         patches /= np.linalg.norm(patches, axis=2, keepdims=True)
-        values = objective(patches.reshape(-1, 3)).reshape(len(places), len(PATCH))
+        values = objective(patches.reshape(-1, 3)).reshape(patches.shape[:2])
+        a, b = _vertex(values[:, :-1])
+        vertices = places + a[:, None] * right + b[:, None] * up
         best = values.argmax(axis=1)
-        places = patches[np.arange(len(places)), best]
-    return values[np.arange(len(places)), best], places
+        places = patches[everyone, best]
+        reach[~ON_RIM[best]] /= 2
+    return values[everyone, best], places
+
+
+def _vertex(values: Array) -> tuple[Array, Array]:
+    """Where in the patch (units of PATCH) the paraboloids fitted to values (k, 25) are highest; 0, 0 where they are not."""
+    _, slope_a, slope_b, bend_a, across, bend_b = PARABOLOID @ (values / safe_unit(float(np.abs(values).max()))).T
+    determinant = bend_a * bend_b - across**2
+    peaked = (bend_a < 0) & (determinant > 0)
+    determinant = np.where(peaked, determinant, 1.0)
+    a = np.where(peaked, (across * slope_b - bend_b * slope_a) / determinant, 0.0)
+    b = np.where(peaked, (across * slope_a - bend_a * slope_b) / determinant, 0.0)
+    return np.clip(a, -4, 4), np.clip(b, -4, 4)
 
 
 def _tangents(places: Array) -> tuple[Array, Array]:

@@ -7,8 +7,8 @@ The first bracket is what the bands left out hold (truncation); the last sum is 
 window h the latter is (1 - h)^2 c^2, so that the whole is ||f||^2 - sum of (2h - h^2) c^2.
 
 A light's *products* are the 3 x 3 integrals of f_i f_j over its channels. They give ||f||^2 of every linear combination of
-channels; the figures are made for R, G, B, their sum and Rec. 709 luminance. Everything is divided by a power of two near
-the largest value before it is squared, so that radiances from 1e-300 to 1e300 work.
+channels; the figures are made for R, G, B, their sum and Rec. 709 luminance. Where radiances are so large or small that their
+squares would leave float64, a light gives its products in a unit of its own, by which coefficients have to be divided.
 """
 
 from __future__ import annotations
@@ -76,12 +76,8 @@ class ChannelFigures:
 def channel_figures(products: Array, exact: Array, shown: Array, peak: float) -> dict[str, ChannelFigures]:
     """Figures "all", "red", "green", "blue" and "luminance".
 
-    products: (3, 3); exact, shown: (n**2, 3); peak: the largest |radiance|, to which PSNR refers.
+    products: (3, 3); exact, shown: (n**2, 3); peak: the largest |radiance|, to which PSNR refers; all in one unit.
     """
-    scale = _power_of_two(
-        max(float(np.sqrt(np.diag(products).max())), float(np.abs(exact).max()), float(np.abs(shown).max()))
-    )
-    products, exact, shown, peak = products / scale / scale, exact / scale, shown / scale, peak / scale
     mixes = {"all": np.eye(3)} | {
         name: row[:, None] for name, row in zip(CHANNELS, [*np.eye(3), LUMINANCE], strict=True)
     }
@@ -98,18 +94,18 @@ def channel_figures(products: Array, exact: Array, shown: Array, peak: float) ->
 
 
 def errors_by_band_count(products: Array, exact: Array, shown: Array) -> Array:
-    """Relative L2 error over all channels with the first n bands of `shown`, for n = 1 ... N: (N,)."""
-    scale = _power_of_two(max(float(np.sqrt(np.diag(products).max())), float(np.abs(shown).max())))
-    norm = np.diag(products) / scale / scale
-    kept = np.cumsum(band_power(exact / scale).sum(axis=1))
-    added = np.cumsum(band_power((exact - shown) / scale).sum(axis=1))
-    if norm.sum() == 0:
+    """Relative L2 error over all channels with the first n bands of `shown`, for n = 1 ... N: (N,).
+
+    products: (3, 3); exact, shown: (N**2, 3), in the same unit. ValueError for mixed quadratures.
+    """
+    norm = float(np.trace(products))
+    kept = np.cumsum(band_power(exact).sum(axis=1))
+    added = np.cumsum(band_power(exact - shown).sum(axis=1))
+    if norm == 0:
         return np.where(added > 0, np.inf, 0.0)
-    if kept[-1] > norm.sum() * (1 + ROUNDING):
-        raise ValueError(
-            f"coefficients hold {kept[-1] / norm.sum() - 1:.3g} more energy than the light: mixed quadratures"
-        )
-    return np.asarray(np.sqrt(((norm.sum() - kept).clip(min=0) + added) / norm.sum()))
+    if kept[-1] > norm * (1 + ROUNDING):
+        raise ValueError(f"coefficients hold {kept[-1] / norm - 1:.3g} more energy than the light: mixed quadratures")
+    return np.asarray(np.sqrt(((norm - kept).clip(min=0) + added) / norm))
 
 
 def smallest_band_count(errors: Array, tolerance: float) -> int | None:
@@ -158,8 +154,3 @@ def split_half_estimate(
         return int(within[0]) + 1 if len(within) else None
 
     return SampleEstimate(count(0 * deviation), count(-2 * deviation), count(2 * deviation))
-
-
-def _power_of_two(value: float) -> float:
-    """A power of two near `value`, by which division is exact; 1 for 0."""
-    return float(np.ldexp(1.0, np.frexp(value)[1])) if value > 0 else 1.0

@@ -61,17 +61,22 @@ def _ring_by_ring(first: Profile, second: Profile, angle: Array) -> Array:
 
 
 def _ring_integral(profile: Profile, t: Array, angle: Array) -> Array:
-    """Integral of a Disc or ClampedLinear over the circle at angle `t` round an axis that is `angle` away from its own."""
-    middle, swing = np.cos(t) * np.cos(angle), np.sin(t) * np.sin(angle)
-    edge = np.cos(profile.half_angle)
+    """Integral of a Disc or ClampedLinear over the circle at angle `t` round an axis that is `angle` away from its own.
+
+    With b the profile's half-angle, x = cos(t - angle) - 2 sin(t) sin(angle) sin(phi/2)^2 round the circle, and
+    cos(t - angle) - cos(b) = 2 sin((b + t - angle)/2) sin((b - t + angle)/2): tiny caps keep their digits.
+    """
+    reach = profile.half_angle
+    swing = np.sin(t) * np.sin(angle)
+    rise = 2 * np.sin((reach + t - angle) / 2) * np.sin((reach - t + angle) / 2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        cosine = np.where(swing > 0, (edge - middle) / swing, np.where(middle >= edge, -np.inf, np.inf))
-    half_arc = np.arccos(np.clip(cosine, -1, 1))
+        half_arc = 2 * np.arcsin(np.sqrt(np.clip(np.nan_to_num(rise / (2 * swing), nan=0.0), 0, 1)))
     if isinstance(profile, Disc):
         return np.asarray(2 * half_arc)
     assert isinstance(profile, ClampedLinear)
     slope, offset = profile.parameters
-    return np.asarray(2 * ((slope * middle - offset) * half_arc + slope * swing * np.sin(half_arc)))
+    floor = max(0.0, -slope - offset)  # above zero everywhere where nothing is clamped
+    return np.asarray(2 * (slope * (rise * half_arc - swing * (half_arc - np.sin(half_arc))) + floor * half_arc))
 
 
 @lru_cache(maxsize=1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isqrt
 
 import numpy as np
@@ -68,8 +69,30 @@ def gauss_legendre(n_samples: int) -> ProductRule:
     """
     check_samples(n_samples)
     rows = max(1, isqrt(n_samples // 2))
-    cosines, weights = np.polynomial.legendre.leggauss(rows)
-    return ProductRule(np.arccos(cosines[::-1]), weights[::-1].copy(), 2 * rows)
+    return ProductRule(*_gauss_legendre_rows(rows), 2 * rows)
+
+
+@lru_cache(maxsize=16)
+def _gauss_legendre_rows(rows: int) -> tuple[Array, Array]:
+    """Gauss-Legendre nodes as angles (rows,) and their weights (rows,).
+
+    numpy's weights lose four digits next to the poles. Newton steps in theta, with P(rows) from the difference form of
+    basis.py, and the weight 2 / (dP/dtheta)^2 keep them all.
+    """
+    theta = np.arccos(np.polynomial.legendre.leggauss(rows)[0][::-1])[: (rows + 1) // 2]
+    for _ in range(3):
+        delta = 2 * np.sin(theta / 2) ** 2
+        before = ratio = np.ones(len(theta))
+        difference = np.zeros(len(theta))
+        for l in range(1, rows + 1):
+            before = ratio
+            difference = (2 * l - 1) / l * (difference - delta * ratio) - difference
+            ratio = ratio + difference
+        slope = rows * (before - np.cos(theta) * ratio) / np.sin(theta)  # -dP/dtheta
+        weights = 2 / slope**2
+        theta = theta + ratio / slope
+    mirrored = slice(rows // 2 - 1, None, -1) if rows > 1 else slice(0, 0)
+    return np.concatenate([theta, np.pi - theta[mirrored]]), np.concatenate([weights, weights[mirrored]])
 
 
 def check_samples(n_samples: int) -> None:

@@ -20,6 +20,9 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array, check_bands, evaluate_basis
 
+LARGEST = 1e15
+"""No slope, offset or sharpness beyond this: a lobe of sharpness 1e15 is already 3e-8 radians wide."""
+
 
 class Profile(Protocol):
     """A rotationally symmetric function with peak value about 1, still to be multiplied by a radiance."""
@@ -66,9 +69,10 @@ class ClampedLinear:
     kind: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        if not (self.slope > 0 and self.offset < self.slope < np.inf and np.isfinite(self.offset)):
+        if not (0 < self.slope <= LARGEST and self.offset < self.slope and abs(self.offset) <= LARGEST):
             raise ValueError(
-                f"slope {self.slope:g}, offset {self.offset:g}: the slope must be positive and above the offset"
+                f"slope {self.slope:g}, offset {self.offset:g}: the slope must be positive, above the offset, and neither "
+                f"beyond {LARGEST:g}"
             )
 
     @property
@@ -77,7 +81,7 @@ class ClampedLinear:
 
     @property
     def half_angle(self) -> float:
-        return float(np.arccos(max(-1.0, self.offset / self.slope)))
+        return float(2 * np.arcsin(np.sqrt(min(1.0, (self.slope - self.offset) / (2 * self.slope)))))
 
     def value(self, squared_chord: Array) -> Array:
         return np.asarray(np.maximum(0, (self.slope - self.offset) - self.slope / 2 * squared_chord))
@@ -128,8 +132,8 @@ class Gaussian:
     half_angle: ClassVar[float] = np.pi
 
     def __post_init__(self) -> None:
-        if not 0 < self.sharpness < np.inf:
-            raise ValueError(f"sharpness {self.sharpness:g}: it must be positive and finite")
+        if not 1 / LARGEST <= self.sharpness <= LARGEST:
+            raise ValueError(f"sharpness {self.sharpness:g}: it must be {1 / LARGEST:g} to {LARGEST:g}")
 
     @property
     def parameters(self) -> tuple[float, float]:

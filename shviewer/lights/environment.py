@@ -23,6 +23,8 @@ class EnvironmentLight:
     name: str = "image"
     notes: tuple[str, ...] = ()
     best_method: str = "exact texel integrals"
+    unit: float = 1.0
+    """Squares of float32 texels are far inside float64."""
 
     @classmethod
     def read(cls, path: Path, *, sanitize: bool = False) -> EnvironmentLight:

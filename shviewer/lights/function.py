@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.errors import LightError
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, safe_unit
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
@@ -63,7 +63,8 @@ class FunctionLight:
 
     @property
     def best_method(self) -> str:
-        return f"Gauss-Legendre, {2 * self._sampling.rows**2:,} points".replace(",", " ")
+        points = f"{2 * self._sampling.rows**2:,}".replace(",", " ")
+        return f"Gauss-Legendre, {points} points"
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -74,7 +75,7 @@ class FunctionLight:
 
     def radiance(self, directions: Array) -> Array:
         try:
-            values = np.asarray(self.function(directions), dtype=np.float64)
+            values = np.asarray(self.function(directions.copy()), dtype=np.float64)  # it may write into its argument
         except Exception as error:
             last = traceback.extract_tb(error.__traceback__)[-1]
             where = f"{Path(last.filename).name}:{last.lineno}"
@@ -103,19 +104,28 @@ class FunctionLight:
     def products(self) -> Array:
         return self._sampling.products
 
+    @cached_property
+    def unit(self) -> float:
+        few = gauss_legendre(2 * FIRST_ROWS).direction_set().directions
+        return safe_unit(float(np.abs(self.radiance(few)).max()))
+
     def accuracy(self) -> float:
         return self._sampling.movement
 
     @cached_property
     def _sampling(self) -> _Sampling:
         """As many points as the function's sharpness asks for, up to a limit."""
+
+        def scaled(directions: Array) -> Array:
+            return self.radiance(directions) / self.unit
+
         rows, last = FIRST_ROWS, None
         while True:
-            coefficients, products = project_product(self.radiance, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
+            coefficients, products = project_product(scaled, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
             errors = errors_by_band_count(products, coefficients, coefficients)
             movement = float("inf") if last is None else float(np.abs(errors - last).max())
             if movement <= MOVEMENT or 2 * rows > LAST_ROWS:
-                return _Sampling(rows, coefficients, products, movement)
+                return _Sampling(rows, coefficients * self.unit, products, movement)
             rows, last = 2 * rows, errors
 
     def landmarks(self) -> Array:
@@ -135,12 +145,17 @@ class FunctionLight:
 
 def load_function(path: Path, function: str) -> FunctionLight:
     """The light `function` of the Python file `path`. LightError if the file or the function is missing or fails."""
-    if not path.is_file():
+    try:
+        missing = not path.is_file()
+    except (OSError, ValueError):
+        missing = True
+    if missing:
         raise LightError(f"{path}: no such file; name a light function as file.py:function")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
+    spec = importlib.util.spec_from_file_location(f"_light_function_{path.stem}", path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
+    sys.modules[module.__name__] = module  # dataclasses look their module up
     folder = str(path.parent.resolve())
     sys.path.insert(0, folder)  # as for a script: its neighbours can be imported
     try:

@@ -37,17 +37,17 @@ class LatLongMap:
         scale, offset = self.row_scale_offset
         row = np.arctan2(np.hypot(x, y), z) * scale + offset
         column = (0.5 - np.arctan2(y, x) / (2 * np.pi)) * width - 0.5
-        top, left = np.floor(row).astype(np.int64), np.floor(column).astype(np.int64)
-        down, right = (row - top)[:, None], (column - left)[:, None]
-        upper = self.texel_at(top, left) * (1 - right) + self.texel_at(top, left + 1) * right
-        lower = self.texel_at(top + 1, left) * (1 - right) + self.texel_at(top + 1, left + 1) * right
-        return np.asarray(upper * (1 - down) + lower * down)
+        top = np.floor(row).astype(np.int64)
+        down = (row - top)[:, None]
+        return np.asarray(self._row_value(top, column) * (1 - down) + self._row_value(top + 1, column) * down)
 
-    def texel_at(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Array:
-        """The texels at whole positions (k,): columns go round, and beyond a pole comes the row half way round."""
+    def _row_value(self, row: NDArray[np.int64], column: Array) -> Array:
+        """Linear between the texels of whole rows (k,); beyond a pole comes the same row half way round."""
         height, width = self.texels.shape[:2]
         pole_row = 0 if self.rows_on_poles else 1
-        beyond = (row < 0) | (row >= height)
+        column = column + np.where((row < 0) | (row >= height), width / 2, 0.0)
         row = np.where(row < 0, -row - pole_row, np.where(row >= height, 2 * (height - 1) - row + pole_row, row))
-        column = (column + beyond * (width // 2)) % width
-        return np.asarray(self.texels[np.clip(row, 0, height - 1), column], dtype=np.float64)
+        row = np.clip(row, 0, height - 1)
+        left = np.floor(column).astype(np.int64)
+        right = (column - left)[:, None]
+        return np.asarray(self.texels[row, left % width] * (1 - right) + self.texels[row, (left + 1) % width] * right)

@@ -39,8 +39,12 @@ class Light(Protocol):
     def coefficients(self, n_bands: int) -> Array:
         """(n_bands**2, 3) by the best way this light knows."""
 
+    @property
+    def unit(self) -> float:
+        """What is squared is divided by this first: 1, or a power of two where squares would leave float64."""
+
     def products(self) -> Array:
-        """Integrals of f_i f_j over the channels, (3, 3), by the same quadrature as `coefficients`."""
+        """Integrals of f_i f_j / unit^2 over the channels, (3, 3), by the same quadrature as `coefficients`."""
 
     def accuracy(self) -> float:
         """How far a relative L2 error of this light may be off for want of quadrature points; 0 where it is exact."""
@@ -83,10 +87,17 @@ def find_light(text: str, *, sanitize: bool = False) -> Light:
     raise LightError(_unknown(text))
 
 
+def _exists(text: str) -> bool:
+    try:
+        return Path(text).exists()
+    except (OSError, ValueError):  # too long for a file name, or with a zero byte
+        return False
+
+
 def _unknown(text: str) -> str:
     names = list(built_in_lights())
     near = difflib.get_close_matches(text, names, n=3, cutoff=0.5)
     offer = f"did you mean {' or '.join(near)}?" if near else f"there is: {', '.join(names)}"
-    if Path(text).exists():
+    if _exists(text):
         offer = "a file must end in .toml, .hdr, .pic or .exr, a function is named file.py:function"
     return f"unknown light {text!r}: {offer}"

@@ -48,10 +48,10 @@ def read_scene(path: Path) -> LobeLight:
             raise LightError(f"{path}: not a regular file; name a .toml scene")
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise LightError(f"{path}: {error.strerror or error}") from error
+        raise LightError(f"{path}: {error.strerror or error}; check the path") from error
     except UnicodeDecodeError as error:
         raise LightError(f"{path}: byte {error.start} is not UTF-8 text; a scene is a TOML file") from error
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # tomllib lets those of int() and of deep nesting out, too
         raise LightError(f"{path}: not valid TOML: {error}") from error
     return _Reader(path).light(document)
 

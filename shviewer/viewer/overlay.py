@@ -149,7 +149,8 @@ class _Painter:
         """Four numbers in fixed places, then a bar per band."""
         at, figures = self.at, picture.figures
         y = at.hairline_y
-        self.draw.rectangle((at.margin, y, at.width - at.margin, y + max(0, round(at.scale) - 1)), fill=RULE)
+        if 2 * at.margin < at.width:
+            self.draw.rectangle((at.margin, y, at.width - at.margin, y + max(0, round(at.scale) - 1)), fill=RULE)
         extremes = figures.extremes
         columns = (
             ("relative_l2", _percent(figures.relative_l2, floor=figures.floor), "relative L2 error"),
@@ -168,7 +169,7 @@ class _Painter:
         """Energy of each band: filled as far as it is kept, hollow when muted, dim above n. A bar stays where it is."""
         at, state = self.at, picture.state
         slots = next(count for count in SLOT_COUNTS if count >= min(state.n_bands, SLOT_COUNTS[-1]))
-        left = max(box.right for box in self.boxes.values() if box.top > at.hairline_y) + at.px(24)
+        left = max((box.right for box in self.boxes.values() if box.top > at.hairline_y), default=0) + at.px(24)
         face = self.face(12)
         label_width = face.getlength("energy, %")
         first, last = left + label_width + at.px(16), at.width - at.margin
@@ -230,16 +231,18 @@ class _Painter:
 
 
 def _percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
-    """A share of 1 in percent; one below the floor of its method only says so."""
+    """A share of 1 in percent; one below the floor of its method, or too small for the digits, only says so."""
     percent = 100 * share
     if not np.isfinite(percent):
         return "infinite"
     if share < floor:
-        return f"< {_percent(floor, 1)}"
-    if percent < 1e-5:
+        return f"< {100 * floor:.5f}".rstrip("0") + " %"
+    if percent == 0:
         return "0 %"
-    decimals = min(max(0, digits - 1 - int(np.floor(np.log10(percent) + 1e-9))), 5)
-    while percent < 100 and decimals < 5 and f"{percent:.{decimals}f}".startswith("100"):
+    if percent < 1e-4:
+        return "< 0.0001 %"
+    decimals = min(max(0, digits - 1 - int(np.floor(np.log10(percent) + 1e-9))), 4)
+    while percent < 100 and decimals < 4 and f"{percent:.{decimals}f}".startswith("100"):
         decimals += 1
     return f"{percent:.{decimals}f} %"
 

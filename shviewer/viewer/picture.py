@@ -39,6 +39,7 @@ from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.state import MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
 
+BEST = ("best", 0, 0)
 HALF_SEED = 2**31
 """Added to the seed for the second, independent set of samples."""
 
@@ -125,7 +126,7 @@ def prepare(state: ViewState) -> Picture:
     check(state)
     light = load_light(state)
     projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
-    projection = _project(light, state.method, state.samples, state.seed, projected)
+    projection = _project(light, *_sampling(state), projected)
     shape = state.n_bands, state.muted_shown, state.window, state.window_width
     coefficients, figures = _reconstruct(light, projection, *shape)
     return Picture(
@@ -175,6 +176,11 @@ def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> Non
         raise UsageError(f"size {size[0]} x {size[1]}: each side must be {MIN_SIDE} to {MAX_SIDE} pixels")
 
 
+def _sampling(state: ViewState) -> tuple[str, int, int]:
+    """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them."""
+    return BEST if state.method == "best" else (state.method, state.samples, state.seed)
+
+
 def load_light(state: ViewState) -> Light:
     """The state's light, or its irradiance; one named by text is read once."""
     light = _find(state.light, state.sanitize) if isinstance(state.light, str) else state.light
@@ -189,8 +195,7 @@ def needs(state: ViewState) -> Needs:
     answers = {}
     for quantity in QUANTITIES:
         light = load_light(replace(state, quantity=quantity))
-        method = state.method if quantity == state.quantity else "best"
-        errors = _errors(light, method, state.samples, state.seed)
+        errors = _errors(light, *(_sampling(state) if quantity == state.quantity else BEST))
         answers[quantity] = smallest_band_count(errors, state.tolerance), errors
     errors = answers[state.quantity][1]
     best = int(errors.argmin())
@@ -206,8 +211,8 @@ def estimate_from_samples(state: ViewState) -> SampleEstimate:
     """
     light = load_light(state)
     halves = [jittered(max(state.samples // 2, 1), seed) for seed in (state.seed, state.seed + HALF_SEED)]
-    first, second = (project_samples(light.radiance, half, MAX_DIRECT_BANDS) for half in halves)
-    squares = np.concatenate([(light.radiance(half.directions) ** 2).sum(axis=1) for half in halves])
+    first, second = (project_samples(light.radiance, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
+    squares = np.concatenate([((light.radiance(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
     deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
     return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
 
@@ -250,25 +255,27 @@ def _irradiance(light: Light) -> Light:
 
 @lru_cache(maxsize=64)
 def _errors(light: Light, method: str, samples: int, seed: int) -> Array:
-    exact = _project(light, "best", 0, 0, MAX_SHOWN_BANDS).coefficients
+    exact = _project(light, *BEST, MAX_SHOWN_BANDS).coefficients
     n_bands = MAX_SHOWN_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
     shown = exact if method == "best" else _project(light, method, samples, seed, n_bands).coefficients
-    return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
+    return errors_by_band_count(light.products(), exact[: n_bands**2] / light.unit, shown / light.unit)
 
 
 @lru_cache(maxsize=256)
 def _reconstruct(
     light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
 ) -> tuple[Array, Figures]:
-    exact = _project(light, "best", 0, 0, projection.n_bands).coefficients
+    exact = _project(light, *BEST, projection.n_bands).coefficients
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
-    factors = _window_factors(shown, window_name, width)
+    factors = _window_factors(shown / light.unit, window_name, width)
     shown = shown * per_coefficient(factors)
     total = float(np.trace(light.products()))
-    power = band_power(exact).sum(axis=1)
+    power = band_power(exact / light.unit).sum(axis=1)
     extremes = _error_grid(light, _grid_rows(n_bands)).compare(shown)
     figures = Figures(
-        channels=channel_figures(light.products(), exact[: n_bands**2], shown, extremes.peak),
+        channels=channel_figures(
+            light.products(), exact[: n_bands**2] / light.unit, shown / light.unit, extremes.peak / light.unit
+        ),
         floor=max(PARSEVAL_FLOOR, light.accuracy()),
         extremes=extremes,
         energy_share=tuple(float(p) / total if total else 0.0 for p in power),

@@ -48,6 +48,8 @@ class Renderer:
         self.overlay: moderngl.Texture | None = None
         self.overlay_image: NDArray[np.uint8] | None = None
         self.picture: Picture | None = None
+        self.rest = context.simple_framebuffer((1, 1))
+        """Bound while no other framebuffer is in use."""
 
     @property
     def version(self) -> str:
@@ -113,6 +115,10 @@ class Renderer:
         ):
             if resource is not None:
                 resource.release()
+        for attachment in (*self.rest.color_attachments, self.rest.depth_attachment):
+            if attachment is not None:
+                attachment.release()
+        self.rest.release()
         self.sphere_program.release()
         self.overlay_program.release()
 

@@ -81,28 +81,32 @@ def render_rgb(
 
 def read_rgb(renderer: Renderer, composition: Composition) -> NDArray[np.uint8]:
     """What the renderer shows, drawn into a framebuffer of its own and read back: (height, width, 3), top row first."""
-    size = composition.width, composition.height
-    texture = renderer.context.texture(size, 4)
-    target = renderer.context.framebuffer([texture])
-    try:
-        renderer.draw(target, composition)
-        data = np.frombuffer(target.read(components=4), dtype=np.uint8)
-    finally:
-        target.release()
-        texture.release()
-    return np.ascontiguousarray(data.reshape(size[1], size[0], 4)[::-1, :, :3])
+    return (
+        np.frombuffer(_read(renderer, composition, "f1"), dtype=np.uint8)
+        .reshape(_shape(composition))[::-1, :, :3]
+        .copy()
+    )
 
 
 def render_linear(renderer: Renderer, picture: Picture, composition: Composition) -> NDArray[np.float32]:
     """Scene-linear radiance of both spheres, negative where it is, 0 around them: (height, width, 3), top row first."""
-    size = composition.width, composition.height
-    texture = renderer.context.texture(size, 4, dtype="f4")
+    renderer.show(picture)
+    data = np.frombuffer(_read(renderer, composition, "f4"), dtype=np.float32)
+    return data.reshape(_shape(composition))[::-1, :, :3].copy()
+
+
+def _shape(composition: Composition) -> tuple[int, int, int]:
+    return composition.height, composition.width, 4
+
+
+def _read(renderer: Renderer, composition: Composition, dtype: str) -> bytes:
+    """RGBA, bottom row first: the picture for "f1", its linear radiance for "f4"."""
+    texture = renderer.context.texture((composition.width, composition.height), 4, dtype=dtype)
     target = renderer.context.framebuffer([texture])
     try:
-        renderer.show(picture)
-        renderer.draw(target, composition, linear=True)
-        data = np.frombuffer(target.read(components=4, dtype="f4"), dtype=np.float32)
+        renderer.draw(target, composition, linear=dtype == "f4")
+        return target.read(components=4, dtype=dtype)
     finally:
+        renderer.rest.use()  # moderngl would bind a released framebuffer again when it makes the next one
         target.release()
         texture.release()
-    return np.ascontiguousarray(data.reshape(size[1], size[0], 4)[::-1, :, :3])

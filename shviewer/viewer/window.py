@@ -27,6 +27,9 @@ from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState, open_light, orbit, press, rotate_light, toggle_band, with_bands, zoom
 
 IDLE_SECONDS = 0.25
+SMALLEST_WINDOW = (400, 300)
+"""Screen coordinates in which the help can still be read."""
+
 CLICK_PIXELS = 4.0
 """A press that moves less than this before its release is a click."""
 
@@ -312,7 +315,7 @@ def _create_window(size: tuple[int, int], version: int) -> Any:
     glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
     handle = glfw.create_window(*size, "shviewer", None, None)
     if handle:
-        glfw.set_window_size_limits(handle, 320, 160, glfw.DONT_CARE, glfw.DONT_CARE)
+        glfw.set_window_size_limits(handle, *SMALLEST_WINDOW, glfw.DONT_CARE, glfw.DONT_CARE)
     return handle
 
 

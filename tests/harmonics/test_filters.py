@@ -137,6 +137,8 @@ def test_too_many_bands_cannot_be_deringed() -> None:
 
 
 def test_the_shortest_vector_over_a_line_is_its_foot() -> None:
-    assert_allclose(least_distance(np.array([[3.0, 4.0]]), np.array([10.0])), [1.2, 1.6], rtol=0, atol=1e-14)
+    u, binding = least_distance(np.array([[3.0, 4.0], [1.0, 0.0]]), np.array([10.0, -5.0]))
+    assert_allclose(u, [1.2, 1.6], rtol=0, atol=1e-14)
+    assert binding.tolist() == [True, False]
     with pytest.raises(ValueError, match="no vector"):
         least_distance(np.array([[1.0], [-1.0]]), np.array([1.0, 1.0]))

@@ -1,0 +1,262 @@
+"""What shviewer.harmonics.projection promises: the coefficients of samples, of rules and of images, and the way back."""
+
+import numpy as np
+import pytest
+from harmonics.independent import HARD_CASES, random_directions, scipy_basis
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose, assert_array_equal
+
+from shviewer.harmonics import projection
+from shviewer.harmonics.basis import evaluate_basis
+from shviewer.harmonics.projection import Synthesis, project_image, project_product, project_samples
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre, jittered
+
+GREEN_EXACT = np.array([float(value) for value in HARD_CASES["lights"]["green"]["coefficients_n4"]])
+
+
+def random_coefficients(n_bands, seed=0):
+    return np.random.default_rng(seed).standard_normal((n_bands**2, 3))
+
+
+def green(directions):
+    """The light of Green 2003, written out as he did, in all three channels."""
+    x, y, z = directions.T
+    lobes = np.maximum(0, 5 * z - 4) + np.maximum(0, 4 * (x * np.cos(2.5) + y * np.sin(2.5)) - 3)
+    return np.repeat(lobes[:, None], 3, axis=1)
+
+
+def texel_edges(height, width):
+    """theta of the row edges, phi of the column edges."""
+    return np.pi * np.arange(height + 1) / height, np.pi * (1 - 2 * np.arange(width + 1) / width)
+
+
+def brute_force_texels(height, width, n_bands, order):
+    """Integral of every basis function over every texel, (height, width, n_bands**2), by order x order Gauss points."""
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    theta_edges, phi_edges = texel_edges(height, width)
+    total = np.zeros((height, width, n_bands**2))
+    for i in range(height):
+        for j in range(width):
+            theta = (theta_edges[i] + theta_edges[i + 1]) / 2 + nodes * np.pi / height / 2
+            phi = (phi_edges[j] + phi_edges[j + 1]) / 2 + nodes * np.pi / width
+            area = (weights * np.sin(theta))[:, None] * weights * (np.pi / height / 2) * (np.pi / width)
+            total[i, j] = area.ravel() @ scipy_basis(
+                directions_from_angles(theta[:, None], phi).reshape(-1, 3), n_bands
+            )
+    return total
+
+
+@pytest.mark.parametrize("l", range(6))
+def test_projecting_one_basis_function_by_the_product_rule_gives_one_coefficient(l):
+    for i in range(l**2, (l + 1) ** 2):
+        found, norm_squared = project_product(
+            lambda d, i=i: np.repeat(scipy_basis(d, 6)[:, i : i + 1], 3, axis=1), gauss_legendre(2 * 8**2), 6
+        )
+        expected = np.zeros((36, 3))
+        expected[i] = 1
+        assert_allclose(found, expected, rtol=0, atol=1e-14)  # SciPy's error at degree 5, ten roundings
+        assert_allclose(np.diag(norm_squared), np.ones(3), rtol=0, atol=1e-14)
+
+
+def test_projecting_an_image_of_one_basis_function_gives_nearly_one_coefficient():
+    height, width, order = 64, 128, 2
+    nodes = np.polynomial.legendre.leggauss(order)[0]
+    theta = np.pi * (np.arange(height)[:, None] + 0.5 + nodes / 2) / height
+    phi = column_azimuths(width)[:, None] + nodes * np.pi / width
+    values = scipy_basis(directions_from_angles(theta.reshape(-1, 1), phi.ravel()).reshape(-1, 3), 6)
+    values = values.reshape(height, order, width, order, 36)
+    sine = np.sin(theta)
+    means = np.einsum("ir,irjsk->ijk", sine, values) / (order * sine.sum(axis=1))[:, None, None]
+    for i in range(0, 36, 3):
+        found = project_image(means[..., i : i + 3], 6)
+        # Poincare: the mean over a texel of side h misses at most h**2 l(l+1) / pi**2 of a harmonic
+        expected = np.zeros((36, 3))
+        expected[[i, i + 1, i + 2], [0, 1, 2]] = 1
+        assert_allclose(found, expected, rtol=0, atol=30 / height**2)
+
+
+@pytest.mark.parametrize(("height", "width", "order"), [(5, 7, 12), (1, 1, 40), (3, 2, 24), (1, 9, 24), (8, 1, 36)])
+def test_an_image_is_integrated_texel_by_texel(height, width, order):
+    image = np.random.default_rng(11).random((height, width, 3)) - 0.3
+    expected = np.einsum("ijk,ijc->kc", brute_force_texels(height, width, 6, order), image)
+    assert_allclose(project_image(image, 6), expected, rtol=0, atol=2e-14)  # SciPy's rounding, over 4 pi
+
+
+@pytest.mark.parametrize(("height", "width"), [(1, 1), (2, 3), (3, 2), (5, 7), (1, 64), (64, 1), (33, 65), (512, 1024)])
+def test_a_constant_image_of_any_size_has_one_coefficient(height, width):
+    image = np.broadcast_to([1.0, 2.0, 0.25], (height, width, 3))
+    coefficients = project_image(image, 64)
+    first = np.array([1.0, 2.0, 0.25]) * np.sqrt(4 * np.pi)
+    assert_allclose(coefficients[0], first, rtol=1e-14, atol=0)
+    assert np.abs(coefficients[1:] / first).max() < 1e-14  # numerics.md 2: 3e-15 at 8 bands
+
+
+@pytest.mark.parametrize(("row", "column"), [(10, 20), (10, 100), (50, 20), (50, 100), (31, 64), (0, 5), (33, 0)])
+def test_the_first_band_of_one_bright_texel_points_at_it(row, column):
+    image = np.zeros((64, 128, 3))
+    image[row, column] = 1
+    theta, phi = np.pi * (row + 0.5) / 64, np.pi * (1 - 2 * (column + 0.5) / 128)
+    texel = [np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)]
+    y, z, x = project_image(image, 2)[1:, 1] * [-1, 1, -1]
+    angle = np.arctan2(np.linalg.norm(np.cross([x, y, z], texel)), np.dot([x, y, z], texel))
+    # a texel is 2.8 degrees wide; its centroid lies h**2/12 cot(theta) from its middle, more at the pole
+    assert np.degrees(angle) < (0.5 if row == 0 else 0.1)
+
+
+def test_the_top_of_an_image_is_north_and_its_left_half_is_y():
+    image = np.zeros((4, 8, 3))
+    image[:2, :, 0] = 1
+    image[:, :4, 1] = 1
+    image[:, 2:6, 2] = 1
+    y, z, x = (project_image(image, 2)[1:] * np.array([-1, 1, -1])[:, None]).round(12)
+    half = np.round(np.sqrt(3 / (4 * np.pi)) * np.pi, 12)
+    assert [x.tolist(), y.tolist(), z.tolist()] == [[0, 0, half], [0, half, 0], [half, 0, 0]]
+
+
+@settings(max_examples=150, deadline=None, derandomize=True, database=None)
+@given(
+    arrays(np.float64, st.tuples(st.integers(1, 8), st.integers(1, 8), st.just(3)), elements=st.floats(-1e3, 1e3)),
+    st.integers(1, 12),
+)
+def test_no_image_has_coefficients_with_more_energy_than_itself(image, n_bands):
+    height, width = image.shape[:2]
+    theta, _ = texel_edges(height, width)
+    solid_angle = (np.cos(theta[:-1]) - np.cos(theta[1:])) * 2 * np.pi / width
+    norm_squared = np.einsum("r,rcx->x", solid_angle, image**2)
+    energy = (project_image(image, n_bands) ** 2).sum(axis=0)
+    assert (energy <= norm_squared * (1 + 1e-12) + 1e-290).all()  # Bessel, to rounding
+
+
+def test_a_float32_image_is_projected_in_float64():
+    image = np.random.default_rng(12).random((40, 70, 3)).astype(np.float32)
+    assert_array_equal(project_image(image, 12), project_image(image.astype(np.float64), 12))
+
+
+def test_blocks_of_rows_do_not_show_in_an_image_projection(monkeypatch):
+    image = np.random.default_rng(13).random((23, 10, 3))
+    whole = project_image(image, 9)
+    monkeypatch.setattr(projection, "BLOCK_VALUES", 150)  # 5 rows of 23
+    assert_allclose(project_image(image, 9), whole, rtol=0, atol=1e-14)
+
+
+def test_blocks_of_rows_do_not_show_in_a_product_projection(monkeypatch):
+    rule = gauss_legendre(2 * 11**2)
+    coefficients, norm_squared = project_product(green, rule, 9)
+    monkeypatch.setattr(projection, "BLOCK_VALUES", 8 * rule.n_columns * 3)
+    again, norm_again = project_product(green, rule, 9)
+    assert_allclose(again, coefficients, rtol=0, atol=1e-14)
+    assert_allclose(norm_again, norm_squared, rtol=0, atol=1e-14)
+
+
+def test_blocks_of_samples_do_not_show_in_a_projection(monkeypatch):
+    samples = jittered(1000, seed=0)
+    whole = project_samples(green, samples, 7)
+    monkeypatch.setattr(projection, "BLOCK_VALUES", 100 * 7**2)
+    sizes = []
+    again = project_samples(lambda d: sizes.append(len(d)) or green(d), samples, 7)
+    assert sizes == [100] * 9 + [61]
+    assert_allclose(again, whole, rtol=0, atol=1e-14)
+
+
+def test_scattered_samples_are_weighted_and_summed():
+    samples = jittered(300, seed=4)
+    values = np.random.default_rng(5).standard_normal((289, 3))
+    expected = scipy_basis(samples.directions, 6).T @ (values * samples.weights[:, None])
+    assert_allclose(project_samples(lambda _: values, samples, 6), expected, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("n_bands", [1, 2, 3, 8, 33, 100])
+def test_a_band_limited_function_comes_back_from_synthesis_and_projection(n_bands):
+    coefficients = random_coefficients(n_bands)
+    synthesis = Synthesis(coefficients)
+    rule = gauss_legendre(2 * n_bands**2)
+
+    def radiance(directions):
+        x, y, z = directions.T
+        return synthesis.at(np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+
+    found, norm_squared = project_product(radiance, rule, n_bands)
+    # random coefficients: values grow like n_bands, rounding of the angles m phi and k theta like n_bands again
+    assert_allclose(found, coefficients, rtol=0, atol=2e-14 + 2.0**-52 * n_bands**2)
+    assert_allclose(np.diag(norm_squared), (coefficients**2).sum(axis=0), rtol=1e-12, atol=0)
+
+
+def test_the_product_rule_agrees_with_the_plain_sum_over_its_points():
+    rule = gauss_legendre(2 * 20**2)
+    points = rule.direction_set()
+    values = green(points.directions) * [1, 2, 3]
+    expected = scipy_basis(points.directions, 12).T @ (values * points.weights[:, None])
+    found, norm_squared = project_product(lambda d: green(d) * [1, 2, 3], rule, 12)
+    assert_allclose(found, expected, rtol=0, atol=1e-13)
+    assert_allclose(np.diag(norm_squared), points.weights @ values**2, rtol=1e-13, atol=0)
+
+
+@pytest.mark.parametrize("n_bands", [1, 2, 5, 16, 33])
+def test_synthesis_at_scattered_angles_is_the_sum_over_the_basis(n_bands):
+    rng = np.random.default_rng(14)
+    coefficients = random_coefficients(n_bands, seed=1)
+    # beyond both poles and beyond the seam, too, where `ErrorGrid` climbs
+    theta, phi = rng.uniform(-1, np.pi + 1, 200), rng.uniform(-4, 4, 200)
+    expected = evaluate_basis(directions_from_angles(theta, phi), n_bands) @ coefficients
+    assert_allclose(Synthesis(coefficients).at(theta, phi), expected, rtol=0, atol=1e-14 * n_bands**2)
+
+
+@pytest.mark.parametrize("n_bands", [1, 2, 5, 16, 33])
+@pytest.mark.parametrize("n_columns", [1, 8, 13])
+def test_synthesis_on_rows_has_the_columns_of_an_image(n_bands, n_columns):
+    coefficients = random_coefficients(n_bands, seed=2)
+    theta = np.array([0.0, 0.2, 1.4, np.pi / 2, 3.0, np.pi])
+    directions = directions_from_angles(theta[:, None], np.pi * (1 - 2 * (np.arange(n_columns) + 0.5) / n_columns))
+    expected = np.einsum("rck,kx->rxc", evaluate_basis(directions, n_bands), coefficients)
+    found = Synthesis(coefficients).on_rows(theta, n_columns)
+    assert_allclose(found, expected, rtol=0, atol=1e-14 * n_bands**2)
+
+
+def test_synthesis_agrees_with_scipy():
+    coefficients = random_coefficients(12, seed=3)
+    d = random_directions(100, seed=15)
+    found = Synthesis(coefficients).at(np.arccos(d[:, 2]), np.arctan2(d[:, 1], d[:, 0]))
+    assert_allclose(found, scipy_basis(d, 12) @ coefficients, rtol=0, atol=1e-12)
+
+
+def test_an_image_of_areas_and_the_product_rule_agree_on_a_smooth_light():
+    def smooth(directions):
+        x, y, z = directions.T
+        return np.stack([np.exp(x), np.exp(y - z), 1 + x * y + z], axis=-1)
+
+    exact, _ = project_product(smooth, gauss_legendre(2 * 24**2), 5)
+    theta = np.pi * (np.arange(128) + 0.5) / 128
+    directions = directions_from_angles(theta[:, None], column_azimuths(256))
+    found = project_image(smooth(directions.reshape(-1, 3)).reshape(128, 256, 3), 5)
+    assert_allclose(found, exact, rtol=0, atol=2e-3)  # (pi / 128)**2 of values up to e**1.4, at l = 4
+
+
+@pytest.mark.parametrize("count", [0, 5])
+def test_synthesis_needs_the_coefficients_of_whole_bands(count):
+    with pytest.raises(ValueError, match=f"{count} coefficients: n bands have"):
+        Synthesis(np.zeros((count, 3)))
+
+
+def test_more_bands_than_the_table_holds_are_refused():
+    with pytest.raises(ValueError, match="513 bands: there must be 1 to 512"):
+        projection.theta_series(513)
+    with pytest.raises(ValueError, match="1401 bands: there must be 1 to 1400"):
+        project_samples(green, jittered(4, 0), 1401)
+
+
+def test_the_exact_projection_of_greens_light_has_his_signs_and_order():
+    # caps cut by a Gauss grid: numerics.md 0.3 measures 2e-6 of max |c| at 512 rows
+    coefficients, norm_squared = project_product(green, gauss_legendre(2 * 256**2), 4)
+    for channel in range(3):
+        assert_allclose(coefficients[:, channel], GREEN_EXACT, rtol=0, atol=2e-5)
+    assert_allclose(np.diag(norm_squared), np.full(3, 0.3 * np.pi), rtol=0, atol=1e-4)
+
+
+@pytest.mark.parametrize(("n_samples", "measured"), [(1000, 6.0e-3), (10_000, 6.5e-4), (100_000, 6.4e-5)])
+def test_jittered_projection_of_greens_light_converges_as_measured(n_samples, measured):
+    squares = [
+        ((project_samples(green, jittered(n_samples, seed), 4)[:, 0] - GREEN_EXACT) ** 2).mean() for seed in range(5)
+    ]
+    assert measured / 3 < np.sqrt(np.mean(squares)) < 3 * measured  # peers.md 2g, 20 runs

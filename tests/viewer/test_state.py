@@ -1,0 +1,274 @@
+"""The key table and what the keys do to a state."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from shviewer.lights.function import FunctionLight
+from shviewer.viewer import camera
+from shviewer.viewer.layout import MAX_SHOWN_BANDS
+from shviewer.viewer.picture import check
+from shviewer.viewer.state import (
+    ACTIONS,
+    BINDINGS,
+    CAMERA_HOME,
+    METHODS,
+    ViewState,
+    describe_exposure,
+    describe_muted,
+    key_table,
+    open_light,
+    orbit,
+    press,
+    rotate_light,
+    zoom,
+)
+
+LIGHTS = ("green", "studio", "sun-sky")
+START = ViewState(lights=LIGHTS)
+
+
+def pressed(state: ViewState, *keys: str) -> ViewState:
+    for key in keys:
+        state = press(state, key)
+    return state
+
+
+def test_no_key_is_bound_twice() -> None:
+    count = Counter(key for binding in BINDINGS for key in binding.actions)
+    assert [key for key, times in count.items() if times > 1] == []
+    assert len(ACTIONS) == sum(count.values())
+
+
+def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
+    text = key_table()
+    for binding in BINDINGS:
+        assert binding.label
+        assert binding.help
+        assert f"  {binding.label:<20}{binding.help}\n" in text + "\n"
+        assert isinstance(binding.value(START), str)
+    titles = [line for line in text.splitlines() if line and not line.startswith(" ")]
+    assert titles == ["Bands", "Light", "Picture", "Program"]
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_every_key_of_the_programs_promise_is_bound() -> None:
+    promised = (
+        "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I"
+    )
+    digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
+    assert set(ACTIONS) == {*promised.split(), *digits}
+
+
+@settings(derandomize=True, deadline=None)
+@given(st.lists(st.sampled_from([*sorted(ACTIONS), "drag", "turn", "scroll", "Q"]), max_size=60), st.integers(0, 99))
+def test_no_sequence_of_keys_leaves_the_limits(keys: list[str], seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    state = START
+    for key in keys:
+        if key == "drag":
+            state = orbit(state, *rng.normal(scale=3, size=2))
+        elif key == "turn":
+            state = rotate_light(state, *rng.normal(scale=3, size=2))
+        elif key == "scroll":
+            state = zoom(state, rng.normal(scale=20))
+        else:
+            state = press(state, key)
+        check(state)
+        assert 0 <= state.cursor < state.n_bands
+        assert 0 <= state.light_index < len(state.lights)
+        assert abs(state.camera[1]) <= 90
+        assert np.linalg.norm(state.light_rotation) == pytest.approx(1, abs=1e-12)
+        assert all(band < state.n_bands for band in state.muted_shown)
+
+
+def test_a_key_without_a_binding_changes_nothing() -> None:
+    state = replace(START, message="kept")
+    for key in ("Q", "", "Shift+Up", "Ctrl+1", "up"):
+        assert press(state, key) is state
+
+
+def test_a_bound_key_takes_the_message_away() -> None:
+    assert press(replace(START, message="read"), "Up").message == ""
+
+
+def test_bands_go_up_and_down_by_one_and_by_four_and_stop_at_the_ends() -> None:
+    keys = ("Up", "Down", "PageUp", "PageDown", "Home", "End")
+    assert [press(START, key).n_bands for key in keys] == [6, 4, 9, 1, 1, 32]
+    assert pressed(START, *["Down"] * 9).n_bands == 1
+    assert pressed(START, *["PageUp"] * 40).n_bands == MAX_SHOWN_BANDS
+
+
+@pytest.mark.parametrize("digit", range(5))
+def test_a_digit_mutes_its_band_and_again_brings_it_back(digit: int) -> None:
+    once = press(START, str(digit))
+    assert once.muted == {digit}
+    assert press(once, str(digit)) == START
+    assert press(START, str(digit + 5)) == START  # bands that are not in use
+
+
+def test_solo_leaves_one_band_and_twice_brings_back_all() -> None:
+    solo = press(START, "Shift+2")
+    assert solo.muted_shown == (0, 1, 3, 4)
+    assert press(solo, "Up").muted_shown == (0, 1, 3, 4, 5)
+    assert press(solo, "Shift+2").muted == frozenset()
+    assert press(solo, "Shift+3").muted_shown == (0, 1, 2, 4)
+    assert press(START, "Shift+7") == START
+    assert press(solo, "A").muted == frozenset()
+
+
+def test_the_cursor_shows_itself_first_then_goes_round_and_enter_mutes() -> None:
+    state = press(START, ".")
+    assert (state.cursor, state.cursor_visible) == (0, True)
+    assert press(state, ".").cursor == 1
+    assert press(state, ",").cursor == 4
+    assert pressed(state, ",", ".").cursor == 0
+    at_3 = pressed(state, ".", ".", ".")
+    assert press(at_3, "Enter").muted == {3}
+    assert pressed(at_3, "Enter", "Enter").muted == frozenset()
+    assert pressed(at_3, "Down", "Down").cursor == 2  # never on a band that is gone
+
+
+def test_lights_and_methods_go_round() -> None:
+    assert press(START, "Left").light == "sun-sky"
+    assert pressed(START, "Right", "Right").light == "sun-sky"
+    assert pressed(START, "Right", "Left") == START
+    assert [pressed(START, *["M"] * count).method for count in range(4)] == [*METHODS, METHODS[0]]
+
+
+def test_samples_go_by_four_and_stop_at_16_and_a_million() -> None:
+    assert press(START, "S").samples == 40_000
+    assert press(START, "Shift+S").samples == 2_500
+    assert pressed(START, *["S"] * 9).samples == 1_000_000
+    assert pressed(START, *["Shift+S"] * 9).samples == 16
+    many = replace(START, samples=5_000_000)  # asked for on the command line
+    assert press(many, "S").samples == 5_000_000
+
+
+def test_exposure_goes_by_half_stops_and_n_makes_it_automatic() -> None:
+    assert pressed(START, "E", "E", "Shift+E").exposure_offset == 0.5
+    fixed = replace(START, exposure_stops=2.0)
+    assert describe_exposure(fixed) == "+2"
+    assert describe_exposure(press(fixed, "E")) == "+2 +0.5"
+    assert describe_exposure(press(START, "Shift+E")) == "auto -0.5"
+    again = pressed(fixed, "E", "N")
+    assert (again.exposure_stops, again.exposure_offset) == (None, 0.0)
+
+
+def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
+    changed = ViewState(
+        lights=LIGHTS,
+        light_index=2,
+        sanitize=True,
+        n_bands=9,
+        muted=frozenset({1}),
+        cursor=3,
+        cursor_visible=True,
+        quantity="irradiance",
+        window="hann",
+        window_width=3.0,
+        tolerance=0.1,
+        method="jittered",
+        samples=99,
+        seed=4,
+        exposure_stops=1.0,
+        exposure_offset=0.5,
+        camera=(1.0, 2.0),
+        light_rotation=camera.towards(10, 10),
+        zoom=2.0,
+        help_visible=True,
+        message="m",
+        fullscreen=True,
+        screenshots=3,
+        fits=2,
+    )
+    assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
+    after = press(changed, "R")
+    assert after == ViewState(lights=LIGHTS, light_index=2, sanitize=True, tolerance=0.1)
+    assert after.fullscreen
+    assert after.screenshots == 3
+
+
+def test_f_brings_back_the_camera_alone() -> None:
+    moved = replace(START, camera=(1.0, 2.0), zoom=3.0, n_bands=7)
+    assert press(moved, "F") == replace(START, camera=CAMERA_HOME, n_bands=7)
+
+
+def test_escape_closes_the_help_first_and_then_the_window() -> None:
+    for key in ("H", "?"):
+        helped = press(START, key)
+        assert helped.help_visible
+        assert press(helped, key) == START
+        closed = press(helped, "Esc")
+        assert (closed.help_visible, closed.closing) == (False, False)
+        assert press(closed, "Esc").closing
+
+
+def test_wishes_to_the_window_are_no_part_of_the_picture() -> None:
+    for key in ("P", "Ctrl+S", "F11"):
+        assert press(START, key) == START
+    assert press(START, "P").screenshots == press(START, "Ctrl+S").screenshots == 1
+    assert press(START, "F11").fullscreen
+    assert not pressed(START, "F11", "F11").fullscreen
+
+
+@pytest.mark.parametrize(("right", "up"), [(0.01, 0.0), (0.0, 0.01), (-0.01, -0.006)])
+def test_the_front_of_the_sphere_follows_the_mouse(right: float, up: float) -> None:
+    """On the horizon, where an azimuth is as long as an elevation; second order is left out."""
+    start = replace(START, camera=(40.0, 0.0))
+    front = camera.world_from_view(*start.camera)[:, 2]
+    seen = camera.world_from_view(*orbit(start, right, up).camera).T @ front
+    np.testing.assert_allclose(seen, [right, up, 1], rtol=0, atol=2e-4)
+
+
+def test_orbiting_stops_at_the_poles_and_goes_round_the_equator() -> None:
+    assert orbit(START, 0, -9).camera == (78.0, 90.0)
+    assert orbit(START, 0, 9).camera == (78.0, -90.0)
+    assert orbit(START, 2 * np.pi, 0).camera[0] == pytest.approx(78.0)
+    assert 0 <= orbit(START, 3, 0).camera[0] < 360
+
+
+def test_dragging_with_shift_turns_the_light_and_not_the_camera() -> None:
+    turned = rotate_light(START, 0.1, 0.2)
+    assert turned.camera == START.camera
+    assert turned.light_rotation == camera.turned_by_drag(START.light_rotation, START.camera, 0.1, 0.2)
+    assert turned.light_rotation != START.light_rotation
+
+
+def test_scrolling_up_magnifies_by_a_tenth_within_limits() -> None:
+    assert zoom(START, 1).zoom == pytest.approx(1.1)
+    assert zoom(START, 999).zoom == 16
+    assert zoom(START, -999).zoom == 0.25
+
+
+def test_opening_a_light_adds_it_once_and_shows_it() -> None:
+    mine = FunctionLight(lambda d: d[:, 0])
+    opened = open_light(replace(START, message="old"), mine)
+    assert opened.lights == (*LIGHTS, mine)
+    assert opened.light is mine
+    assert opened.message == ""
+    assert open_light(press(opened, "Left"), mine) == opened
+    assert open_light(opened, "studio") == replace(opened, light_index=1)
+
+
+@pytest.mark.parametrize(
+    ("muted", "n_bands", "words"),
+    [
+        ((), 5, ""),
+        ((7,), 5, ""),
+        ((1,), 5, "muted 1"),
+        ((1, 3, 4), 5, "muted 1, 3-4"),
+        ((0, 1, 2, 5), 9, "muted 0-2, 5"),
+        ((0, 1, 3, 4), 5, "only band 2"),
+        ((0, 1, 2, 3), 4, "muted 0-3"),
+        ((0,), 2, "muted 0"),
+    ],
+)
+def test_muted_bands_are_described_in_runs(muted: tuple[int, ...], n_bands: int, words: str) -> None:
+    assert describe_muted(replace(START, muted=frozenset(muted), n_bands=n_bands)) == words
