@@ -111,7 +111,7 @@ def test_a_png_tells_everything_that_made_it(tmp_path: Path) -> None:
         assert said["spheres"][name]["radius"] == sphere.radius
     figures = said["figures"]
     assert set(figures) >= {"relative_l2", "max_error", "minimum", "negative_area", "peak", "energy_share"}
-    squares = figures["relative_l2_left_out"] ** 2 + figures["relative_l2_muted_and_sampling"] ** 2
+    squares = figures["all"]["left_out"] ** 2 + figures["all"]["added"] ** 2
     assert figures["relative_l2"] ** 2 == pytest.approx(squares, rel=1e-12)
 
 
