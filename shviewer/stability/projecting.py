@@ -38,7 +38,8 @@ Zonal = Callable[[float, int], Array]
 def constant_image(project: ProjectImage = project_image) -> float:
     """Radiance 1 on images of any size: c(0, 0) = sqrt(4 pi), all others 0, relative to the first, in 8 bands.
 
-    Bound: 1e-14, three times what rounding leaves of exactly integrated texels (two kernels of OpenBLAS tried); point weights are off by up to 2.5.
+    Bound: 1e-14, three times what rounding leaves of exactly integrated texels (two kernels of OpenBLAS tried); point
+    weights are off by up to 2.5.
     """
     worst = 0.0
     for height, width in ANY_SIZE:
