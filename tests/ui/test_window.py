@@ -96,6 +96,28 @@ def test_every_kind_of_key_does_what_the_table_says(start: Start) -> None:
     assert json.loads(viewer.saved_picture()[1])["light"] != "hemisphere"
 
 
+def test_the_tolerance_key_takes_as_many_bands_as_the_light_needs(start: Start) -> None:
+    viewer = start()
+    viewer.press("t", "15 bands")
+    viewer.press("i", "frame")
+    viewer.press("t", "3 bands")
+    described = json.loads(viewer.saved_picture()[1])
+    assert (described["quantity"], described["figures"]["bands_needed"]["irradiance"]) == ("irradiance", 3)
+    assert described["figures"]["relative_l2"] < 0.05
+
+
+def test_the_window_key_goes_through_all_windows_to_one_without_negatives(start: Start) -> None:
+    viewer = start("green", "--bands", "6")
+    seen = []
+    for _ in range(4):
+        viewer.press("w", "frame")
+        described = json.loads(viewer.saved_picture()[1])
+        seen.append(described["window"])
+    assert seen == ["hann", "lanczos", "gauss", "dering"]
+    assert described["figures"]["minimum"] > -1e-6
+    assert described["figures"]["negative_area"] < 1e-3  # where it touches zero, rounding decides
+
+
 def test_dragging_turns_the_spheres_and_shift_dragging_the_light(start: Start) -> None:
     viewer = start()
     before = json.loads(viewer.saved_picture()[1])
