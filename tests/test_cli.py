@@ -27,7 +27,7 @@ from shviewer.errors import (
     UsageError,
 )
 from shviewer.lights.light import built_in_lights
-from shviewer.viewer.state import key_table
+from shviewer.viewer.keys import key_table
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 WITHOUT_DISPLAY = {"DISPLAY": None, "WAYLAND_DISPLAY": None, "XDG_SESSION_TYPE": None}

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.cli import EXIT_CODES, report_parser, screenshot_parser, view_parser
 from shviewer.lights.scene import PROFILES, read_scene
+from shviewer.options import EXIT_CODES, report_parser, screenshot_parser, view_parser
+from shviewer.viewer.keys import key_table
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
-from shviewer.viewer.state import METHODS, ViewState, key_table
+from shviewer.viewer.state import METHODS, ViewState
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -7,7 +7,8 @@ from itertools import groupby
 from PIL import Image, ImageDraw, ImageFont
 
 from shviewer.viewer.composition import Composition
-from shviewer.viewer.state import BINDINGS, Binding, ViewState
+from shviewer.viewer.keys import BINDINGS, Binding
+from shviewer.viewer.state import ViewState
 
 DIM = (10, 10, 12, 232)
 KEY_COLUMN = 10.5

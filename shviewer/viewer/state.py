@@ -1,19 +1,14 @@
-"""Everything a frame depends on, and the one table of keys that drives it.
-
-The table makes the help sheet, `--list-keys` and the key list in README.md. Keys are names ("PageUp", "Shift+3"), so
-nothing here needs a window; viewer/window.py turns what GLFW reports into these names.
-"""
+"""Everything a frame depends on, and what can be done to it: functions from one state to the next."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 from shviewer.lights.light import Light
 from shviewer.viewer.camera import IDENTITY, Quaternion, turned_by_drag
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.layout import MAX_SHOWN_BANDS
 
 METHODS = ("best", "jittered", "gauss-legendre")
 QUANTITIES = ("radiance", "irradiance")
@@ -71,16 +66,6 @@ class ViewState:
 
 
 Action = Callable[[ViewState], ViewState]
-
-
-class Binding(NamedTuple):
-    """One row of the key table: what stands for it, what each of its keys does, and its present value."""
-
-    label: str
-    group: str
-    help: str
-    actions: Mapping[str, Action]
-    value: Callable[[ViewState], str] = lambda state: ""
 
 
 def more_bands(count: int) -> Action:
@@ -228,117 +213,3 @@ def light_name(light: str | Light) -> str:
 def describe_exposure(state: ViewState) -> str:
     base = "auto" if state.exposure_stops is None else f"{state.exposure_stops:+g}"
     return base if not state.exposure_offset else f"{base} {state.exposure_offset:+g}"
-
-
-DIGITS = tuple("0123456789")
-BANDS, LIGHT, PICTURE, PROGRAM = "Bands", "Light", "Picture", "Program"
-
-BINDINGS = (
-    Binding(
-        "Up / Down",
-        BANDS,
-        "one band more, one fewer",
-        {"Up": more_bands(1), "Down": more_bands(-1)},
-        lambda s: f"{s.n_bands}",
-    ),
-    Binding(
-        "PageUp / PageDown", BANDS, "four bands more, four fewer", {"PageUp": more_bands(4), "PageDown": more_bands(-4)}
-    ),
-    Binding(
-        "Home / End",
-        BANDS,
-        "1 band, 32 bands",
-        {"Home": lambda s: with_bands(s, 1), "End": lambda s: with_bands(s, MAX_DIRECT_BANDS)},
-    ),
-    Binding(
-        "0-9",
-        BANDS,
-        "mute or unmute that band",
-        {digit: lambda s, band=int(digit): toggle_band(s, band) for digit in DIGITS},  # type: ignore[misc]
-        lambda s: describe_muted(s) or "none muted",
-    ),
-    Binding(
-        "Shift+0-9",
-        BANDS,
-        "that band alone; again: all",
-        {f"Shift+{digit}": lambda s, band=int(digit): solo_band(s, band) for digit in DIGITS},  # type: ignore[misc]
-    ),
-    Binding(
-        ", / .",
-        BANDS,
-        "cursor to the band before, after",
-        {",": move_cursor(-1), ".": move_cursor(1)},
-        lambda s: f"band {s.cursor}",
-    ),
-    Binding("Enter / click", BANDS, "mute or unmute the band there", {"Enter": toggle_cursor}),
-    Binding(
-        "T",
-        BANDS,
-        "as many as the tolerance needs",
-        {"T": lambda s: replace(s, fits=s.fits + 1)},
-        lambda s: f"{100 * s.tolerance:g} %",
-    ),
-    Binding("W", BANDS, "window against ringing", {"W": next_window}, lambda s: s.window),
-    Binding("A", BANDS, "all bands on", {"A": lambda s: replace(s, muted=frozenset())}),
-    Binding(
-        "Left / Right",
-        LIGHT,
-        "light before, after",
-        {"Left": next_light(-1), "Right": next_light(1)},
-        lambda s: light_name(s.light),
-    ),
-    Binding("I", LIGHT, "radiance or irradiance", {"I": next_quantity}, lambda s: s.quantity),
-    Binding("M", LIGHT, "projection method", {"M": next_method}, lambda s: s.method),
-    Binding(
-        "S / Shift+S",
-        LIGHT,
-        "samples x 4, / 4",
-        {"S": scale_samples(4), "Shift+S": scale_samples(0.25)},
-        lambda s: f"{s.samples}",
-    ),
-    Binding("Shift+drag", LIGHT, "turn the light", {}),
-    Binding("drop a file", LIGHT, "open it", {}),
-    Binding(
-        "E / Shift+E",
-        PICTURE,
-        "half a stop brighter, darker",
-        {"E": expose(EXPOSURE_STEP), "Shift+E": expose(-EXPOSURE_STEP)},
-        describe_exposure,
-    ),
-    Binding("N", PICTURE, "exposure from the light", {"N": auto_exposure}),
-    Binding("drag", PICTURE, "turn both spheres", {}, lambda s: f"{s.camera[0]:.0f}, {s.camera[1]:.0f} deg"),
-    Binding("scroll", PICTURE, "zoom", {}, lambda s: f"{s.zoom:.2f} x"),
-    Binding("F", PICTURE, "camera back", {"F": lambda s: replace(s, camera=CAMERA_HOME, zoom=1.0)}),
-    Binding("R", PICTURE, "reset all but the light", {"R": reset}),
-    Binding(
-        "P / Ctrl+S",
-        PROGRAM,
-        "save this picture",
-        dict.fromkeys(("P", "Ctrl+S"), lambda s: replace(s, screenshots=s.screenshots + 1)),
-    ),
-    Binding("F11", PROGRAM, "full screen", {"F11": lambda s: replace(s, fullscreen=not s.fullscreen)}),
-    Binding(
-        "H / ?", PROGRAM, "this help", dict.fromkeys(("H", "?"), lambda s: replace(s, help_visible=not s.help_visible))
-    ),
-    Binding("Esc", PROGRAM, "close help, then quit", {"Esc": escape}),
-)
-
-ACTIONS: Mapping[str, Action] = {key: action for binding in BINDINGS for key, action in binding.actions.items()}
-
-
-def press(state: ViewState, key: str) -> ViewState:
-    """The state after `key`; a key without a binding changes nothing. Any bound key takes a message away."""
-    action = ACTIONS.get(key)
-    return state if action is None else action(replace(state, message=""))
-
-
-def key_table() -> str:
-    """One line per row of the table, grouped: the text of `--list-keys` and of README.md."""
-    lines: list[str] = []
-    group = ""
-    for binding in BINDINGS:
-        if binding.group != group:
-            group = binding.group
-            lines += ([""] if lines else []) + [group]
-        lines.append(f"  {binding.label:<20}{binding.help}")
-    return "\n".join(lines)

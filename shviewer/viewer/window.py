@@ -18,13 +18,15 @@ import glfw
 import moderngl
 
 from shviewer.errors import GraphicsError, ShviewerError
+from shviewer.viewer.analysis import needs
 from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.keys import press
 from shviewer.viewer.overlay import Overlay, draw_overlay
-from shviewer.viewer.picture import Picture, needs, prepare
+from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
 from shviewer.viewer.renderer import GL_VERSIONS, Renderer
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import ViewState, open_light, orbit, press, rotate_light, toggle_band, with_bands, zoom
+from shviewer.viewer.state import ViewState, open_light, orbit, rotate_light, toggle_band, with_bands, zoom
 
 IDLE_SECONDS = 0.25
 SMALLEST_WINDOW = (400, 300)

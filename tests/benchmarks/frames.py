@@ -12,9 +12,10 @@ from dataclasses import replace
 import numpy as np
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
+from shviewer.viewer.analysis import reconstruct
 from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay import draw_overlay
-from shviewer.viewer.picture import Picture, _reconstruct, prepare
+from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import headless_renderer
 from shviewer.viewer.state import ViewState
 
@@ -49,7 +50,7 @@ def key_costs() -> None:
         state = ViewState(n_bands=n_bands)
 
         def press(state: ViewState = state) -> Picture:
-            _reconstruct.cache_clear()
+            reconstruct.cache_clear()
             return prepare(state)
 
         picture = press()

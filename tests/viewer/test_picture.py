@@ -83,7 +83,7 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
 
     monkeypatch.setattr("shviewer.viewer.renderer._compile", forbidden)
     monkeypatch.setattr("shviewer.viewer.renderer.load_shader", forbidden)
-    monkeypatch.setattr("shviewer.viewer.picture.find_light", forbidden)
+    monkeypatch.setattr("shviewer.viewer.analysis.find_light", forbidden)
     programs = renderer.sphere_program.glo, renderer.overlay_program.glo
     for n_bands in (6, 33, 1):
         render_rgb(renderer, picture("studio", n_bands=n_bands), frame)

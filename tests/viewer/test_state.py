@@ -12,20 +12,17 @@ from hypothesis import strategies as st
 
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer import camera
+from shviewer.viewer.keys import ACTIONS, BINDINGS, key_table, press
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.picture import check
 from shviewer.viewer.state import (
-    ACTIONS,
-    BINDINGS,
     CAMERA_HOME,
     METHODS,
     ViewState,
     describe_exposure,
     describe_muted,
-    key_table,
     open_light,
     orbit,
-    press,
     rotate_light,
     zoom,
 )

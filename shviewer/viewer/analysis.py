@@ -1,0 +1,223 @@
+"""What is known of a light: its projections, the figures of a reconstruction, the band counts it needs.
+
+What is expensive is remembered: a light is read once, projected once per method to at least MAX_DIRECT_BANDS bands, and
+sampled once for its error figures. A band key then costs a sum of what is there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from time import perf_counter
+
+import numpy as np
+
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
+from shviewer.harmonics.extremes import ErrorGrid, Extremes
+from shviewer.harmonics.filters import irradiance_factors, per_coefficient, window
+from shviewer.harmonics.metrics import (
+    PARSEVAL_FLOOR,
+    ChannelFigures,
+    SampleEstimate,
+    band_power,
+    band_weights,
+    channel_figures,
+    errors_by_band_count,
+    smallest_band_count,
+    split_half_estimate,
+)
+from shviewer.harmonics.projection import project_product, project_samples
+from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.lights.light import Light, find_light
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.state import QUANTITIES, ViewState
+
+BEST = ("best", 0, 0)
+"""Method, samples and seed of the best way, to which the last two do not matter."""
+
+HALF_SEED = 2**31
+"""Added to the seed for the second, independent set of samples."""
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """Coefficients (n**2, 3) of all bands computed, by which method, from how many evaluations, in what time."""
+
+    coefficients: Array
+    method: str
+    evaluations: int | None
+    milliseconds: float
+
+    @property
+    def n_bands(self) -> int:
+        return count_bands(self.coefficients)
+
+
+@dataclass(frozen=True)
+class Needs:
+    """How many bands are within a tolerance, for the radiance and for the irradiance of a light; None if no count is."""
+
+    tolerance: float
+    radiance: int | None
+    irradiance: int | None
+    best: float
+    """The relative L2 error, of the quantity shown, with as many bands as are best."""
+    best_bands: int
+    searched: int
+    """Up to how many bands the quantity shown was searched: fewer for samples, which are rarely good for more."""
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What the overlay and the metadata say. Radiance is linear."""
+
+    channels: dict[str, ChannelFigures]
+    """Of "all" channels together, "red", "green", "blue" and "luminance"."""
+    floor: float
+    """Relative L2 errors below this cannot be told from rounding, or from a quadrature's own error."""
+    extremes: Extremes
+    energy_share: tuple[float, ...]
+    """Energy of each band over that of the light; as many bands as were projected exactly."""
+    factors: tuple[float, ...]
+    """What each band in use is multiplied with: the window, 0 if muted."""
+
+    @property
+    def relative_l2(self) -> float:
+        return self.channels["all"].relative_l2
+
+
+def sampling_of(state: ViewState) -> tuple[str, int, int]:
+    """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them."""
+    return BEST if state.method == "best" else (state.method, state.samples, state.seed)
+
+
+def load_light(state: ViewState) -> Light:
+    """The state's light, or its irradiance; one named by text is read once."""
+    light = _find(state.light, state.sanitize) if isinstance(state.light, str) else state.light
+    return _irradiance(light) if state.quantity == "irradiance" else light
+
+
+def needs(state: ViewState) -> Needs:
+    """How many bands the state's light needs for its tolerance, by the best way and for both quantities.
+
+    With a sampled method the answer for the quantity shown is that of the samples' own error.
+    """
+    answers = {}
+    for quantity in QUANTITIES:
+        light = load_light(replace(state, quantity=quantity))
+        errors = errors_of(light, *(sampling_of(state) if quantity == state.quantity else BEST))
+        answers[quantity] = smallest_band_count(errors, state.tolerance), errors
+    errors = answers[state.quantity][1]
+    best = int(errors.argmin())
+    return Needs(
+        state.tolerance, answers["radiance"][0], answers["irradiance"][0], float(errors[best]), best + 1, len(errors)
+    )
+
+
+def estimate_from_samples(state: ViewState) -> SampleEstimate:
+    """What the state's number of jittered samples alone says, as if the light were not known otherwise.
+
+    Two sets of half as many, drawn independently: the halves of one set would share its cells, and depend on each other.
+    """
+    light = load_light(state)
+    halves = [jittered(max(state.samples // 2, 1), seed) for seed in (state.seed, state.seed + HALF_SEED)]
+    first, second = (project_samples(light.radiance, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
+    squares = np.concatenate([((light.radiance(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
+    deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
+    return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
+
+
+@lru_cache(maxsize=16)
+def _find(text: str, sanitize: bool) -> Light:
+    return find_light(text, sanitize=sanitize)
+
+
+@lru_cache(maxsize=32)
+def project(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+    """Project a light; the irradiance of a sampled light comes from the samples of the light itself."""
+    start = perf_counter()
+    if isinstance(light, IrradianceLight) and method != "best":
+        source = project(light.source, method, samples, seed, n_bands)
+        return replace(source, coefficients=source.coefficients * per_coefficient(irradiance_factors(n_bands)))
+    evaluations = None
+    if method == "jittered":
+        directions = jittered(samples, seed)
+        evaluations = len(directions.weights)
+        coefficients = project_samples(light.radiance, directions, n_bands)
+        words = "jittered samples"
+    elif method == "gauss-legendre":
+        rule = gauss_legendre(samples)
+        evaluations = len(rule.theta) * rule.n_columns
+        coefficients = project_product(light.radiance, rule, n_bands)[0]
+        words = "Gauss-Legendre"
+    else:
+        coefficients = light.coefficients(n_bands)
+        words = light.best_method
+    return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))
+
+
+@lru_cache(maxsize=32)
+def _irradiance(light: Light) -> Light:
+    return IrradianceLight(light)
+
+
+@lru_cache(maxsize=64)
+def errors_of(light: Light, method: str, samples: int, seed: int) -> Array:
+    """The relative L2 error for every band count that is searched, (MAX_SHOWN_BANDS,) or (MAX_DIRECT_BANDS,) of samples."""
+    exact = project(light, *BEST, MAX_SHOWN_BANDS).coefficients
+    n_bands = MAX_SHOWN_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
+    shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
+    return errors_by_band_count(light.products(), exact[: n_bands**2] / light.unit, shown / light.unit)
+
+
+@lru_cache(maxsize=256)
+def reconstruct(
+    light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
+) -> tuple[Array, Figures]:
+    """What is shown of a projection, (n_bands**2, 3), and how good it is."""
+    exact = project(light, *BEST, projection.n_bands).coefficients
+    shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
+    factors = _window_factors(shown / light.unit, window_name, width)
+    shown = shown * per_coefficient(factors)
+    total = float(np.trace(light.products()))
+    power = band_power(exact / light.unit).sum(axis=1)
+    extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
+    figures = Figures(
+        channels=channel_figures(
+            light.products(), exact[: n_bands**2] / light.unit, shown / light.unit, extremes.peak / light.unit
+        ),
+        floor=max(PARSEVAL_FLOOR, light.accuracy()),
+        extremes=extremes,
+        energy_share=tuple(float(p) / total if total else 0.0 for p in power),
+        factors=tuple(0.0 if band in muted else float(factor) for band, factor in enumerate(factors)),
+    )
+    return shown, figures
+
+
+def _window_factors(coefficients: Array, name: str, width: float | None) -> Array:
+    """The window's factor per band, (n,). UsageError where it cannot be had."""
+    n_bands = count_bands(coefficients)
+    if name == "none":
+        return np.ones(n_bands)
+    if name == "dering":
+        if n_bands > MAX_DERINGED_BANDS:
+            raise UsageError(f"{n_bands} bands: dering takes at most {MAX_DERINGED_BANDS}")
+        try:
+            return dering(coefficients).factors
+        except ValueError as error:
+            raise UsageError(f"dering: {error}") from error
+    return window(name, n_bands, width or n_bands)
+
+
+def grid_rows(n_bands: int) -> int:
+    """Four rows per band, and never so few that a built-in light is seen coarsely."""
+    return max(128, 4 * n_bands)
+
+
+@lru_cache(maxsize=8)
+def error_grid(light: Light, rows: int) -> ErrorGrid:
+    """The light on a grid of so many rows."""
+    return ErrorGrid(light.radiance, light.landmarks(), rows)
