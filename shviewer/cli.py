@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,6 +14,7 @@ from shviewer.errors import OutputError, ShviewerError, UsageError
 from shviewer.options import DEFAULT_BANDS, finite, report_parser, screenshot_parser, view_parser
 
 if TYPE_CHECKING:
+    from shviewer.lights.light import Light
     from shviewer.viewer.state import ViewState
 
 
@@ -30,6 +32,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return error.exit_code
     except KeyboardInterrupt:
         return 130
+    except BrokenPipeError:  # nobody reads on, as in `shviewer --list-lights | head -1`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
 
 
 def _view(options: argparse.Namespace) -> int:
@@ -51,7 +56,7 @@ def _view(options: argparse.Namespace) -> int:
     from shviewer.viewer.screenshot import save_picture
 
     state = _state(options, all_lights=True)
-    _print_notes(load_light(state).notes)
+    _print_notes(load_light(state))
     try:
         window.run(state, tuple(options.size), verbose=options.verbose)
     except window.NoDisplayError as error:
@@ -71,11 +76,13 @@ def _screenshot(options: argparse.Namespace) -> int:
         raise UsageError(f"{options.out}: OUT must end in .png or .exr")
     if options.reference and options.out.suffix.lower() != ".png":
         raise UsageError(f"{options.out}: --reference compares PNG pictures; let OUT end in .png")
+    if options.reference and options.reference.resolve() == options.out.resolve():
+        raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
     state = _state(options, all_lights=False)
     picture = prepare(state)
-    _print_notes(picture.light.notes)
     composition = compose(options.size[0], options.size[1], state.zoom)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
+    _print_notes(picture.light)
     if options.reference is None or pixels is None:
         return 0
     difference = options.out.with_name(f"{options.out.stem}-difference.png")
@@ -89,16 +96,17 @@ def _report(options: argparse.Namespace) -> int:
     from shviewer import stability
     from shviewer.viewer.picture_files import write_atomically
 
+    if options.output is not None:
+        try:
+            options.output.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise OutputError(f"{options.output}: cannot be made a folder: {error.strerror}; choose another") from error
     progress = _Progress() if sys.stderr.isatty() else None
     outcomes = stability.run(progress=progress, shader=not options.no_shader)
     if progress:
         progress.clear()
     print(stability.as_text(outcomes))
     if options.output is not None:
-        try:
-            options.output.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise OutputError(f"{options.output}: cannot be made a folder: {error.strerror}; choose another") from error
         write_atomically(options.output / "stability.md", stability.as_markdown(outcomes).encode())
         write_atomically(options.output / "stability.json", stability.as_json(outcomes).encode())
     return 0 if all(outcome.passed for outcome in outcomes) else 1
@@ -125,6 +133,8 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     if any(abs(elevation) > 90 for elevation in elevations):
         raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
     window, separator, width = options.window.partition(":")
+    if separator and window in ("none", "dering"):
+        raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
     state = ViewState(
         lights=tuple(built_in_lights()) if all_lights else (options.light,),
         sanitize=options.sanitize,
@@ -172,9 +182,9 @@ def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:
     return replace(state, n_bands=wanted or found.best_bands)
 
 
-def _print_notes(notes: tuple[str, ...]) -> None:
-    for note in notes:
-        print(f"shviewer: note: {note}", file=sys.stderr)
+def _print_notes(light: Light) -> None:
+    for note in light.notes:
+        print(f"shviewer: note: {light.name}: {note}", file=sys.stderr)
 
 
 def _finite_width(text: str) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
+from typing import NoReturn
 
 from shviewer import __version__
 
@@ -23,9 +24,16 @@ DEFAULT_BANDS = 5
 LIGHT_HELP = "a built-in name (--list-lights), a .toml scene, a .hdr or .exr lat-long image, or file.py:function"
 
 
-def view_parser() -> argparse.ArgumentParser:
+class OneLineParser(argparse.ArgumentParser):
+    """argparse, but a mistake is one line on stderr and not the usage, too."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"shviewer: {' '.join(message.split())}; see {self.prog} --help\n")
+
+
+def view_parser() -> OneLineParser:
     """shviewer [LIGHT]: the window."""
-    parser = argparse.ArgumentParser(
+    parser = OneLineParser(
         prog="shviewer",
         usage="shviewer [LIGHT] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
@@ -42,9 +50,9 @@ def view_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def screenshot_parser() -> argparse.ArgumentParser:
+def screenshot_parser() -> OneLineParser:
     """shviewer screenshot OUT [LIGHT]: a picture without a window."""
-    parser = argparse.ArgumentParser(
+    parser = OneLineParser(
         prog="shviewer screenshot",
         description="Write the picture without a window or a display. The same arguments give the same bytes.",
         epilog=EXIT_CODES,
@@ -74,11 +82,11 @@ def screenshot_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def report_parser() -> argparse.ArgumentParser:
+def report_parser() -> OneLineParser:
     """shviewer report: measurements of the program itself."""
-    parser = argparse.ArgumentParser(
+    parser = OneLineParser(
         prog="shviewer report",
-        description="Measure the program on this machine. --stability runs every hard numerical case against its known answer.",
+        description="Measure the program on this machine. --stability runs the hard numerical cases (about 15 s).",
         epilog=EXIT_CODES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -90,7 +98,7 @@ def report_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_view_options(parser: argparse.ArgumentParser) -> None:
+def _add_view_options(parser: OneLineParser) -> None:
     parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
     parser.add_argument("--bands", metavar="N", type=int, help="number of bands, 1 to 128 (default 5)")
     parser.add_argument(
@@ -119,7 +127,7 @@ def _add_view_options(parser: argparse.ArgumentParser) -> None:
         "--method", metavar="M", default="best", help="best (of this light), jittered (the paper's) or gauss-legendre"
     )
     parser.add_argument(
-        "--samples", metavar="K", type=int, default=10_000, help="of the sampled methods (default 10000)"
+        "--samples", metavar="K", type=_count, default=10_000, help="of the sampled methods (default 10000)"
     )
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="of the jittered samples (default 0)")
     parser.add_argument("--exposure", metavar="STOPS", type=finite, help="fixed, instead of chosen from the light")
@@ -155,6 +163,13 @@ def _band_list(text: str) -> frozenset[int]:
         ) from None
 
 
+def _count(text: str) -> int:
+    value = finite(text)  # 1e6 is a count, too
+    if value != int(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
+    return int(value)
+
+
 def finite(text: str) -> float:
     try:
         value = float(text)
@@ -168,7 +183,8 @@ def finite(text: str) -> float:
 def _tolerance(text: str) -> float:
     value = finite(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
     if not 0 < value < 1:
-        raise argparse.ArgumentTypeError(f"{text!r}: a tolerance is between 0 and 1, such as 0.05 or 5%")
+        hint = f"did you mean {text}%?" if 1 <= value < 100 and not text.endswith("%") else "such as 0.05 or 5%"
+        raise argparse.ArgumentTypeError(f"{text!r}: a tolerance is between 0 and 1; {hint}")
     return value
 
 

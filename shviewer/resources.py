@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from shviewer.errors import ShaderError
+from shviewer.errors import ShaderError, ShviewerError
 
 PACKAGE = Path(__file__).parent
 INCLUDE = re.compile(r'\s*#include\s+"([^"]+)"\s*$')
@@ -18,12 +18,14 @@ DRIVER_POSITION = re.compile(r"^(?:\s*(?:ERROR|WARNING):\s*)?\d+[:(](\d+)(?:\((\
 def resource_folder(kind: str) -> Path:
     """The folder "shaders" or "assets": in an installed package, or beside it in a checkout.
 
-    FileNotFoundError if the installation is damaged.
+    ShviewerError if the installation is damaged.
     """
     for folder in (PACKAGE / kind, PACKAGE.parent / kind):
         if folder.is_dir():
             return folder
-    raise FileNotFoundError(f"no folder {kind}/ in {PACKAGE} or beside it: the installation is incomplete")
+    raise ShviewerError(
+        f"no folder {kind}/ in {PACKAGE} or beside it: the installation is incomplete; install it again"
+    )
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from shviewer.errors import (
     UsageError,
 )
 from shviewer.lights.light import built_in_lights
+from shviewer.options import view_parser
 from shviewer.viewer.keys import key_table
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
@@ -351,3 +353,77 @@ def test_a_scene_of_ones_own_is_a_light(run: Run, tmp_path: Path) -> None:
         red, green, blue = np.asarray(image)[int(y), int(x)]
     assert said["light"] == "warm"
     assert red > green > blue
+
+
+# --- what reviews found
+
+
+def test_a_reference_is_never_overwritten_by_the_picture(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    reference = tmp_path / "same.png"
+    reference.write_bytes(b"kept")
+    code, line = failing(capsys, "screenshot", str(reference), "green", "--reference", str(reference))
+    assert code == 2
+    assert "same file" in line
+    assert reference.read_bytes() == b"kept"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--bands", "x"), "argument --bands: invalid int value: 'x'"),
+        (("--tolerance", "5"), "did you mean 5%?"),
+        (("--samples", "1.5"), "'1.5' is not a whole number"),
+        (("--window", "dering:3"), "dering has no width"),
+        (("screenshot",), "the following arguments are required: OUT"),
+        (("report",), "required: --stability"),
+    ],
+)
+def test_a_mistyped_command_is_one_line(
+    capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], said: str
+) -> None:
+    with pytest.raises(SystemExit) if arguments[0] != "--window" else nullcontext():
+        assert main(list(arguments)) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    assert said in lines[0]
+
+
+def test_counts_may_be_written_with_a_power_of_ten() -> None:
+    assert view_parser().parse_args(["--samples", "1e6"]).samples == 1_000_000
+
+
+def test_a_function_that_exits_or_gives_complex_numbers_is_refused(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "odd.py"
+    path.write_text("import sys\ndef leaves(d): sys.exit(7)\ndef bent(d): return d[:, 0] * 1j\n")
+    for name, said in (("leaves", "SystemExit"), ("bent", "complex")):
+        code, line = failing(capsys, "screenshot", str(tmp_path / "out.png"), f"{path}:{name}")
+        assert code == 3
+        assert said in line
+
+
+@pytest.mark.parametrize("radiance", ["1e-40", "1e300"])
+def test_a_light_that_float32_cannot_show_is_refused(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, radiance: str
+) -> None:
+    path = tmp_path / "far.py"
+    path.write_text(f"import numpy as np\ndef light(d): return np.full(len(d), {radiance})\n")
+    code, line = failing(capsys, "screenshot", str(tmp_path / "out.png"), f"{path}:light")
+    assert code == 3
+    assert "scale the light" in line
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such names")
+def test_a_file_name_that_is_no_text_can_be_drawn(run: Run, tmp_path: Path) -> None:
+    scene = os.fsencode(tmp_path) + b"/bad\xff.toml"
+    Path(os.fsdecode(scene)).write_text('[[lobe]]\nprofile = "constant"\nradiance = 1\n')
+    done = run("screenshot", "out.png", os.fsdecode(scene), "--size", "64", "64")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_nobody_reading_on_is_no_error() -> None:
+    done = subprocess.run(
+        f"{sys.executable} -m shviewer --list-lights | true", shell=True, capture_output=True, text=True, check=False
+    )
+    assert done.stderr == ""

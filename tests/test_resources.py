@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from shviewer import resources
-from shviewer.errors import ShaderError
+from shviewer.errors import ShaderError, ShviewerError
 from shviewer.resources import ShaderSource, load_shader, resource_folder
 
 
@@ -99,7 +99,7 @@ def test_a_drivers_message_is_placed_in_the_file_that_people_edit(log: str, said
 def test_the_folders_of_the_installation_are_found_and_a_missing_one_is_said() -> None:
     assert (resource_folder("shaders") / "sphere.frag").is_file()
     assert (resource_folder("assets") / "scenes" / "green.toml").is_file()
-    with pytest.raises(FileNotFoundError, match="no folder nothing/"):
+    with pytest.raises(ShviewerError, match="no folder nothing/"):
         resource_folder("nothing")
 
 

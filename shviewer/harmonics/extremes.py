@@ -31,6 +31,7 @@ ON_RIM = np.append(np.abs(PATCH).max(axis=1) == 2, True)
 DISPLAY_ROUNDS = 4
 """Halvings of a patch for a figure that is shown: to a sixteenth of the grid's cell."""
 
+BLOCKS = 12
 SEARCH_ROUNDS = 22
 
 Triple = tuple[float, float, float]
@@ -96,14 +97,14 @@ class ErrorGrid:
 
     def _largest_error(self, values: Array, synthesis: Synthesis, shown: Array) -> tuple[float, Triple]:
         difference = values - self.original
-        row, _, column = np.unravel_index(int(np.abs(difference, out=difference).argmax()), difference.shape)
+        rows, columns = _highest_in_blocks(np.abs(difference, out=difference).max(axis=1))
         errors, places = climb(
             lambda d: np.abs(at_directions(synthesis, d) - self.radiance(d)).max(axis=1),
-            self._direction(int(row), int(column)),
+            directions_from_angles(self.theta[rows], self.phi[columns]),
             self._step,
             DISPLAY_ROUNDS,
         )
-        best = float(errors[0]), _triple(places[0])
+        best = float(errors.max()), _triple(places[int(errors.argmax())])
         if len(self.landmarks):
             reconstruction = evaluate_basis(self.landmarks, synthesis.n_bands) @ shown
             there = np.abs(reconstruction - self.radiance(self.landmarks)).max(axis=1)
@@ -118,6 +119,17 @@ class ErrorGrid:
         total = float(squares.sum(axis=(1, 2)) @ self.row_share)
         squares[values >= 0] = 0
         return float(squares.sum(axis=(1, 2)) @ self.row_share) / total
+
+
+def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows and columns of the highest cells of the BLOCKS best 8 x 8 blocks of a grid: its peaks, and not one peak's slope."""
+    short = [-side % 8 for side in values.shape]
+    values = np.pad(values, ((0, short[0]), (0, short[1])), constant_values=-np.inf)
+    rows, columns = values.shape
+    blocks = values.reshape(rows // 8, 8, columns // 8, 8).transpose(0, 2, 1, 3).reshape(-1, 64)
+    best = np.argsort(blocks.max(axis=1))[-BLOCKS:]
+    inside = blocks[best].argmax(axis=1)
+    return best // (columns // 8) * 8 + inside // 8, best % (columns // 8) * 8 + inside % 8
 
 
 def smallest_value(coefficients: Array) -> tuple[float, Triple]:

@@ -40,6 +40,9 @@ class EnvironmentLight:
     def radiance(self, directions: Array) -> Array:
         return self.map.sample(directions)
 
+    def integrand(self, directions: Array) -> Array:
+        return self.map.nearest(directions)
+
     def coefficients(self, n_bands: int) -> Array:
         """Projected once to the most bands asked for so far; fewer are the first rows of more."""
         held = self._projected

@@ -75,8 +75,12 @@ class FunctionLight:
 
     def radiance(self, directions: Array) -> Array:
         try:
-            values = np.asarray(self.function(directions.copy()), dtype=np.float64)  # it may write into its argument
-        except Exception as error:
+            with np.errstate(all="ignore"):  # what is not finite is refused below
+                found = np.asarray(self.function(directions.copy()))  # it may write into its argument
+            if np.iscomplexobj(found):
+                raise TypeError("radiance is real, and these values are complex")
+            values = found.astype(np.float64)
+        except (Exception, SystemExit) as error:
             last = traceback.extract_tb(error.__traceback__)[-1]
             where = f"{Path(last.filename).name}:{last.lineno}"
             raise LightError(f"{self.name}: the function raised {type(error).__name__} at {where}: {error}") from error
@@ -94,6 +98,9 @@ class FunctionLight:
                 "radiance must be finite"
             )
         return values
+
+    def integrand(self, directions: Array) -> Array:
+        return self.radiance(directions)
 
     def coefficients(self, n_bands: int) -> Array:
         sampling = self._sampling
@@ -160,7 +167,7 @@ def load_function(path: Path, function: str) -> FunctionLight:
     sys.path.insert(0, folder)  # as for a script: its neighbours can be imported
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise LightError(f"{path}: importing it raised {type(error).__name__}: {error}") from error
     finally:
         sys.path.remove(folder)

@@ -59,7 +59,17 @@ class IrradianceLight:
         return self.source.unit
 
     def accuracy(self) -> float:
-        return self.source.accuracy()
+        """That of the source, and for images and functions what its bands beyond MAP_BANDS could still hold."""
+        if isinstance(self.source, LobeLight):
+            return 0.0
+        kept = self.source.coefficients(MAP_BANDS) / self.unit
+        beyond = max(float(np.trace(self.source.products()) - (kept**2).sum()), 0.0)
+        total = float(np.trace(self.products()))
+        tail = float(irradiance_factors(MAP_BANDS + 2)[-2:].__abs__().max())
+        return max(self.source.accuracy(), tail * float(np.sqrt(beyond / total)) if total else 0.0)
+
+    def integrand(self, directions: Array) -> Array:
+        return self.radiance(directions)
 
     def coefficients(self, n_bands: int) -> Array:
         return self.source.coefficients(n_bands) * per_coefficient(irradiance_factors(n_bands))

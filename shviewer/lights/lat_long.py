@@ -30,6 +30,14 @@ class LatLongMap:
         height = len(self.texels)
         return ((height - 1) / np.pi, 0.0) if self.rows_on_poles else (height / np.pi, -0.5)
 
+    def nearest(self, directions: Array) -> Array:
+        """The texel (k, 3) in whose area each unit direction (k, 3) lies; for rows at texel centres."""
+        height, width = self.texels.shape[:2]
+        x, y, z = directions.T
+        row = (np.arctan2(np.hypot(x, y), z) * (height / np.pi)).astype(np.int64)
+        column = np.floor((0.5 - np.arctan2(y, x) / (2 * np.pi)) * width).astype(np.int64)
+        return np.asarray(self.texels[np.minimum(row, height - 1), column % width], dtype=np.float64)
+
     def sample(self, directions: Array) -> Array:
         """Bilinear radiance (k, 3) in unit directions (k, 3); continuous across the seam and the poles."""
         width = self.texels.shape[1]

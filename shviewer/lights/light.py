@@ -36,6 +36,9 @@ class Light(Protocol):
     def radiance(self, directions: Array) -> Array:
         """Unit directions (k, 3) -> radiance (k, 3), float64."""
 
+    def integrand(self, directions: Array) -> Array:
+        """What `coefficients` are integrals of: the radiance, or for an image its texels as areas, not interpolated."""
+
     def coefficients(self, n_bands: int) -> Array:
         """(n_bands**2, 3) by the best way this light knows."""
 
@@ -87,17 +90,23 @@ def find_light(text: str, *, sanitize: bool = False) -> Light:
     raise LightError(_unknown(text))
 
 
-def _exists(text: str) -> bool:
+def _what_it_is(text: str) -> str:
+    """What a path is that cannot be a light, and what to do; "" if there is nothing of that name."""
+    path = Path(text)
     try:
-        return Path(text).exists()
+        if not path.exists():
+            return ""
     except (OSError, ValueError):  # too long for a file name, or with a zero byte
-        return False
+        return ""
+    if path.is_dir():
+        return "a directory; name one file in it"
+    if path.suffix == ".py":
+        return f"a Python file; name a function in it, such as {path.name}:light"
+    return "a file must end in .toml, .hdr, .pic or .exr, and images of other kinds be converted"
 
 
 def _unknown(text: str) -> str:
     names = list(built_in_lights())
     near = difflib.get_close_matches(text, names, n=3, cutoff=0.5)
     offer = f"did you mean {' or '.join(near)}?" if near else f"there is: {', '.join(names)}"
-    if _exists(text):
-        offer = "a file must end in .toml, .hdr, .pic or .exr, a function is named file.py:function"
-    return f"unknown light {text!r}: {offer}"
+    return f"unknown light {text!r}: {_what_it_is(text) or offer}"

@@ -11,6 +11,9 @@ from shviewer.harmonics.basis import Array, normalise, safe_unit
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Profile, orient
 
+EDGE = 1e-9
+"""How far from an edge, relative to its angle, a landmark lies."""
+
 MAX_LOBES = 64
 """As many as the uniform block of shaders/lobes.glsl holds."""
 
@@ -34,6 +37,17 @@ def angle_between(first: Lobe, second: Lobe) -> float:
     return float(2 * np.arctan2(apart, along))
 
 
+def _edge(lobe: Lobe) -> Array:
+    if lobe.profile.half_angle >= np.pi:
+        return lobe.axis[None]
+    side = normalise(np.cross(lobe.axis, np.eye(3)[int(np.abs(lobe.axis).argmin())]))
+    up = np.cross(lobe.axis, side)
+    turn = np.pi / 4 * np.arange(8)[:, None]
+    ring = np.cos(turn) * side + np.sin(turn) * up
+    angles = lobe.profile.half_angle * np.array([1 - EDGE, 1 + EDGE])
+    return np.concatenate([lobe.axis[None], *(np.cos(angle) * lobe.axis + np.sin(angle) * ring for angle in angles)])
+
+
 @dataclass(frozen=True, eq=False)
 class LobeLight:
     """The sum of up to MAX_LOBES lobes. ValueError for none or more."""
@@ -54,6 +68,9 @@ class LobeLight:
             chord = directions - lobe.axis
             total += lobe.profile.value((chord * chord).sum(axis=1))[:, None] * lobe.radiance
         return total
+
+    def integrand(self, directions: Array) -> Array:
+        return self.radiance(directions)
 
     def coefficients(self, n_bands: int) -> Array:
         zonal = np.stack([lobe.profile.zonal(n_bands) for lobe in self.lobes])
@@ -81,7 +98,8 @@ class LobeLight:
         return total
 
     def landmarks(self) -> Array:
-        return np.stack([lobe.axis for lobe in self.lobes])
+        """The axes, and points just inside and outside the edge of every profile that has one."""
+        return np.concatenate([_edge(lobe) for lobe in self.lobes])
 
     def radiance_map(self) -> None:
         return None

@@ -106,6 +106,8 @@ class _Reader:
             np.radians(self.number(f"{where}: {key}", table.get(key)))
             for key in ("azimuth_degrees", "elevation_degrees")
         )
+        if abs(elevation) > np.pi / 2:
+            raise self.wrong(f"{where}: elevation_degrees", table["elevation_degrees"], "-90 to 90")
         return directions_from_angles(np.array(np.pi / 2 - elevation), np.array(azimuth))
 
     def radiance(self, key: str, value: Any) -> Array:

@@ -48,10 +48,9 @@ def black(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
 
 def figures_of(light: Light) -> list[float]:
     """What a picture of 5 bands says: relative L2 error, and the energy of each band."""
-    from shviewer.viewer.picture import prepare
-    from shviewer.viewer.state import ViewState
+    from shviewer.viewer.analysis import BEST, project, reconstruct
 
-    figures = prepare(ViewState(lights=(light,))).figures
+    figures = reconstruct(light, project(light, *BEST, 32), 5, (), "none", None)[1]
     return [figures.relative_l2, *figures.energy_share]
 
 

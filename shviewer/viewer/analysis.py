@@ -38,6 +38,9 @@ from shviewer.viewer.state import QUANTITIES, ViewState
 BEST = ("best", 0, 0)
 """Method, samples and seed of the best way, to which the last two do not matter."""
 
+MIN_ESTIMATE = 256
+"""Fewer samples than this do not even tell how noisy they are."""
+
 HALF_SEED = 2**31
 """Added to the seed for the second, independent set of samples."""
 
@@ -54,6 +57,11 @@ class Projection:
     @property
     def n_bands(self) -> int:
         return count_bands(self.coefficients)
+
+    @property
+    def unit(self) -> str:
+        """What its evaluations are."""
+        return "samples" if self.method == "jittered" else "points"
 
 
 @dataclass(frozen=True)
@@ -76,6 +84,8 @@ class Figures:
 
     channels: dict[str, ChannelFigures]
     """Of "all" channels together, "red", "green", "blue" and "luminance"."""
+    irradiance_relative_l2: float
+    """The error that the same coefficients have where they shade a white Lambertian surface."""
     floor: float
     """Relative L2 errors below this cannot be told from rounding, or from a quadrature's own error."""
     extremes: Extremes
@@ -124,10 +134,17 @@ def estimate_from_samples(state: ViewState) -> SampleEstimate:
     """
     light = load_light(state)
     halves = [jittered(max(state.samples // 2, 1), seed) for seed in (state.seed, state.seed + HALF_SEED)]
-    first, second = (project_samples(light.radiance, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
-    squares = np.concatenate([((light.radiance(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
+    first, second = (project_samples(light.integrand, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
+    squares = np.concatenate([((light.integrand(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
     deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
+    if len(squares) < MIN_ESTIMATE:
+        return SampleEstimate(None, 1, None)
     return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
+
+
+def forget_lights() -> None:
+    """Read files again when they are next asked for."""
+    _find.cache_clear()
 
 
 @lru_cache(maxsize=16)
@@ -146,12 +163,12 @@ def project(light: Light, method: str, samples: int, seed: int, n_bands: int) ->
     if method == "jittered":
         directions = jittered(samples, seed)
         evaluations = len(directions.weights)
-        coefficients = project_samples(light.radiance, directions, n_bands)
-        words = "jittered samples"
+        coefficients = project_samples(light.integrand, directions, n_bands)
+        words = "jittered"
     elif method == "gauss-legendre":
         rule = gauss_legendre(samples)
         evaluations = len(rule.theta) * rule.n_columns
-        coefficients = project_product(light.radiance, rule, n_bands)[0]
+        coefficients = project_product(light.integrand, rule, n_bands)[0]
         words = "Gauss-Legendre"
     else:
         coefficients = light.coefficients(n_bands)
@@ -185,7 +202,13 @@ def reconstruct(
     total = float(np.trace(light.products()))
     power = band_power(exact / light.unit).sum(axis=1)
     extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
+    irradiance = light if isinstance(light, IrradianceLight) else _irradiance(light)
+    cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
+    shaded = channel_figures(
+        irradiance.products(), cosine * exact[: n_bands**2] / light.unit, cosine * shown / light.unit, 1.0
+    )
     figures = Figures(
+        irradiance_relative_l2=shaded["all"].relative_l2,
         channels=channel_figures(
             light.products(), exact[: n_bands**2] / light.unit, shown / light.unit, extremes.peak / light.unit
         ),
@@ -214,7 +237,7 @@ def _window_factors(coefficients: Array, name: str, width: float | None) -> Arra
 
 def grid_rows(n_bands: int) -> int:
     """Four rows per band, and never so few that a built-in light is seen coarsely."""
-    return max(128, 4 * n_bands)
+    return max(128, 8 * (n_bands // 2))
 
 
 @lru_cache(maxsize=8)

@@ -21,8 +21,11 @@ from shviewer.viewer.state import describe_exposure, describe_muted, describe_wi
 
 INK, GREY, FAINT, RULE = (236, 236, 240, 255), (168, 168, 178, 255), (122, 122, 132, 255), (62, 62, 68, 255)
 ACCENT, ACCENT_MUTED = (100, 160, 255, 255), (100, 160, 255, 110)
+NEGATIVE = (35, 98, 152, 255)
+"""What shaders/display.glsl makes of a luminance about a tenth of white below zero."""
+
 Ink = tuple[int, int, int, int]
-UNUSED = (78, 78, 86, 255)
+UNUSED = (104, 104, 114, 255)
 WARNING = (255, 196, 92, 255)
 
 SLOT_COUNTS = (10, 16, 32, 64, 128)
@@ -130,17 +133,20 @@ class _Painter:
         projection = picture.projection
         method = projection.method
         if projection.evaluations is not None:
-            method = f"{_grouped(projection.evaluations)} {method}"
-        time = f"{_grouped_number(projection.milliseconds)} ms for {projection.n_bands} bands" if timing else ""
+            method = f"{method}, {_grouped(projection.evaluations)} {projection.unit}"
+        time = (
+            f"{projection.n_bands} bands projected in {_grouped_number(projection.milliseconds)} ms" if timing else ""
+        )
         far, below = at.width - at.margin, y + at.px(20)
-        if self.text("light", at.margin, y, picture.light.name, 15, GREY, "lm"):
+        names = [_shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
+        if any(self.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):
             self.text("description", at.margin, below, picture.light.description, 12, FAINT, "lm")
         else:
-            self.text("light", at.margin, below, picture.light.name, 15, GREY, "lm")
+            any(self.text("light", at.margin, below, name, 15, GREY, "lm") for name in names)
         if self.text("method", far, y, method, 13, FAINT, "rm"):
             self.text("time", far, below, time, 12, FAINT, "rm")
         else:
-            both = f"{method}, {time}" if time else method
+            both = f"{method}, {_grouped_number(projection.milliseconds)} ms" if time else method
             self.text("method", far, below, both, 12, FAINT, "rm") or self.text(
                 "method", far, below, method, 12, FAINT, "rm"
             )
@@ -161,9 +167,18 @@ class _Painter:
         x = at.margin
         for name, value, label in columns:
             lines = ((name, y + at.px(36), value, 24, INK), (f"{name}_label", y + at.px(66), label, 13, GREY))
-            self.texts(x, lines, "lm")
+            if self.texts(x, lines, "lm") and name == "negative_area":
+                self.swatch(self.boxes[name])
             x += at.px(150)
         self.band_bars(picture)
+
+    def swatch(self, value: Box) -> None:
+        """Beside a value, the colour that negative radiance has on the sphere."""
+        side = (value.bottom - value.top) * 0.6
+        box = Box(value.right + side, value.bottom - side, value.right + 2 * side, value.bottom)
+        if self.free(box._replace(left=box.left + self.at.px(6))):
+            self.draw.rectangle(box, fill=NEGATIVE)
+            self.boxes["swatch"] = box
 
     def band_bars(self, picture: Picture) -> None:
         """Energy of each band: filled as far as it is kept, hollow when muted, dim above n. A bar stays where it is."""
@@ -176,7 +191,7 @@ class _Painter:
         pitch = (last - first) / slots
         if pitch < 3 or last - first < at.px(160):
             return
-        base, tallest = at.hairline_y + at.px(74), at.px(44)
+        base, tallest = at.hairline_y + at.px(71), at.px(42)
         shares = picture.figures.energy_share[:slots]
         scale = tallest / max(max(shares, default=0.0), 1e-300)
         bar = max(1.0, min(pitch * 0.62, at.px(31)))
@@ -196,12 +211,12 @@ class _Painter:
             if not used:
                 self.draw.rectangle(edge, fill=RULE)
             else:
-                kept = base - (2 * factor - factor**2) * (base - top)  # what a window leaves of the energy
+                kept = base - factor * (base - top)
                 self.draw.rectangle(edge, outline=ACCENT, width=max(1, round(at.scale)))
                 if factor:
                     self.draw.rectangle((edge[0], min(kept, base), edge[2], base), fill=ACCENT)
             if numbers and used:
-                self.draw.text((middle, top - at.px(9)), f"{100 * share:.0f}", GREY, face, anchor="mm")
+                self.draw.text((middle, top - at.px(9)), _whole_percent(share), GREY, face, anchor="mm")
             if band % step == 0:
                 ink = UNUSED if not used else FAINT if not factor else GREY
                 self.draw.text((middle, base + at.px(13)), str(band), ink, face, anchor="mm")
@@ -214,20 +229,26 @@ class _Painter:
     def hint(self, picture: Picture) -> None:
         """A message, or else the most useful keys; on the right the exposure."""
         at, state = self.at, picture.state
-        y = at.hairline_y + at.px(102)
+        y = at.hairline_y + at.px(104)
         if state.message:
             face = self.face(13)
             text = state.message
             while text and face.getlength(text) > at.width - 2 * at.margin:
                 text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
             self.text("message", at.margin, y, text, 13, WARNING, "lm")
-            return
         stops = f"exposure {picture.exposure_stops:+.1f} stops ({describe_exposure(state)})"
         needs, far = picture.needs, at.width - at.margin
         radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
-        within = f"{100 * needs.tolerance:g} % needs {radiance} bands, irradiance {irradiance}"
+        bands = "band" if needs.radiance == 1 else "bands"
+        within = f"{100 * needs.tolerance:g} % needs {radiance} {bands}, irradiance {irradiance}"
         any(self.text("exposure", far, y, text, 12, FAINT, "rm") for text in (f"{within}     {stops}", within, stops))
-        self.text("hint", at.margin, y, HINT, 12, FAINT, "lm")
+        if not state.message:
+            self.text("hint", at.margin, y, HINT, 12, FAINT, "lm")
+
+
+def _shortened(name: str, length: int) -> str:
+    """At most `length` letters, with dots in the middle."""
+    return name if len(name) <= length else f"{name[: length // 2 - 1]}...{name[len(name) - length // 2 + 2 :]}"
 
 
 def _percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
@@ -245,6 +266,11 @@ def _percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
     while percent < 100 and decimals < 4 and f"{percent:.{decimals}f}".startswith("100"):
         decimals += 1
     return f"{percent:.{decimals}f} %"
+
+
+def _whole_percent(share: float) -> str:
+    """A share over its bar: a bar is as high as it is beside the highest, so a small one says that it is small."""
+    return f"{100 * share:.0f}" if share >= 0.005 or share == 0 else "<1"
 
 
 def _radiance(value: float, peak: float) -> str:

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from shviewer.errors import UsageError
+from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import Synthesis
 from shviewer.harmonics.quadrature import MAX_SAMPLES
@@ -30,6 +30,9 @@ from shviewer.viewer.analysis import (
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.state import MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
+
+DIMMEST, BRIGHTEST = 1e-30, 1e30
+"""The largest radiance of a light that can be drawn: beyond, sums and products would leave float32."""
 
 WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
@@ -68,6 +71,11 @@ def prepare(state: ViewState) -> Picture:
     light = load_light(state)
     projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
     projection = project(light, *sampling_of(state), projected)
+    peak = error_grid(light, grid_rows(1)).peak
+    if not (peak == 0 or DIMMEST <= peak <= BRIGHTEST):
+        raise LightError(
+            f"{light.name}: its largest radiance is {peak:.3g}; float32 shows {DIMMEST:g} to {BRIGHTEST:g}: scale the light"
+        )
     shape = state.n_bands, state.muted_shown, state.window, state.window_width
     coefficients, figures = reconstruct(light, projection, *shape)
     return Picture(

@@ -7,6 +7,7 @@ import json
 import math
 import os
 import tempfile
+import warnings
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -33,14 +34,17 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
     description: dict[str, Any] = {
         "version": __version__,
         "light": picture.light.name,
+        "light_argument": state.light if isinstance(state.light, str) else None,
         "light_notes": list(picture.light.notes),
         "bands": state.n_bands,
         "muted": list(state.muted_shown),
         "quantity": state.quantity,
         "window": state.window,
+        "window_width": state.window_width,
         "factors": list(figures.factors),
         "method": state.method,
         "method_words": projection.method,
+        "samples_asked": None if state.method == "best" else state.samples,
         "samples": projection.evaluations,
         "seed": state.seed if state.method == "jittered" else None,
         "sanitize": state.sanitize,
@@ -59,6 +63,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
             **{name: asdict(channel) for name, channel in figures.channels.items()},
             "relative_l2": figures.relative_l2,
             "relative_l2_floor": figures.floor,
+            "irradiance_relative_l2": figures.irradiance_relative_l2,
             "max_error": extremes.max_error,
             "max_error_direction_in_light": list(extremes.max_error_direction),
             "minimum": extremes.minimum,
@@ -70,7 +75,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
             "bands_needed": asdict(picture.needs),
         },
     }
-    return json.dumps(_finite(description), ensure_ascii=False, allow_nan=False)
+    return json.dumps(_finite(description), allow_nan=False)
 
 
 def _finite(value: Any) -> Any:
@@ -116,7 +121,7 @@ def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> Non
                 os.fsync(file.fileno())
             os.chmod(name, 0o666 & ~_umask())
             if exclusive:
-                os.link(name, path)
+                _place_exclusively(name, path, data)
             else:
                 os.replace(name, path)
         finally:
@@ -125,7 +130,18 @@ def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> Non
     except FileExistsError:
         raise
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; choose another place") from error
+        reason = "no such folder" if isinstance(error, FileNotFoundError) else error.strerror or error
+        raise OutputError(f"{path}: cannot be written: {reason}; choose another place") from error
+
+
+def _place_exclusively(name: str, path: Path, data: bytes) -> None:
+    try:
+        os.link(name, path)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        with path.open("xb") as file:
+            file.write(data)
 
 
 def write_numbered(stem: str, pixels: NDArray[np.uint8], text: str) -> Path:
@@ -145,10 +161,14 @@ def compare_with_reference(pixels: NDArray[np.uint8], reference: Path, differenc
     Then `difference` is written: the absolute difference, sixteen times as bright. UsageError if the reference is bad.
     """
     try:
-        with Image.open(reference) as image:
+        with warnings.catch_warnings(action="error"), Image.open(reference) as image:
             wanted = np.asarray(image.convert("RGB"))
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{reference}: not a readable reference image: {error}") from error
+    except FileNotFoundError as error:
+        raise UsageError(f"{reference}: no such reference; make it with the same command, REF.png as OUT") from error
+    except (OSError, ValueError, Warning, Image.DecompressionBombError) as error:
+        raise UsageError(
+            f"{reference}: not a readable picture; make it with the same command, REF.png as OUT"
+        ) from error
     if wanted.shape != pixels.shape:
         return (
             f"{reference} is {wanted.shape[1]} x {wanted.shape[0]}, the picture {pixels.shape[1]} x {pixels.shape[0]}"

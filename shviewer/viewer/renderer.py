@@ -143,14 +143,15 @@ class Renderer:
         held = self.textures.get(side)
         if held is not None and held[0] is wanted:
             return
+        limit = self.context.info["GL_MAX_TEXTURE_SIZE"]
+        if wanted is not None and max(wanted.texels.shape) > limit:
+            height, width = wanted.texels.shape[:2]
+            raise GraphicsError(f"a map of {width} x {height} texels: this OpenGL takes at most {limit} a side")
         if held is not None:
             held[1].release()
             del self.textures[side]
         if wanted is not None:
             height, width = wanted.texels.shape[:2]
-            if max(height, width) > self.context.info["GL_MAX_TEXTURE_SIZE"]:
-                limit = self.context.info["GL_MAX_TEXTURE_SIZE"]
-                raise GraphicsError(f"a map of {width} x {height} texels: this OpenGL takes at most {limit} a side")
             texels = np.ones((height, width, 4), dtype=np.float32)
             texels[..., :3] = wanted.texels
             self.textures[side] = (wanted, self.context.texture((width, height), 4, texels, dtype="f4"))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from shviewer.lights.light import Light
 from shviewer.viewer.camera import IDENTITY, Quaternion, turned_by_drag
-from shviewer.viewer.layout import MAX_SHOWN_BANDS
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 
 METHODS = ("best", "jittered", "gauss-legendre")
 QUANTITIES = ("radiance", "irradiance")
@@ -78,15 +78,19 @@ def with_bands(state: ViewState, n_bands: int) -> ViewState:
 
 
 def toggle_band(state: ViewState, band: int) -> ViewState:
-    """Mute a band or take it back; one that is not in use changes nothing."""
-    return replace(state, muted=state.muted ^ {band}) if band < state.n_bands else state
+    """Mute a band or take it back; one that is not in use only says so."""
+    return replace(state, muted=state.muted ^ {band}) if band < state.n_bands else not_in_use(state, band)
+
+
+def not_in_use(state: ViewState, band: int) -> ViewState:
+    return replace(state, message=f"band {band} is above the {state.n_bands} in use: Up adds bands")
 
 
 def solo_band(state: ViewState, band: int) -> ViewState:
     """Only this band; once more: all of them."""
     others = frozenset(range(MAX_SHOWN_BANDS)) - {band}
     if band >= state.n_bands:
-        return state
+        return not_in_use(state, band)
     return replace(state, muted=frozenset() if state.muted == others else others)
 
 
@@ -109,7 +113,10 @@ def next_light(step: int) -> Action:
 
 
 def next_window(state: ViewState) -> ViewState:
-    return replace(state, window=WINDOWS[(WINDOWS.index(state.window) + 1) % len(WINDOWS)])
+    """Through all windows; deringing, which takes up to MAX_DIRECT_BANDS bands, is left out above them."""
+    names = WINDOWS if state.n_bands <= MAX_DIRECT_BANDS else WINDOWS[:-1]
+    at = names.index(state.window) if state.window in names else len(names) - 1
+    return replace(state, window=names[(at + 1) % len(names)])
 
 
 def next_quantity(state: ViewState) -> ViewState:
@@ -122,6 +129,8 @@ def next_method(state: ViewState) -> ViewState:
 
 def scale_samples(factor: float) -> Action:
     def action(state: ViewState) -> ViewState:
+        if state.method == "best":
+            return replace(state, message="no samples are drawn in this light's best way: M changes the method")
         return replace(
             state, samples=int(min(max(state.samples * factor, MIN_SAMPLES), max(state.samples, MAX_KEY_SAMPLES)))
         )

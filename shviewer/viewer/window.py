@@ -18,9 +18,10 @@ import glfw
 import moderngl
 
 from shviewer.errors import GraphicsError, ShviewerError
-from shviewer.viewer.analysis import needs
+from shviewer.viewer.analysis import forget_lights, needs
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.keys import press
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
@@ -31,6 +32,9 @@ from shviewer.viewer.state import ViewState, open_light, orbit, rotate_light, to
 IDLE_SECONDS = 0.25
 SMALLEST_WINDOW = (400, 300)
 """Screen coordinates in which the help can still be read."""
+
+LONG_PROJECTION = 1e8
+"""Basis values, about half a second of them."""
 
 CLICK_PIXELS = 4.0
 """A press that moves less than this before its release is a click."""
@@ -143,10 +147,15 @@ class Window:
         if composition is None:
             return
         start = perf_counter()
+        self._announce(composition)
+        last = self.picture
         self._prepare()
-        self._draw_overlay(composition)
-        assert self.overlay is not None
-        self.renderer.show(self.picture, self.overlay.image)
+        try:
+            self._show(composition)
+        except ShviewerError as error:  # a map that this OpenGL cannot hold
+            self.picture = last
+            self._keep(error)
+            self._show(composition)
         self.renderer.draw(self.renderer.context.screen, composition)
         glfw.swap_buffers(self.handle)
         self.frame_count += 1
@@ -167,15 +176,43 @@ class Window:
         scale = float(glfw.get_window_content_scale(self.handle)[1])
         return compose(width, height, self.state.zoom, scale if scale > 0 else 1.0)
 
+    def _show(self, composition: Composition) -> None:
+        self._draw_overlay(composition)
+        assert self.overlay is not None
+        self.renderer.show(self.picture, self.overlay.image)
+
+    def _keep(self, error: ShviewerError) -> None:
+        """Stay with the picture there is, and say why."""
+        wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots", "fits")}
+        self.state = replace(self.picture.state, message=str(error), **wishes)
+        self.picture = replace(self.picture, state=self.state)
+
+    def _announce(self, composition: Composition) -> None:
+        """Before a projection that takes long, say so over the last picture."""
+        state = self.state
+        new = (state.light, state.method, state.samples) != (
+            self.picture.state.light,
+            self.picture.state.method,
+            self.picture.state.samples,
+        )
+        bands = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
+        if state.method != "jittered" or not new or state.samples * bands**2 < LONG_PROJECTION:
+            return
+        message = f"projecting {state.samples} samples to {bands} bands ..."
+        waiting = replace(self.picture, state=replace(self.picture.state, message=message))
+        self.renderer.show(self.picture, draw_overlay(waiting, composition, timing=True).image)
+        self.renderer.draw(self.renderer.context.screen, composition)
+        glfw.swap_buffers(self.handle)
+        self.overlay_key = None
+
     def _prepare(self) -> None:
         if self.picture.state == self.state:
             return
         try:
             picture = prepare(self.state)
         except ShviewerError as error:
-            wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots", "fits")}
-            self.state = replace(self.picture.state, message=str(error), **wishes)
-            picture = prepare(self.state)
+            self._keep(error)
+            return
         if picture.light is not self.picture.light:
             glfw.set_window_title(self.handle, f"shviewer - {picture.light.name}")
             if picture.light.notes and not self.state.message:
@@ -213,12 +250,14 @@ class Window:
                 print(f"saved {path}", file=sys.stderr, flush=True)
 
     def _fit(self) -> None:
-        """As many bands as the tolerance needs; where none are enough, say so and change nothing."""
+        """As many bands as the tolerance needs; where none are enough, the best there is, and say so."""
+        self._prepare()
         found = needs(self.state)
         wanted = found.irradiance if self.state.quantity == "irradiance" else found.radiance
         if wanted is None:
             best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"
-            self.state = replace(self.state, message=f"no band count is within {100 * found.tolerance:g} %: {best}")
+            message = f"no band count is within {100 * found.tolerance:g} %: {best}"
+            self.state = replace(with_bands(self.state, found.best_bands), message=message)
         else:
             self.state = with_bands(self.state, wanted)
 
@@ -247,7 +286,8 @@ class Window:
             self.pressed_at = self.dragged_to = self.mouse
             self.dragged = False
         elif self.pressed_at is not None:
-            bars = self.overlay.bars if self.overlay is not None and not self.dragged else {}
+            clickable = self.overlay is not None and not self.dragged and not self.state.help_visible
+            bars = self.overlay.bars if self.overlay is not None and clickable else {}
             for band, box in bars.items():
                 if box.contains(*self.pressed_at):
                     self.change(toggle_band(replace(self.state, message=""), band))
@@ -275,6 +315,7 @@ class Window:
 
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
+            forget_lights()  # it may be a file that was edited since it was last opened
             self.change(open_light(self.state, paths[0]))
 
 
@@ -325,4 +366,4 @@ def _last_error() -> str:
     code, text = glfw.get_error()
     if not text:
         return f"GLFW error {code}" if code else "GLFW gave no reason"
-    return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
+    return (text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)).strip()

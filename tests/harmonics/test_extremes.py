@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from shviewer.harmonics.basis import evaluate_basis, index
 from shviewer.harmonics.extremes import ErrorGrid, climb, smallest_value, valleys
+from shviewer.harmonics.projection import Synthesis
 from shviewer.lights.light import find_light
 
 
@@ -69,3 +70,22 @@ def test_a_sun_between_the_points_of_the_grid_is_seen() -> None:
     grid = ErrorGrid(light.radiance, light.landmarks(), 32)
     assert_allclose(grid.peak, 1.6e9, rtol=1e-12)
     assert grid.compare(light.coefficients(2)).max_error > 1.59e9
+
+
+@pytest.mark.parametrize(("n_bands", "wanted"), [(16, 0.0652), (32, 0.0314)])
+def test_the_largest_error_of_green_is_that_at_the_kinks(n_bands: int, wanted: float) -> None:
+    """Against a grid of 1024 rows: the error peaks on the edge of a lobe, on one of many hills."""
+    light = find_light("green")
+    coefficients = light.coefficients(n_bands)
+    found = ErrorGrid(light.radiance, light.landmarks(), 128).compare(coefficients)
+    fine = ErrorGrid(light.radiance, light.landmarks(), 1024)
+    values = Synthesis(coefficients).on_rows(fine.theta, len(fine.phi))
+    assert found.max_error >= 0.97 * np.abs(values - fine.original).max()
+    assert_allclose(found.max_error, wanted, rtol=0.02)
+
+
+def test_a_step_is_missed_by_half_of_it() -> None:
+    light = find_light("hemisphere")
+    assert_allclose(
+        ErrorGrid(light.radiance, light.landmarks(), 64).compare(light.coefficients(9)).max_error, 0.5, atol=1e-6
+    )

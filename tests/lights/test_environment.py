@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
 from shviewer.harmonics.metrics import squared_error
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection import project_image, project_samples
+from shviewer.harmonics.quadrature import jittered
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 
@@ -98,3 +99,12 @@ def test_a_missing_file_is_one_line(tmp_path):
         EnvironmentLight.read(tmp_path / "none.hdr")
     assert str(caught.value).count("\n") == 0
     assert "none.hdr" in str(caught.value)
+
+
+def test_sampling_an_image_converges_to_its_texels_and_not_to_their_interpolation():
+    light = EnvironmentLight(LatLongMap(np.random.default_rng(7).random((4, 8, 3)).astype(np.float32)))
+    exact = light.coefficients(6)
+    sampled = project_samples(light.integrand, jittered(250_000, 0), 6)
+    assert np.abs(sampled - exact).max() < 2e-3 * exact.max()  # texel edges cut one cell in fifty
+    smooth = project_samples(light.radiance, jittered(250_000, 0), 6)
+    assert np.abs(smooth - exact).max() > 1e-2 * exact.max()

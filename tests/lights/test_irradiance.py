@@ -91,3 +91,12 @@ def test_relative_irradiance_errors_of_green_are_the_published_ones() -> None:
     coefficients = light.coefficients(64)
     errors = errors_by_band_count(light.products(), coefficients, coefficients)
     assert_allclose(errors[[1, 2, 5, 7]], [0.177, 0.034, 3e-3, 1e-3], rtol=0.2)  # numerics.md 5 gives one or two digits
+
+
+def test_the_floor_of_an_images_irradiance_covers_the_bands_that_were_not_looked_at() -> None:
+    texels = np.zeros((64, 128, 3), np.float32)
+    texels[20, 30] = 1
+    light = IrradianceLight(EnvironmentLight(LatLongMap(texels)))
+    beyond = light.coefficients(200)[128**2 :]
+    missed = np.sqrt((beyond**2).sum() / np.trace(light.products()))
+    assert 0 < missed < light.accuracy() < 1e-2

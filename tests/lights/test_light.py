@@ -113,15 +113,21 @@ def test_missing_and_damaged_files_are_one_line(tmp_path):
     assert "no such file" in refusal(f"{tmp_path / 'none.py'}:dusk")
 
 
-@pytest.mark.parametrize("name", ["picture.png", "light.py", "folder"])
-def test_a_file_of_another_kind_is_told_the_kinds(tmp_path, name):
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("picture.png", "a file must end in .toml, .hdr, .pic or .exr, and images of other kinds be converted"),
+        ("light.py", "a Python file; name a function in it, such as light.py:light"),
+        ("folder", "a directory; name one file in it"),
+    ],
+)
+def test_a_file_of_another_kind_is_told_the_kinds(tmp_path, name, said):
     path = tmp_path / name
     if name == "folder":
         path.mkdir()
     else:
         path.write_text("")
-    kinds = "a file must end in .toml, .hdr, .pic or .exr, a function is named file.py:function"
-    assert refusal(str(path)) == f"unknown light {str(path)!r}: {kinds}"
+    assert refusal(str(path)) == f"unknown light {str(path)!r}: {said}"
 
 
 @pytest.mark.parametrize("text", ["a" * 300, "a" * 300 + ".py:dusk"], ids=["name", "function"])

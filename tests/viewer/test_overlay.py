@@ -92,7 +92,12 @@ def test_at_full_size_everything_is_there(size: tuple[int, int]) -> None:
     boxes = draw_overlay(PICTURES["green"], compose(*size), timing=True).boxes
     figures = {"relative_l2", "max_error", "minimum", "negative_area"}
     captions = {"original", "reconstruction", "light", "description", "method", "time"}
-    assert set(boxes) == captions | figures | {f"{name}_label" for name in figures} | {"bars", "exposure", "hint"}
+    assert set(boxes) == captions | figures | {f"{name}_label" for name in figures} | {
+        "bars",
+        "swatch",
+        "exposure",
+        "hint",
+    }
 
 
 def test_captions_stand_over_the_middles_of_their_spheres_and_in_the_corners() -> None:

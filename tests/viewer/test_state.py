@@ -107,7 +107,9 @@ def test_a_digit_mutes_its_band_and_again_brings_it_back(digit: int) -> None:
     once = press(START, str(digit))
     assert once.muted == {digit}
     assert press(once, str(digit)) == START
-    assert press(START, str(digit + 5)) == START  # bands that are not in use
+    unused = press(START, str(digit + 5))
+    assert replace(unused, message="") == START
+    assert f"band {digit + 5}" in unused.message
 
 
 def test_solo_leaves_one_band_and_twice_brings_back_all() -> None:
@@ -116,7 +118,7 @@ def test_solo_leaves_one_band_and_twice_brings_back_all() -> None:
     assert press(solo, "Up").muted_shown == (0, 1, 3, 4, 5)
     assert press(solo, "Shift+2").muted == frozenset()
     assert press(solo, "Shift+3").muted_shown == (0, 1, 2, 4)
-    assert press(START, "Shift+7") == START
+    assert replace(press(START, "Shift+7"), message="") == START
     assert press(solo, "A").muted == frozenset()
 
 
@@ -140,11 +142,14 @@ def test_lights_and_methods_go_round() -> None:
 
 
 def test_samples_go_by_four_and_stop_at_16_and_a_million() -> None:
-    assert press(START, "S").samples == 40_000
-    assert press(START, "Shift+S").samples == 2_500
-    assert pressed(START, *["S"] * 9).samples == 1_000_000
-    assert pressed(START, *["Shift+S"] * 9).samples == 16
-    many = replace(START, samples=5_000_000)  # asked for on the command line
+    sampled = replace(START, method="jittered")
+    assert press(sampled, "S").samples == 40_000
+    assert press(sampled, "Shift+S").samples == 2_500
+    assert pressed(sampled, *["S"] * 9).samples == 1_000_000
+    assert pressed(sampled, *["Shift+S"] * 9).samples == 16
+    assert press(START, "S").samples == START.samples
+    assert "M changes the method" in press(START, "S").message
+    many = replace(sampled, samples=5_000_000)  # asked for on the command line
     assert press(many, "S").samples == 5_000_000
 
 
@@ -269,3 +274,12 @@ def test_opening_a_light_adds_it_once_and_shows_it() -> None:
 )
 def test_muted_bands_are_described_in_runs(muted: tuple[int, ...], n_bands: int, words: str) -> None:
     assert describe_muted(replace(START, muted=frozenset(muted), n_bands=n_bands)) == words
+
+
+def test_the_window_key_leaves_deringing_out_where_it_cannot_be_had() -> None:
+    few, many = replace(START, n_bands=32), replace(START, n_bands=33)
+    assert [pressed(few, *["W"] * count).window for count in range(6)] == [
+        "none", "hann", "lanczos", "gauss", "dering", "none",
+    ]  # fmt: skip
+    assert [pressed(many, *["W"] * count).window for count in range(5)] == ["none", "hann", "lanczos", "gauss", "none"]
+    assert press(replace(many, window="dering"), "W").window == "none"
