@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, count_bands, evaluate_basis, safe_unit
+from shviewer.harmonics.basis import Array, count_bands, safe_unit
 from shviewer.harmonics.projection import Synthesis
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 
@@ -28,10 +28,10 @@ PARABOLOID = np.linalg.pinv(
 ON_RIM = np.append(np.abs(PATCH).max(axis=1) == 2, True)
 """Of the points of a patch, the vertex of the last one behind them, those that ask for another one as wide."""
 
-DISPLAY_ROUNDS = 4
-"""Halvings of a patch for a figure that is shown: to a sixteenth of the grid's cell."""
+DISPLAY_ROUNDS = 3
+"""Patches for a figure that is shown: to an eighth of the grid's cell, and to the vertices of paraboloids."""
 
-BLOCKS = 12
+BLOCKS = 6
 SEARCH_ROUNDS = 22
 
 Triple = tuple[float, float, float]
@@ -69,8 +69,8 @@ class ErrorGrid:
         grid = radiance(directions.reshape(-1, 3)).reshape(n_rows, 2 * n_rows, 3)
         self.original = np.ascontiguousarray(grid.transpose(0, 2, 1))
         self.landmarks = landmarks
-        there = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
-        self.peak = float(max(np.abs(self.original).max(), np.abs(there).max(initial=0)))
+        self.landmark_radiance = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
+        self.peak = float(max(np.abs(self.original).max(), np.abs(self.landmark_radiance).max(initial=0)))
         edges = np.cos(np.pi * np.arange(n_rows + 1) / n_rows)
         self.row_share = (edges[:-1] - edges[1:]) / (2 * 2 * n_rows)
         """Solid angle of one cell of a row over 4 pi; exact."""
@@ -79,13 +79,13 @@ class ErrorGrid:
         """The extremes of the reconstruction with coefficients `shown`, (n**2, 3)."""
         synthesis = Synthesis(shown)
         values = synthesis.on_rows(self.theta, len(self.phi))
-        error, error_direction = self._largest_error(values, synthesis, shown)
+        error, error_direction = self._largest_error(values, synthesis)
         row, _, column = np.unravel_index(int(values.argmin()), values.shape)
         start = self._direction(int(row), int(column))
         lowest, place = climb(lambda d: -at_directions(synthesis, d).min(axis=1), start, self._step, DISPLAY_ROUNDS)
         luminance = sum(weight * values[:, channel] for channel, weight in enumerate(LUMINANCE))
         area = float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share)
-        minimum, energy = -float(lowest[0]), self._negative_energy(values)
+        minimum, energy = -float(lowest[0]), self._negative_energy(values, shown)
         return Extremes(error, error_direction, minimum, _triple(place[0]), area, energy, self.peak)
 
     @property
@@ -95,7 +95,7 @@ class ErrorGrid:
     def _direction(self, row: int, column: int) -> Array:
         return directions_from_angles(self.theta[[row]], self.phi[[column]])
 
-    def _largest_error(self, values: Array, synthesis: Synthesis, shown: Array) -> tuple[float, Triple]:
+    def _largest_error(self, values: Array, synthesis: Synthesis) -> tuple[float, Triple]:
         difference = values - self.original
         rows, columns = _highest_in_blocks(np.abs(difference, out=difference).max(axis=1))
         errors, places = climb(
@@ -106,19 +106,18 @@ class ErrorGrid:
         )
         best = float(errors.max()), _triple(places[int(errors.argmax())])
         if len(self.landmarks):
-            reconstruction = evaluate_basis(self.landmarks, synthesis.n_bands) @ shown
-            there = np.abs(reconstruction - self.radiance(self.landmarks)).max(axis=1)
+            there = np.abs(at_directions(synthesis, self.landmarks) - self.landmark_radiance).max(axis=1)
             best = max(best, (float(there.max()), _triple(self.landmarks[int(there.argmax())])))
         return best
 
-    def _negative_energy(self, values: Array) -> float:
-        scale = float(np.abs(values).max())
-        if scale == 0 or values.min() >= 0:
+    def _negative_energy(self, values: Array, shown: Array) -> float:
+        """The negative part is measured on the grid, the whole is the sum of squared coefficients (Parseval)."""
+        if values.min() >= 0:
             return 0.0
-        squares = np.square(values / scale)
-        total = float(squares.sum(axis=(1, 2)) @ self.row_share)
-        squares[values >= 0] = 0
-        return float(squares.sum(axis=(1, 2)) @ self.row_share) / total
+        unit = safe_unit(float(np.abs(shown).max()))
+        negative = np.minimum(values, 0).reshape(len(self.theta), -1) / unit
+        squares = np.einsum("rx,rx->r", negative, negative) @ self.row_share
+        return min(1.0, 4 * np.pi * float(squares) / float(((shown / unit) ** 2).sum()))
 
 
 def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

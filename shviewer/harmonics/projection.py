@@ -125,7 +125,7 @@ class Synthesis:
         """At scattered angles (k,), radians: (k, 3)."""
         angle = phi[:, None] * np.arange(self.n_bands)
         azimuth = np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
-        return np.asarray(self._along_theta(theta).reshape(len(theta), 3, -1) @ azimuth[..., None])[..., 0]
+        return np.asarray(np.einsum("kxm,km->kx", self._along_theta(theta).reshape(len(theta), 3, -1), azimuth))
 
     def _along_theta(self, theta: Array) -> Array:
         """What stands before cos(m phi) and sin(m phi) at each theta (rows,): (rows, 3, {cos, sin}, n_bands)."""

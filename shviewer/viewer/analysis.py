@@ -25,8 +25,10 @@ from shviewer.harmonics.metrics import (
     band_weights,
     channel_figures,
     errors_by_band_count,
+    relative,
     smallest_band_count,
     split_half_estimate,
+    squared_error,
 )
 from shviewer.harmonics.projection import project_product, project_samples
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
@@ -204,11 +206,11 @@ def reconstruct(
     extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
     irradiance = light if isinstance(light, IrradianceLight) else _irradiance(light)
     cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
-    shaded = channel_figures(
-        irradiance.products(), cosine * exact[: n_bands**2] / light.unit, cosine * shown / light.unit, 1.0
+    shaded = squared_error(
+        irradiance.products().diagonal(), cosine * exact[: n_bands**2] / light.unit, cosine * shown / light.unit
     )
     figures = Figures(
-        irradiance_relative_l2=shaded["all"].relative_l2,
+        irradiance_relative_l2=relative(sum(shaded), irradiance.products().diagonal()),
         channels=channel_figures(
             light.products(), exact[: n_bands**2] / light.unit, shown / light.unit, extremes.peak / light.unit
         ),
@@ -236,8 +238,8 @@ def _window_factors(coefficients: Array, name: str, width: float | None) -> Arra
 
 
 def grid_rows(n_bands: int) -> int:
-    """Four rows per band, and never so few that a built-in light is seen coarsely."""
-    return max(128, 8 * (n_bands // 2))
+    """At least four rows per band, in few steps, so that a light is seldom looked at anew."""
+    return next(rows for bands, rows in ((16, 96), (32, 128), (64, 256), (MAX_SHOWN_BANDS, 512)) if n_bands <= bands)
 
 
 @lru_cache(maxsize=8)

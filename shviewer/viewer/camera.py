@@ -53,9 +53,12 @@ def world_from_view(azimuth_degrees: float, elevation_degrees: float) -> Array:
     return axes
 
 
+@lru_cache(maxsize=64)
 def light_from_world(light_rotation: Quaternion) -> Array:
     """What turns a world direction into the frame in which the light was defined: the inverse of its rotation."""
-    return matrix(light_rotation).T
+    turn = matrix(light_rotation).T
+    turn.flags.writeable = False
+    return turn
 
 
 def turned_by_drag(rotation: Quaternion, camera: tuple[float, float], right: float, up: float) -> Quaternion:

@@ -62,7 +62,8 @@ def test_half_of_a_dipole_is_negative_and_so_is_half_its_energy() -> None:
     dipole[index(1, 0)] = 1
     light = find_light("constant")
     extremes = ErrorGrid(light.radiance, light.landmarks(), 64).compare(grey(dipole))
-    assert_allclose([extremes.negative_area, extremes.negative_energy], [0.5, 0.5], rtol=0, atol=1e-12)
+    assert_allclose(extremes.negative_area, 0.5, rtol=0, atol=1e-12)
+    assert_allclose(extremes.negative_energy, 0.5, rtol=0, atol=2e-4)  # the midpoint rule of 64 rows
 
 
 def test_a_sun_between_the_points_of_the_grid_is_seen() -> None:
