@@ -52,6 +52,7 @@ def _view(options: argparse.Namespace) -> int:
     from shviewer.viewer import window
     from shviewer.viewer.analysis import load_light
     from shviewer.viewer.composition import compose
+    from shviewer.viewer.glfw_window import NoDisplayError
     from shviewer.viewer.picture import prepare
     from shviewer.viewer.screenshot import save_picture
 
@@ -59,7 +60,7 @@ def _view(options: argparse.Namespace) -> int:
     _print_notes(load_light(state))
     try:
         window.run(state, tuple(options.size), verbose=options.verbose)
-    except window.NoDisplayError as error:
+    except NoDisplayError as error:
         out = Path(f"shviewer-{window.file_stem(load_light(state).name)}.png")
         save_picture(prepare(state), compose(options.size[0], options.size[1], state.zoom), out)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)

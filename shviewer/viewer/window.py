@@ -1,4 +1,4 @@
-"""The window: what GLFW reports becomes a new state, and a changed state becomes a frame. The only importer of glfw.
+"""The window: what GLFW reports becomes a new state, and a changed state becomes a frame.
 
 Nothing is drawn and no time is spent while nothing happens. GLFW is asked to return four times a second all the same, so
 that Ctrl-C in the terminal is heard at once.
@@ -7,8 +7,6 @@ that Ctrl-C in the terminal is heard at once.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -17,60 +15,25 @@ from typing import Any
 import glfw
 import moderngl
 
-from shviewer.errors import GraphicsError, ShviewerError
+from shviewer.errors import ShviewerError
 from shviewer.viewer.analysis import forget_lights, needs
 from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.glfw_window import key_name, open_window
 from shviewer.viewer.keys import press
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
-from shviewer.viewer.renderer import GL_VERSIONS, Renderer
+from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState, open_light, orbit, rotate_light, toggle_band, with_bands, zoom
 
 IDLE_SECONDS = 0.25
-SMALLEST_WINDOW = (400, 300)
-"""Screen coordinates in which the help can still be read."""
-
 LONG_PROJECTION = 1e8
 """Basis values, about half a second of them."""
 
 CLICK_PIXELS = 4.0
 """A press that moves less than this before its release is a click."""
-
-SPECIAL_KEYS = {
-    glfw.KEY_UP: "Up",
-    glfw.KEY_DOWN: "Down",
-    glfw.KEY_LEFT: "Left",
-    glfw.KEY_RIGHT: "Right",
-    glfw.KEY_PAGE_UP: "PageUp",
-    glfw.KEY_PAGE_DOWN: "PageDown",
-    glfw.KEY_HOME: "Home",
-    glfw.KEY_END: "End",
-    glfw.KEY_ENTER: "Enter",
-    glfw.KEY_KP_ENTER: "Enter",
-    glfw.KEY_ESCAPE: "Esc",
-    glfw.KEY_F11: "F11",
-    **{getattr(glfw, f"KEY_{digit}"): str(digit) for digit in range(10)},
-    **{getattr(glfw, f"KEY_KP_{digit}"): str(digit) for digit in range(10)},
-}
-"""Keys known by their place; digits, too, because on some layouts they are typed with Shift."""
-
-
-class NoDisplayError(GraphicsError):
-    """There is nothing to open a window on."""
-
-
-def key_name(code: int, scancode: int, modifiers: int) -> str:
-    """The name under which state.py binds a key: letters by what they type, so that the keyboard's layout is respected."""
-    name = SPECIAL_KEYS.get(code)
-    if name is None:
-        typed = glfw.get_key_name(code, scancode)
-        name = typed.upper() if typed and len(typed) == 1 else ""
-    shift = "Shift+" if modifiers & glfw.MOD_SHIFT else ""
-    control = "Ctrl+" if modifiers & (glfw.MOD_CONTROL | glfw.MOD_SUPER) else ""
-    return f"{control}{shift}{name}"
 
 
 def run(state: ViewState, size: tuple[int, int], *, verbose: bool = False) -> None:
@@ -78,7 +41,7 @@ def run(state: ViewState, size: tuple[int, int], *, verbose: bool = False) -> No
 
     NoDisplayError without a display, GraphicsError without OpenGL 3.3. verbose: one line on stderr per frame.
     """
-    with _glfw_window(size) as handle:
+    with open_window(size) as handle:
         window = Window(handle, state, verbose)
         try:
             window.loop()
@@ -322,48 +285,3 @@ class Window:
 def file_stem(name: str) -> str:
     """A light's name as part of a file name."""
     return "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in Path(name).name) or "light"
-
-
-@contextmanager
-def _glfw_window(size: tuple[int, int]) -> Iterator[Any]:
-    """A window with a current context of the newest version there is, from 4.5 down to 3.3."""
-    glfw.ERROR_REPORTING = "ignore"  # asked for below; a warning would be a second line for one mistake
-    if not glfw.init():
-        raise NoDisplayError(f"no display to open a window on ({_last_error()})")
-    try:
-        handle = None
-        for version in GL_VERSIONS:
-            handle = _create_window(size, version)
-            if handle:
-                break
-        else:
-            raise GraphicsError(
-                f"no OpenGL 3.3 for a window ({_last_error()}): update the graphics driver, or use shviewer screenshot"
-            )
-        glfw.make_context_current(handle)
-        glfw.swap_interval(1)
-        yield handle
-    finally:
-        glfw.terminate()
-
-
-def _create_window(size: tuple[int, int], version: int) -> Any:
-    glfw.default_window_hints()
-    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version // 100)
-    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version % 100 // 10)
-    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
-    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
-    glfw.window_hint(glfw.DEPTH_BITS, 0)
-    glfw.window_hint(glfw.STENCIL_BITS, 0)
-    glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
-    handle = glfw.create_window(*size, "shviewer", None, None)
-    if handle:
-        glfw.set_window_size_limits(handle, *SMALLEST_WINDOW, glfw.DONT_CARE, glfw.DONT_CARE)
-    return handle
-
-
-def _last_error() -> str:
-    code, text = glfw.get_error()
-    if not text:
-        return f"GLFW error {code}" if code else "GLFW gave no reason"
-    return (text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)).strip()

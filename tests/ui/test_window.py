@@ -186,7 +186,7 @@ DROP_SCRIPT = """
 import sys
 from shviewer.viewer import window
 from shviewer.viewer.state import ViewState
-with window._glfw_window((640, 320)) as handle:
+with window.open_window((640, 320)) as handle:
     shown = window.Window(handle, ViewState(), False)
     for path in sys.argv[1:]:
         shown._on_drop(handle, [path])
