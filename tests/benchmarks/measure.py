@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 
 os.environ.pop("OPENBLAS_CORETYPE", None)  # may be set to slow numpy down; read when numpy is first imported
 os.environ.pop("OPENBLAS_L2_SIZE", None)
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # an installed program is compiled once, not at every start
 
 
 def cpu_milliseconds(work: Callable[[], object]) -> float:
