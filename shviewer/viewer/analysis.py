@@ -61,8 +61,8 @@ class Projection:
         return count_bands(self.coefficients)
 
     @property
-    def unit(self) -> str:
-        """What its evaluations are."""
+    def evaluation_noun(self) -> str:
+        """What its evaluations are called."""
         return "samples" if self.method == "jittered" else "points"
 
 

@@ -133,7 +133,7 @@ class _Painter:
         projection = picture.projection
         method = projection.method
         if projection.evaluations is not None:
-            method = f"{method}, {_grouped(projection.evaluations)} {projection.unit}"
+            method = f"{method}, {_grouped(projection.evaluations)} {projection.evaluation_noun}"
         time = (
             f"{projection.n_bands} bands projected in {_grouped_number(projection.milliseconds)} ms" if timing else ""
         )
