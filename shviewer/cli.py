@@ -126,6 +126,7 @@ class _Progress:
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
     from shviewer.lights.light import built_in_lights
+    from shviewer.lights.radiance_files import Reading
     from shviewer.viewer.camera import IDENTITY, towards
     from shviewer.viewer.picture import check
     from shviewer.viewer.state import ViewState, open_light
@@ -138,7 +139,7 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
     state = ViewState(
         lights=tuple(built_in_lights()) if all_lights else (options.light,),
-        sanitize=options.sanitize,
+        reading=Reading(sanitize=options.sanitize),
         n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
         muted=options.mute,
         quantity=options.quantity,

@@ -12,7 +12,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import channel_products, project_image
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.radiance_files import read_radiance_image
+from shviewer.lights.radiance_files import DEFAULT_READING, Reading, read_radiance_image
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +27,9 @@ class EnvironmentLight:
     """Squares of float32 texels are far inside float64."""
 
     @classmethod
-    def read(cls, path: Path, *, sanitize: bool = False) -> EnvironmentLight:
+    def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> EnvironmentLight:
         """The image in a .hdr or .exr file. LightError if it cannot be read."""
-        image = read_radiance_image(path, sanitize=sanitize)
+        image = read_radiance_image(path, reading)
         return cls(LatLongMap(image.pixels), path.stem, image.notes)
 
     @property

@@ -9,6 +9,7 @@ from typing import Protocol
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.radiance_files import DEFAULT_READING, Reading
 from shviewer.resources import resource_folder
 
 IMAGE_SUFFIXES = (".hdr", ".pic", ".exr")
@@ -69,10 +70,10 @@ def built_in_lights() -> dict[str, Path]:
     return {path.stem: path for path in [*scenes, *maps]}
 
 
-def find_light(text: str, *, sanitize: bool = False) -> Light:
+def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
     """The light that `text` names: a built-in, a .toml scene, a .hdr or .exr image, or "file.py:function".
 
-    `sanitize` repairs NaN, infinite and negative texels instead of refusing or keeping them.
+    `reading` says how an image is read.
     LightError if there is no such light or its file is bad.
     """
     from shviewer.lights.environment import EnvironmentLight
@@ -83,7 +84,7 @@ def find_light(text: str, *, sanitize: bool = False) -> Light:
     if path.suffix.lower() == ".toml":
         return read_scene(path)
     if path.suffix.lower() in IMAGE_SUFFIXES:
-        return EnvironmentLight.read(path, sanitize=sanitize)
+        return EnvironmentLight.read(path, reading)
     file, separator, function = text.rpartition(":")
     if separator and file.endswith(".py"):
         return load_function(Path(file), function)

@@ -1,33 +1,48 @@
 """Radiance from a file: which kind it is, whether it may be read, and what to do about bad values.
 
-The decoders are in rgbe.py (.hdr, .pic) and openexr_files.py (.exr), the limits in image_limits.py. A *value* is one
-channel of one texel; counts in messages and notes are of values.
+The decoders are in decoders/, one per format. A *value* is one channel of one texel; counts in messages and notes are of
+values.
 """
+
+from __future__ import annotations
 
 import errno
 import os
 import stat
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.image_limits import MAX_FILE_BYTES
-from shviewer.lights.openexr_files import decode_openexr
-from shviewer.lights.rgbe import decode_rgbe
+from shviewer.lights.decoders.decoded import Decoded
+from shviewer.lights.decoders.limits import DEFAULT_LIMITS, Limits
+from shviewer.lights.decoders.openexr import decode_openexr
+from shviewer.lights.decoders.rgbe import decode_rgbe
 
-_Decoder = Callable[[bytes], tuple[NDArray[np.float32], tuple[str, ...]]]
+_Decoder = Callable[[bytes, Limits, str], Decoded]
+"""Of a file's bytes, the limits and the layer asked for ("" for none)."""
 
 
-@dataclass(frozen=True, eq=False)
-class RadianceImage:
-    """A latitude-longitude map as it is in its file, not rescaled."""
+@dataclass(frozen=True)
+class Reading:
+    """How files are read; what a user may choose about it.
 
-    pixels: NDArray[np.float32]  # (height, width, 3) linear RGB, top row first, left column first, C-contiguous
-    notes: tuple[str, ...]  # one line each, for the person who chose the file
+    sanitize: NaN and -Inf become 0, +Inf the largest finite value, negative values 0. Without it NaN and Inf are
+    refused and negative values kept: projection is linear, and real maps have some.
+    """
+
+    sanitize: bool = False
+    layout: str = "auto"
+    """"auto" or a name of lights/layouts."""
+    limits: Limits = DEFAULT_LIMITS
+    isolated: bool = field(default=False, compare=False)
+    """Decode OpenEXR files in a child process, which a broken file may kill without harm. It changes no value."""
+
+
+DEFAULT_READING = Reading()
 
 
 @dataclass(frozen=True)
@@ -39,8 +54,8 @@ class _Kind:
 
 
 _KINDS = (
-    _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), decode_rgbe),
-    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), decode_openexr),
+    _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), lambda data, limits, layer: decode_rgbe(data, limits)),
+    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), lambda data, limits, layer: decode_openexr(data, limits)),
 )
 
 _OTHER_MAGICS = (
@@ -64,24 +79,23 @@ _OTHER_MAGICS = (
 )
 
 
-def read_radiance_image(path: Path, *, sanitize: bool = False) -> RadianceImage:
-    """Reads a .hdr, .pic or .exr file, whose kind its first bytes decide.
+def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
+    """Reads an image file, whose kind its first bytes decide; the notes then also say what was done about bad values.
 
-    sanitize: NaN and -Inf become 0, +Inf the largest finite value, negative values 0. Without it NaN and Inf are
-    refused and negative values kept: projection is linear, and real maps have some.
+    layer: of an OpenEXR file, such as "diffuse"; "" for the plain or only one.
     Raises LightError, one line with file, finding, rule and next step, for whatever is wrong with the file.
     """
     try:
-        data = _read_bytes(path)
-        pixels, notes = _decoder(data, path.suffix.lower())(data)
-        notes += _repair(pixels) if sanitize else _check(pixels)
+        data = _read_bytes(path, reading.limits)
+        decoded = _decoder(data, path.suffix.lower())(data, reading.limits, layer)
+        notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
     except LightError as error:
         raise LightError(f"{_shown(path)}: {error}") from None
     except MemoryError:
         raise LightError(
             f"{_shown(path)}: not enough memory to decode it; close something or make it smaller"
         ) from None
-    return RadianceImage(pixels, notes + _aspect_notes(pixels))
+    return replace(decoded, notes=decoded.notes + notes)
 
 
 def _shown(path: Path) -> str:
@@ -89,14 +103,14 @@ def _shown(path: Path) -> str:
     return str(path) if str(path).isprintable() else ascii(str(path))
 
 
-def _read_bytes(path: Path) -> bytes:
+def _read_bytes(path: Path, limits: Limits) -> bytes:
     """The whole file, read once. Looks before it opens, so that no pipe or device can block or be disturbed."""
     try:
-        _check_is_small_file(os.stat(path))
+        _check_is_small_file(os.stat(path), limits)
         # The file may have been replaced since: without O_NONBLOCK a pipe in its place would block for ever.
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(descriptor, "rb") as file:
-            size = _check_is_small_file(os.fstat(descriptor))
+            size = _check_is_small_file(os.fstat(descriptor), limits)
             data = file.read(size + 1)
     except (OSError, ValueError) as error:
         raise LightError(_reason(error)) from None
@@ -105,7 +119,7 @@ def _read_bytes(path: Path) -> bytes:
     return data
 
 
-def _check_is_small_file(status: os.stat_result) -> int:
+def _check_is_small_file(status: os.stat_result, limits: Limits) -> int:
     """The size in bytes."""
     if stat.S_ISDIR(status.st_mode):
         raise LightError("a directory; name one .hdr or .exr file in it")
@@ -113,8 +127,7 @@ def _check_is_small_file(status: os.stat_result) -> int:
         raise LightError("a pipe, socket or device; only a regular file is read: save it as one first")
     if status.st_size == 0:
         raise LightError("an empty file (0 bytes); fetch or export it again")
-    if status.st_size > MAX_FILE_BYTES:
-        raise LightError(f"{status.st_size} bytes; the limit is {MAX_FILE_BYTES}: make the image smaller")
+    limits.check_file(status.st_size)
     return status.st_size
 
 
@@ -185,11 +198,3 @@ def _repair(pixels: NDArray[np.float32]) -> tuple[str, ...]:
 
 def _negative(count: int) -> str:
     return f"{count} negative value{'s' if count > 1 else ''}"
-
-
-def _aspect_notes(pixels: NDArray[np.float32]) -> tuple[str, ...]:
-    """A lat-long map is twice as wide as high; 1 % is left for a map cut at an odd number of rows."""
-    height, width = pixels.shape[:2]
-    if 50 * abs(width - 2 * height) <= height:
-        return ()
-    return (f"{width} x {height} is not 2:1; a cube cross or an angular map read as lat-long? Used as it is",)

@@ -34,6 +34,7 @@ from shviewer.harmonics.projection import project_product, project_samples
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light, find_light
+from shviewer.lights.radiance_files import Reading
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.state import QUANTITIES, ViewState
 
@@ -108,7 +109,7 @@ def sampling_of(state: ViewState) -> tuple[str, int, int]:
 
 def load_light(state: ViewState) -> Light:
     """The state's light, or its irradiance; one named by text is read once."""
-    light = _find(state.light, state.sanitize) if isinstance(state.light, str) else state.light
+    light = _find(state.light, state.reading) if isinstance(state.light, str) else state.light
     return _irradiance(light) if state.quantity == "irradiance" else light
 
 
@@ -150,8 +151,8 @@ def forget_lights() -> None:
 
 
 @lru_cache(maxsize=16)
-def _find(text: str, sanitize: bool) -> Light:
-    return find_light(text, sanitize=sanitize)
+def _find(text: str, reading: Reading) -> Light:
+    return find_light(text, reading)
 
 
 @lru_cache(maxsize=32)

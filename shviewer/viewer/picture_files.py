@@ -47,7 +47,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "samples_asked": None if state.method == "best" else state.samples,
         "samples": projection.evaluations,
         "seed": state.seed if state.method == "jittered" else None,
-        "sanitize": state.sanitize,
+        "sanitize": state.reading.sanitize,
         "exposure_stops": picture.exposure_stops,
         "size": [composition.width, composition.height],
         "camera_degrees": list(state.camera),

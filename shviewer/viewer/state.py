@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from shviewer.lights.light import Light
+from shviewer.lights.radiance_files import DEFAULT_READING, Reading
 from shviewer.viewer.camera import IDENTITY, Quaternion, turned_by_drag
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 
@@ -28,7 +29,7 @@ class ViewState:
 
     lights: tuple[str | Light, ...] = ("green",)
     light_index: int = 0
-    sanitize: bool = False
+    reading: Reading = DEFAULT_READING
     n_bands: int = 5
     muted: frozenset[int] = frozenset()
     cursor: int = 0
@@ -154,7 +155,7 @@ def reset(state: ViewState) -> ViewState:
     return ViewState(
         lights=state.lights,
         light_index=state.light_index,
-        sanitize=state.sanitize,
+        reading=state.reading,
         fullscreen=state.fullscreen,
         screenshots=state.screenshots,
         fits=state.fits,

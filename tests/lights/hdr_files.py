@@ -7,6 +7,8 @@ from itertools import groupby
 import numpy as np
 import OpenEXR
 
+from shviewer.errors import LightError
+
 ORIENTATIONS = ("-Y +X", "-Y -X", "+Y +X", "+Y -X", "+X -Y", "+X +Y", "-X -Y", "-X +Y")
 PACKINGS = ("flat", "old", "new")
 FORMAT = b"FORMAT=32-bit_rle_rgbe"
@@ -127,3 +129,80 @@ def bare_exr(data_window=(0, 0, 7, 3), display_window=None, deep=False, channels
         + b"\0"
         + bytes(8 * chunks)
     )
+
+
+def assert_same(pixels, expected):
+    np.testing.assert_array_equal(pixels, np.asarray(expected).astype(np.float32))
+    assert pixels.dtype == np.float32
+    assert pixels.flags.c_contiguous
+    assert pixels.flags.writeable
+
+
+def halves(height=4, width=8, seed=1):
+    return np.random.default_rng(seed).random((height, width, 3)).astype(np.float16)
+
+
+# Two scanlines of eight texels, written out by hand from the format's description.
+GOLDEN = (
+    b"#?RADIANCE\n# by hand\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n"
+    b"\x02\x02\x00\x08"  # new packing, eight texels
+    b"\x88\x80"  # red: 128 eight times
+    b"\x08\x00\x10\x20\x40\x80\xa0\xc0\xff"  # green: eight literals
+    b"\x84\x40\x04\x01\x02\x03\x04"  # blue: 64 four times, four literals
+    b"\x88\x81"  # exponent: 129 eight times, one step is 2**-7
+    b"\x80\x40\x20\x88\x01\x01\x01\x03"  # old packing: exponent 136, one step is 1; three more of it
+    b"\x80\x80\x80\x00"  # exponent 0 is black, whatever the mantissas
+    b"\xff\x00\x01\x80\x01\x01\x01\x02"  # exponent 128, one step is 2**-8; two more of it
+)
+GOLDEN_PIXELS = [
+    [
+        [1.0, 0.0, 0.5],
+        [1.0, 0.125, 0.5],
+        [1.0, 0.25, 0.5],
+        [1.0, 0.5, 0.5],
+        [1.0, 1.0, 0.0078125],
+        [1.0, 1.25, 0.015625],
+        [1.0, 1.5, 0.0234375],
+        [1.0, 1.9921875, 0.03125],
+    ],
+    [*[[128.0, 64.0, 32.0]] * 4, [0.0, 0.0, 0.0], *[[0.99609375, 0.0, 0.00390625]] * 3],
+]
+
+
+def checked_message(error, name):
+    message = str(error)
+    assert "\n" not in message
+    assert name in message.split(": ")[0]
+    return message
+
+
+def mutated(seed_bytes, rng):
+    """A copy with one to eight bytes changed, a piece cut out, doubled or inserted; sizes stay small."""
+    data = bytearray(seed_bytes)
+    for _ in range(rng.integers(1, 9)):
+        place = int(rng.integers(0, len(data)))
+        match rng.integers(0, 6):
+            case 0 | 1 | 2:
+                data[place] = rng.choice([0, 1, 2, 127, 128, 129, 255, int(rng.integers(0, 256))])
+            case 3:
+                del data[place : place + int(rng.integers(1, 9))]
+            case 4:
+                data[place:place] = data[place : place + int(rng.integers(1, 9))]
+            case 5:
+                data[place:place] = rng.bytes(int(rng.integers(1, 5)))
+    return bytes(data)
+
+
+def outcomes(read, seed_bytes, count, name):
+    """How many of `count` mutations were read and refused; anything else than these two fails."""
+    rng = np.random.default_rng(0)
+    accepted = 0
+    for _ in range(count):
+        try:
+            image = read(mutated(seed_bytes, rng), name)
+        except LightError as error:
+            checked_message(error, name)
+        else:
+            accepted += 1
+            assert np.isfinite(image.pixels).all()
+    return accepted, count - accepted

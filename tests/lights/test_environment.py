@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hdr_files import hdr_file, random_texels
+from hdr_files import FORMAT, hdr_file, random_texels
 from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
@@ -88,10 +88,8 @@ def test_a_file_is_read_with_its_name_and_size(tmp_path):
 
 def test_notes_of_the_reader_pass_through(tmp_path):
     path = tmp_path / "square.hdr"
-    path.write_bytes(hdr_file(random_texels(8, 8)))
-    notes = EnvironmentLight.read(path).notes
-    assert len(notes) == 1
-    assert "8 x 8" in notes[0]
+    path.write_bytes(hdr_file(random_texels(8, 8), settings=(FORMAT, b"EXPOSURE=2")))
+    assert EnvironmentLight.read(path).notes == ("EXPOSURE 2 divided out",)
 
 
 def test_a_missing_file_is_one_line(tmp_path):

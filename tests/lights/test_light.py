@@ -16,6 +16,7 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import built_in_lights, find_light
 from shviewer.lights.lobes import LobeLight
+from shviewer.lights.radiance_files import Reading
 
 SCENE = '[[lobe]]\nprofile = "gaussian"\naxis = [1, 2, -1]\nradiance = [3, 2, 1]\nsharpness = 5\n'
 FUNCTION = "import numpy as np\ndef dusk(d):\n    return np.exp(d * [1, -2, 0.5])\n"
@@ -92,7 +93,7 @@ def test_an_image_is_found_by_its_path_and_sanitised_on_request(tmp_path):
         assert light.map.texels.shape == (4, 8, 3)
     assert light.map.texels.min() == -1
     assert len(light.notes) == 1
-    sanitised = find_light(str(tmp_path / "c.exr"), sanitize=True)
+    sanitised = find_light(str(tmp_path / "c.exr"), Reading(sanitize=True))
     assert sanitised.map.texels.min() == 0
     assert sanitised.notes[0].startswith("sanitised")
 

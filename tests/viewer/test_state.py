@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shviewer.lights.function import FunctionLight
+from shviewer.lights.radiance_files import Reading
 from shviewer.viewer import camera
 from shviewer.viewer.keys import ACTIONS, BINDINGS, key_table, press
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
@@ -167,7 +168,7 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
     changed = ViewState(
         lights=LIGHTS,
         light_index=2,
-        sanitize=True,
+        reading=Reading(sanitize=True),
         n_bands=9,
         muted=frozenset({1}),
         cursor=3,
@@ -192,7 +193,7 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
     )
     assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
     after = press(changed, "R")
-    assert after == ViewState(lights=LIGHTS, light_index=2, sanitize=True, tolerance=0.1)
+    assert after == ViewState(lights=LIGHTS, light_index=2, reading=Reading(sanitize=True), tolerance=0.1)
     assert after.fullscreen
     assert after.screenshots == 3
 

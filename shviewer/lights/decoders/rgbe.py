@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.image_limits import MAX_HEADER_BYTES, check_size
+from shviewer.lights.decoders.decoded import Decoded
+from shviewer.lights.decoders.limits import DEFAULT_LIMITS, MAX_HEADER_BYTES, Limits
 
 _NEW_PACKING_LENGTHS = range(8, 32768)
 _LONGEST_MARKER_CHAIN = 4
@@ -43,14 +44,13 @@ class _Header:
 
 
 @np.errstate(over="ignore", under="ignore")  # an exposure that overflows is refused, and so is infinite radiance
-def decode_rgbe(data: bytes) -> tuple[NDArray[np.float32], tuple[str, ...]]:
+def decode_rgbe(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     """The radiance in a .hdr file, and what its reader should be told.
 
     data: the whole file; bytes after the last scanline are allowed.
-    Returns ((height, width, 3) float32, top row and left column first, C-contiguous), notes.
     Raises LightError, without the name of the file, if it is cut short, damaged or not RGBE.
     """
-    header = _read_header(data)
+    header = _read_header(data, limits)
     rgbe = _read_scanlines(data, header)
     if header.reversed_scanlines:
         rgbe = rgbe[::-1]
@@ -70,10 +70,10 @@ def decode_rgbe(data: bytes) -> tuple[NDArray[np.float32], tuple[str, ...]]:
         notes.append(f"EXPOSURE {header.exposure:g} divided out")
     if np.any(header.colour_correction != 1.0):
         notes.append("COLORCORR {:g} {:g} {:g} divided out".format(*header.colour_correction))
-    return pixels, tuple(notes)
+    return Decoded(pixels, "Radiance RGBE", tuple(notes))
 
 
-def _read_header(data: bytes) -> _Header:
+def _read_header(data: bytes, limits: Limits) -> _Header:
     """Everything before the first texel. A setting counts only at the start of its line: indented ones are history."""
     exposure, colour_correction = 1.0, np.ones(3)
     line, position = _next_line(data, 0)
@@ -98,7 +98,7 @@ def _read_header(data: bytes) -> _Header:
         )
     scanlines, length = int(size[3]), int(size[6])
     columns = size[2] == b"X"
-    check_size(*((scanlines, length) if columns else (length, scanlines)))
+    limits.check_size(*((scanlines, length) if columns else (length, scanlines)))
     reversal = {b"Y": b"+", b"X": b"-"}  # +Y counts upwards, and rows are stored here from the top
     return _Header(
         first_texel=position,

@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.image_limits import MAX_TEXELS, check_size
+from shviewer.lights.decoders.decoded import Decoded
+from shviewer.lights.decoders.limits import DEFAULT_LIMITS, Limits
 
-_MAX_SAMPLES = 4 * MAX_TEXELS  # of all channels and parts together: RGBA of the largest image
+_SAMPLES_PER_TEXEL = 4  # of all channels and parts together, times the limit of texels: RGBA of the largest image
 _DAMAGED = "damaged or cut short, the OpenEXR library says: {}; fetch or export the file again"
 
 
@@ -64,7 +65,7 @@ class _Source(NamedTuple):
     channels: tuple[str, str, str]
 
 
-def decode_openexr(data: bytes) -> tuple[NDArray[np.float32], tuple[str, ...]]:
+def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     """The radiance in an OpenEXR file on its display window, and what its reader should be told.
 
     data: the whole file.
@@ -75,7 +76,7 @@ def decode_openexr(data: bytes) -> tuple[NDArray[np.float32], tuple[str, ...]]:
     """
     openexr = _import_openexr()
     parts = _read_headers(openexr, data)
-    _check_headers(parts)
+    _check_headers(parts, limits)
     source = _find_radiance(parts)
     window, display = parts[source.part].window, parts[source.part].display
 
@@ -92,7 +93,7 @@ def decode_openexr(data: bytes) -> tuple[NDArray[np.float32], tuple[str, ...]]:
     pixels, notes = _on_display_window(radiance, window, display)
     if source.layer:
         notes = (f"layer {source.layer!r} read, the only one with R, G and B", *notes)
-    return pixels, notes
+    return Decoded(pixels, "OpenEXR", notes)
 
 
 def _import_openexr() -> ModuleType:
@@ -168,7 +169,7 @@ def _window(corners: Any) -> _Window:
     return _Window(int(left), int(top), int(right), int(bottom))
 
 
-def _check_headers(parts: tuple[_Part, ...]) -> None:
+def _check_headers(parts: tuple[_Part, ...], limits: Limits) -> None:
     samples = 0
     for part in parts:
         if part.deep:
@@ -177,11 +178,12 @@ def _check_headers(parts: tuple[_Part, ...]) -> None:
             raise LightError(
                 "a cube map (its envmap attribute says so); lat-long only for now: convert it with exrenvmap"
             )
-        check_size(part.window.width, part.window.height, "data window")
-        check_size(part.display.width, part.display.height, "display window")
+        limits.check_size(part.window.width, part.window.height, "data window")
+        limits.check_size(part.display.width, part.display.height, "display window")
         samples += part.window.width * part.window.height * len(part.channels)
-    if samples > _MAX_SAMPLES:
-        raise LightError(f"{samples} values in all channels; the limit is {_MAX_SAMPLES}: export only R, G and B")
+    most = _SAMPLES_PER_TEXEL * limits.texels
+    if samples > most:
+        raise LightError(f"{samples} values in all channels; the limit is {most}: export only R, G and B")
 
 
 def _find_radiance(parts: tuple[_Part, ...]) -> _Source:

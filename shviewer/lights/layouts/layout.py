@@ -1,0 +1,43 @@
+"""What every layout can do. A texel is an area of constant radiance, whatever its shape on the sphere.
+
+The world: x forward, y left, z up, as everywhere (shviewer/harmonics/basis.py). The centre of a lat-long image, the front
+face of a cross, the middle of an angular map and of a mirror ball all look along +x; seen from inside, +y is to the left
+and +z is up, and nothing is mirrored.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+
+Indices = NDArray[np.int64]
+
+
+class Layout(Protocol):
+    """Of an image of a given height and width, in texels."""
+
+    @property
+    def name(self) -> str:
+        """One of LAYOUTS in recognise.py."""
+
+    def solid_angles(self) -> Array:
+        """Steradians of each texel, exact, in all 4 pi: (height, width), or (height, 1) where a row's are equal.
+
+        0 for texels that show nothing, such as the corners of a cross.
+        """
+
+    def nearest(self, directions: Array) -> tuple[Indices, Indices]:
+        """Row and column, (k,) each, of the texel in whose area each unit direction (k, 3) lies."""
+
+    def centres(self, rows: Indices, columns: Indices) -> Array:
+        """Unit directions (k, 3) of the centres of texels (k,)."""
+
+    def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
+        """Bilinear radiance (k, 3) in unit directions (k, 3), from pixels (height, width, 3)."""
+
+    def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
+        """Coefficients (n_bands**2, 3): the exact integrals of the texels as areas."""
