@@ -90,8 +90,17 @@ MUTANTS = (
         "coefficients = np.zeros((n_bands**2, 3))\n    block",
         "coefficients = np.zeros((n_bands**2, 3), np.float32)\n    block",
     ),
-    Mutant("half a texel off", PROJECTION, "(np.arange(height) + 0.5)", "(np.arange(height) + 0.0)"),
-    Mutant("image upside down", PROJECTION, "centres = row_height", "centres = np.pi - row_height"),
+    Mutant(
+        "half a texel off", PROJECTION, "(np.arange((height + 1) // 2) + 0.5)", "(np.arange((height + 1) // 2) + 0.0)"
+    ),
+    Mutant("image upside down", PROJECTION, "row_sums(image, ", "row_sums(image[::-1], "),
+    Mutant(
+        "south folded with the sign of the north",
+        "shviewer/harmonics/row_transform.py",
+        "(minus, plus) if parity else (plus, minus)",
+        "(plus, minus) if parity else (minus, plus)",
+    ),
+    Mutant("east folded like west", PROJECTION, "west + east if mirrored else west - east", "west + east"),
     Mutant(
         "image mirrored",
         "shviewer/harmonics/quadrature.py",

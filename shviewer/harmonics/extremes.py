@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, safe_unit
-from shviewer.harmonics.projection import Synthesis
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.synthesis import Synthesis
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Rec. 709 luminance of linear RGB [ITU-R BT.709-6, item 3.2]."""

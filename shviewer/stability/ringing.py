@@ -11,7 +11,7 @@ import numpy as np
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.deringing import dering
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
-from shviewer.harmonics.projection import Synthesis
+from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Disc, orient
 from shviewer.lights.light import find_light
 from shviewer.lights.lobes import Lobe, LobeLight

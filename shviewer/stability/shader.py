@@ -92,7 +92,7 @@ def _sum(directions: Array, coefficients: Array) -> Array:
 
 def _peak(coefficients: Array) -> float:
     """Of the whole sphere, seen on a grid of eight rows per band."""
-    from shviewer.harmonics.projection import Synthesis
+    from shviewer.harmonics.synthesis import Synthesis
 
     rows = 8 * count_bands(coefficients)
     return float(np.abs(Synthesis(coefficients).on_rows(np.linspace(0, np.pi, rows), 2 * rows)).max())

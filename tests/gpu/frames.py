@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
-from shviewer.harmonics.projection import Synthesis
+from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composition import Box, Composition, Sphere

@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.projection import Synthesis, project_image, project_product, project_samples
+from shviewer.harmonics.projection import project_image, project_product, project_samples
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre, jittered
+from shviewer.harmonics.synthesis import Synthesis
+from shviewer.harmonics.theta_series import theta_series
 
 GREEN_EXACT = np.array([float(value) for value in HARD_CASES["lights"]["green"]["coefficients_n4"]])
 
@@ -241,7 +243,7 @@ def test_synthesis_needs_the_coefficients_of_whole_bands(count):
 
 def test_more_bands_than_the_table_holds_are_refused():
     with pytest.raises(ValueError, match="513 bands: there must be 1 to 512"):
-        projection.theta_series(513)
+        theta_series(513)
     with pytest.raises(ValueError, match="1401 bands: there must be 1 to 1400"):
         project_samples(green, jittered(4, 0), 1401)
 

@@ -5,7 +5,7 @@ import pytest
 from harmonics.independent import HARD_CASES, random_directions, scipy_basis, sphere_rule
 from numpy.testing import assert_allclose, assert_array_equal
 
-from shviewer.harmonics.projection import Synthesis
+from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.lobes import MAX_LOBES, Lobe, LobeLight
 

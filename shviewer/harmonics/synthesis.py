@@ -1,0 +1,107 @@
+"""From coefficients to radiance: the sum of c(l, m) Y(l, m) on rows, on a whole map, and in scattered directions."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
+from shviewer.harmonics.theta_series import azimuth_functions, theta_series
+
+STEP = 768
+"""Values of a row in one product of a map."""
+
+FEWEST_BANDS = 8
+"""Products of fewer than four rows are slower than these."""
+
+
+class Synthesis:
+    """The function with the coefficients (n**2, 3), ready to be evaluated. ValueError if their number is no square."""
+
+    def __init__(self, coefficients: Array) -> None:
+        self.coefficients = coefficients
+        self.n_bands = n_bands = count_bands(coefficients)
+        by_order = theta_series(n_bands).transpose(0, 2, 1) @ _to_orders(coefficients).reshape(n_bands, n_bands, 6)
+        self._series = [
+            np.ascontiguousarray(by_order[parity::2].transpose(1, 2, 0)).reshape(n_bands, -1) for parity in (0, 1)
+        ]  # for even and for odd m: k, ({cos, sin}, channel, m)
+
+    def on_rows(self, theta: Array, n_columns: int) -> Array:
+        """On rows at `theta` (rows,) with the columns of a lat-long image: (rows, 3, n_columns)."""
+        flat = self._along_theta(theta).reshape(-1, 2 * self.n_bands)
+        azimuth = azimuth_functions(self.n_bands, n_columns).reshape(2 * self.n_bands, n_columns)
+        return np.asarray(flat @ azimuth).reshape(len(theta), 3, n_columns)
+
+    def at(self, theta: Array, phi: Array) -> Array:
+        """At scattered angles (k,), radians: (k, 3)."""
+        angle = phi[:, None] * np.arange(self.n_bands)
+        azimuth = np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
+        return np.asarray(np.einsum("kxm,km->kx", self._along_theta(theta).reshape(len(theta), 3, -1), azimuth))
+
+    def pole_to_pole(self, n_rows: int, n_columns: int) -> NDArray[np.float32]:
+        """A map for the GPU, (n_rows, n_columns, 3) float32, rows from theta = 0 to pi, both included; 2e-7 of its peak off.
+
+        Each block of rows is one product with {cos, sin}(k theta); its mirror south of the equator and the other half of
+        its columns, where odd k and odd m change sign, cost only sums (row_transform.py has the same folds the other way).
+        """
+        if self.n_bands < FEWEST_BANDS:
+            padded = np.zeros((FEWEST_BANDS**2, 3))
+            padded[: self.n_bands**2] = self.coefficients
+            return Synthesis(padded).pole_to_pole(n_rows, n_columns)
+        theta = np.linspace(0, np.pi, n_rows)[: (n_rows + 1) // 2]
+        angle = theta[:, None] * by_parity(self.n_bands)
+        rows = np.cos(angle).astype(np.float32), np.sin(angle).astype(np.float32)
+        split, halves = (self.n_bands + 1) // 2, 1 if n_columns % 2 else 2
+        columns = self._by_column(n_columns, n_columns // halves)
+        image = np.empty((n_rows, halves, columns.shape[2]), np.float32)
+        height, step = min(BLOCK_ROWS, len(theta)), min(STEP, columns.shape[2])
+        work = np.empty((6, height, step), np.float32)
+        for top in range(0, len(theta), height):
+            north = slice(top, min(top + height, len(theta)))
+            southern = image[n_rows - north.stop : n_rows - north.start][::-1]
+            for left in range(0, columns.shape[2], step):
+                part = slice(left, left + step)
+                block = work[:, : north.stop - north.start, : columns[0, 0, part].size]
+                for parity in (0, 1):
+                    np.matmul(rows[parity][north, :split], columns[parity, :split, part], out=block[2 * parity])
+                    np.matmul(rows[parity][north, split:], columns[parity, split:, part], out=block[2 * parity + 1])
+                even, odd = block[4:]
+                for target, change in ((image[north], np.add), (southern, np.subtract)):
+                    change(block[0], block[1], out=even)  # k even and odd
+                    change(block[3], block[2], out=odd)  # sin(k (pi - t)) = -(-1)^k sin(k t)
+                    np.add(even, odd, out=target[:, 0, part])
+                    if halves == 2:
+                        np.subtract(even, odd, out=target[:, 1, part])
+        return image.reshape(n_rows, n_columns, 3)
+
+    def _by_column(self, n_columns: int, kept: int) -> NDArray[np.float32]:
+        """What stands before cos(k theta), for even m, and sin(k theta), for odd m: (2, k by parity, kept columns x 3)."""
+        azimuth = azimuth_functions(self.n_bands, n_columns)[..., :kept]
+        order = by_parity(self.n_bands)
+        values = np.empty((2, self.n_bands, kept, 3), np.float32)
+        for parity, series in enumerate(self._series):
+            table = series.reshape(self.n_bands, 2, 3, -1)[order]  # k, {cos, sin}, channel, m
+            values[parity] = np.einsum("ksxm,smp->kpx", table, azimuth[:, parity::2], optimize=True)
+        return values.reshape(2, self.n_bands, -1)
+
+    def _along_theta(self, theta: Array) -> Array:
+        """What stands before cos(m phi) and sin(m phi) at each theta (rows,): (rows, 3, {cos, sin}, n_bands)."""
+        angle = theta[:, None] * np.arange(self.n_bands)
+        along_theta = np.empty((len(theta), 3, 2, self.n_bands))
+        for parity, functions in enumerate((np.cos(angle), np.sin(angle))):
+            product = (functions @ self._series[parity]).reshape(len(theta), 2, 3, -1)
+            along_theta[..., parity::2] = product.transpose(0, 2, 1, 3)
+        return along_theta
+
+
+def _to_orders(coefficients: Array) -> Array:
+    """Coefficients at l(l+1) +- m -> (m, l, {cos, sin}, 3)."""
+    n_bands = count_bands(coefficients)
+    degree, order = np.tril_indices(n_bands)
+    centre = degree * (degree + 1)
+    table = np.zeros((n_bands, n_bands, 2, 3))
+    table[order, degree, 1] = coefficients[centre - order]
+    table[order, degree, 0] = coefficients[centre + order]
+    table[0, :, 1] = 0
+    return table

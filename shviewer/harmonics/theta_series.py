@@ -1,0 +1,72 @@
+"""The basis as a short Fourier series along theta.
+
+On the great circle through the poles and phi the normalised function is a trigonometric polynomial,
+    Y(l, m)(theta, phi) = {cos, sin}(|m| phi) times the sum over k <= l of D(m, l, k) cos(k theta)     for even m,
+                                                                        or D(m, l, k) sin(k theta)     for odd m,
+because it continues over the poles; k + l is even wherever D is not zero. So a transform along theta is a product with plain
+cosines and sines, the same for every m, and what knows of m and l is small.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, check_bands, evaluate_basis
+from shviewer.harmonics.quadrature import column_azimuths
+
+Indices = NDArray[np.int64]
+
+MAX_SEPARABLE_BANDS = 512
+"""The table D takes n**3 values: 1 GiB at 512 bands."""
+
+
+@lru_cache(maxsize=8)
+def theta_series(n_bands: int) -> Array:
+    """D(m, l, k), shape (n, n, n), zero for l < m: from the basis on the great circle phi = 0, pi.
+
+    The function and its row functions are even or odd both about theta = 0 and about pi/2, so a quarter of the circle is
+    enough, its ends counted half.
+    """
+    check_bands(n_bands, MAX_SEPARABLE_BANDS)
+    quarter = (n_bands + 1) // 2
+    angle = np.pi / 2 * np.arange(quarter + 1) / quarter
+    circle = np.stack([np.sin(angle), np.zeros(quarter + 1), np.cos(angle)], axis=-1)
+    weights = np.full(quarter + 1, 2 / quarter)
+    weights[[0, -1]] /= 2
+    basis = evaluate_basis(circle, n_bands).T
+    wave = angle[:, None] * np.arange(n_bands)
+    series = np.zeros((n_bands, n_bands, n_bands))
+    for m in range(n_bands):
+        degree = np.arange(m, n_bands)
+        row_functions = np.sin(wave) if m % 2 else np.cos(wave)
+        series[m, m:] = (basis[degree * (degree + 1) + m] * weights) @ row_functions
+    series[..., 0] /= 2
+    parity = np.arange(n_bands)
+    series *= (parity[:, None] + parity + 1) % 2
+    series.flags.writeable = False
+    return series
+
+
+@lru_cache(maxsize=8)
+def series_by_parity(n_bands: int) -> tuple[Array, Array]:
+    """What of D is not zero, laid out as (m, k, l): for even k and l, and for odd k and l."""
+    series = theta_series(n_bands).transpose(0, 2, 1)
+    return np.ascontiguousarray(series[:, 0::2, 0::2]), np.ascontiguousarray(series[:, 1::2, 1::2])
+
+
+@lru_cache(maxsize=8)
+def degrees_and_orders(n_bands: int) -> tuple[Indices, Indices, Indices]:
+    """Of each coefficient: degree l, |m|, and 1 for the sine, (n**2,) each."""
+    degree = np.repeat(np.arange(n_bands), 2 * np.arange(n_bands) + 1)
+    order = np.arange(n_bands**2) - degree * (degree + 1)
+    return degree, np.abs(order), (order < 0).astype(np.int64)
+
+
+@lru_cache(maxsize=8)
+def azimuth_functions(n_bands: int, n_columns: int) -> Array:
+    """cos(m phi) and sin(m phi) at the column centres, shape (2, n_bands, n_columns)."""
+    angle = np.arange(n_bands)[:, None] * column_azimuths(n_columns)
+    return np.stack([np.cos(angle), np.sin(angle)])
