@@ -6,10 +6,11 @@ values.
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from numpy.typing import NDArray
 
 from shviewer.errors import LightError
 from shviewer.lights.decoders.decoded import Decoded
+from shviewer.lights.decoders.display_referred import decode_jpeg, decode_png
+from shviewer.lights.decoders.isolated import decode_isolated
 from shviewer.lights.decoders.limits import DEFAULT_LIMITS, Limits
 from shviewer.lights.decoders.openexr import decode_openexr
 from shviewer.lights.decoders.rgbe import decode_rgbe
@@ -55,12 +58,14 @@ class _Kind:
 
 _KINDS = (
     _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), lambda data, limits, layer: decode_rgbe(data, limits)),
-    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), lambda data, limits, layer: decode_openexr(data, limits)),
+    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), decode_openexr),
+    _Kind("PNG", b"\x89PNG", (".png",), lambda data, limits, layer: decode_png(data, limits)),
+    _Kind("JPEG", b"\xff\xd8\xff", (".jpg", ".jpeg"), lambda data, limits, layer: decode_jpeg(data, limits)),
 )
 
+IMAGE_SUFFIXES = tuple(suffix for kind in _KINDS for suffix in kind.suffixes)
+
 _OTHER_MAGICS = (
-    (b"\x89PNG", "a PNG"),
-    (b"\xff\xd8\xff", "a JPEG"),
     (b"II*\0", "a TIFF"),
     (b"MM\0*", "a TIFF"),
     (b"II+\0", "a BigTIFF"),
@@ -85,22 +90,32 @@ def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: s
     layer: of an OpenEXR file, such as "diffuse"; "" for the plain or only one.
     Raises LightError, one line with file, finding, rule and next step, for whatever is wrong with the file.
     """
-    try:
+    with _naming(str(path)):
         data = _read_bytes(path, reading.limits)
-        decoded = _decoder(data, path.suffix.lower())(data, reading.limits, layer)
+    return decode_radiance_image(data, str(path), reading, layer)
+
+
+def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
+    """`read_radiance_image` of a file that is in memory already; `name` is the path it has or might have."""
+    with _naming(name):
+        decode = _decoder(data, Path(name).suffix.lower())
+        if reading.isolated and decode is decode_openexr:
+            decode = decode_isolated
+        decoded = decode(data, reading.limits, layer)
         notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
-    except LightError as error:
-        raise LightError(f"{_shown(path)}: {error}") from None
-    except MemoryError:
-        raise LightError(
-            f"{_shown(path)}: not enough memory to decode it; close something or make it smaller"
-        ) from None
     return replace(decoded, notes=decoded.notes + notes)
 
 
-def _shown(path: Path) -> str:
-    """The path; quoted and escaped if it holds a line break or bytes that are no text."""
-    return str(path) if str(path).isprintable() else ascii(str(path))
+@contextlib.contextmanager
+def _naming(name: str) -> Iterator[None]:
+    """Errors begin with the name; quoted and escaped if it holds a line break or bytes that are no text."""
+    shown = name if name.isprintable() else ascii(name)
+    try:
+        yield
+    except LightError as error:
+        raise LightError(f"{shown}: {error}") from None
+    except MemoryError:
+        raise LightError(f"{shown}: not enough memory to decode it; close something or make it smaller") from None
 
 
 def _read_bytes(path: Path, limits: Limits) -> bytes:
@@ -122,7 +137,7 @@ def _read_bytes(path: Path, limits: Limits) -> bytes:
 def _check_is_small_file(status: os.stat_result, limits: Limits) -> int:
     """The size in bytes."""
     if stat.S_ISDIR(status.st_mode):
-        raise LightError("a directory; name one .hdr or .exr file in it")
+        raise LightError("a directory; name one image in it")
     if not stat.S_ISREG(status.st_mode):
         raise LightError("a pipe, socket or device; only a regular file is read: save it as one first")
     if status.st_size == 0:
@@ -152,7 +167,7 @@ def _decoder(data: bytes, suffix: str) -> _Decoder:
         if any(suffix in other.suffixes for other in _KINDS if other is not kind):
             raise LightError(f"named {suffix} but holds {kind.name}; rename it to end in {kind.suffixes[0]}")
         return kind.decode
-    wanted = "a Radiance .hdr ('#?') or an OpenEXR .exr is needed: convert it"
+    wanted = "an image is read as .hdr (Radiance), .exr (OpenEXR), .png or .jpg: convert it"
     for magic, name in _OTHER_MAGICS:
         if data.startswith(magic):
             raise LightError(f"seems to be {name} file; {wanted}")

@@ -78,6 +78,12 @@ def pack(scanline, packing):
     return packed
 
 
+def one_value_packets(scanlines, length):
+    """The bytes of a black-and-white picture in the new packing, at its longest: every value a packet by itself."""
+    scanline = bytes((2, 2, length // 256, length % 256)) + b"\1\x80" * 4 * length
+    return b"#?RADIANCE\n\n-Y %d +X %d\n" % (scanlines, length) + scanline * scanlines
+
+
 def exr_file(channels, **header):
     """The bytes of an OpenEXR file with one part; channels: name -> array."""
     return exr_parts(OpenEXR.Part(_exr_header(header), channels, "only"))

@@ -23,7 +23,7 @@ from hdr_files import (
 from shviewer.errors import LightError
 from shviewer.lights import radiance_files
 from shviewer.lights.decoders.limits import Limits
-from shviewer.lights.radiance_files import read_radiance_image
+from shviewer.lights.radiance_files import IMAGE_SUFFIXES, Reading, decode_radiance_image, read_radiance_image
 
 ENVIRONMENTS = Path(__file__).parents[2] / "assets" / "environments"
 TEXELS = random_texels(8, 16)
@@ -104,8 +104,8 @@ def test_sanitising_a_sound_image_changes_nothing(read):
     ("data", "fragment"),
     [
         (b"", "empty"),
-        (b"\x89PNG\r\n\x1a\n" + bytes(50), "seems to be a PNG file"),
-        (b"\xff\xd8\xff\xe0" + bytes(50), "seems to be a JPEG file"),
+        (b"GIF89a" + bytes(50), "seems to be a GIF file"),
+        (b"II*\0" + bytes(50), "seems to be a TIFF file"),
         (b"<!DOCTYPE html>", "HTML"),
         (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
         (b"\0\n\xffwhatever", r"\x00\n\xff"),
@@ -121,6 +121,38 @@ def test_a_misleading_suffix_is_refused_with_the_right_one(refusal):
     assert "named .hdr but holds OpenEXR; rename it to end in .exr" in refusal(exr_file({"RGB": halves()}), "light.hdr")
     assert "named .exr but holds Radiance RGBE; rename it to end in .hdr" in refusal(GOLDEN, "light.exr")
     assert "rename it to end in .hdr" in refusal(GOLDEN, "LIGHT.EXR")
+    assert "named .jpeg but holds PNG; rename it to end in .png" in refusal(b"\x89PNG" + bytes(50), "light.jpeg")
+    assert "named .png but holds JPEG; rename it to end in .jpg" in refusal(b"\xff\xd8\xff" + bytes(50), "light.png")
+
+
+def test_a_file_of_no_known_kind_is_told_which_kinds_there_are(refusal):
+    for data in (b"GIF89a", b"nothing known"):
+        assert ".hdr (Radiance), .exr (OpenEXR), .png or .jpg" in refusal(data)
+
+
+def test_every_kind_has_its_suffixes():
+    assert {".hdr", ".pic", ".exr", ".png", ".jpg", ".jpeg"} <= set(IMAGE_SUFFIXES)
+
+
+def test_bytes_in_memory_are_read_as_a_file_is(read):
+    bad = exr_file({"RGB": bad_image()})
+    image = decode_radiance_image(bad, "light.exr", Reading(sanitize=True))
+    file = read(bad, "light.exr", sanitize=True)
+    assert_same(image.pixels, file.pixels)
+    assert (image.encoding, image.notes) == (file.encoding, file.notes)
+    with pytest.raises(LightError, match=r"^folder/light\.hdr: named \.hdr but holds OpenEXR"):
+        decode_radiance_image(bad, "folder/light.hdr")
+    with pytest.raises(LightError, match=r"^light: .* the limit is 8"):
+        decode_radiance_image(GOLDEN, "light", Reading(limits=Limits(texels=8)))
+
+
+def test_running_out_of_memory_is_said_in_one_line(monkeypatch):
+    def starved(*arguments):
+        raise MemoryError
+
+    monkeypatch.setattr(radiance_files, "_check", starved)
+    with pytest.raises(LightError, match=r"^light\.hdr: not enough memory"):
+        decode_radiance_image(GOLDEN, "light.hdr")
 
 
 @pytest.mark.parametrize("name", ["LIGHT.HDR", "light.pic", "light", "light.dat", "ein Licht größer.hdr", "-"])

@@ -1,0 +1,95 @@
+"""From linear RGB of any primaries to linear RGB of Rec. 709 with the white D65.
+
+Four chromaticities, the CIE xy of red, green, blue and white, make an RGB space: its matrix to XYZ has the primaries
+(x, y, 1 - x - y) as columns, scaled so that (1, 1, 1) is the white of luminance 1. Where the white is not D65 the
+colours are adapted to it after Bradford, so white stays (1, 1, 1) and greys stay grey.
+
+A primary may be imaginary, as in ACES (AP0) or XYZ itself, whose y is 0 or below; the white may not.
+
+Sources
+    [709]  Rec. ITU-R BT.709-6, item 1.3 and 1.4: the primaries and the white
+    [L]    B. Lindbloom, "RGB/XYZ Matrices" and "Chromatic Adaptation", brucelindbloom.com: the Bradford matrix
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from shviewer.errors import LightError
+
+REC709 = np.array([[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]])
+"""(4, 2): x and y of red, green, blue and white [709]."""
+
+_BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])  # [L]
+_SAME = 1e-3  # in x and y; files round them to three or four digits
+_FARTHEST = 10.0  # of x and y from 0; the widest space in use (REDWideGamutRGB) reaches 1.5
+_FLATTEST = 1e-4  # twice the area of the triangle of primaries; that of Rec. 709 is 0.22
+
+
+def is_rec709(chromaticities: ArrayLike) -> bool:
+    """Whether (4, 2) chromaticities are those of Rec. 709, each within 1e-3: the RGB may be taken as it is."""
+    return bool(np.all(np.abs(np.asarray(chromaticities, np.float64) - REC709) <= _SAME))
+
+
+def rec709_from(chromaticities: ArrayLike) -> NDArray[np.float64]:
+    """(3, 3): linear RGB with these primaries and white, a column vector, to linear Rec. 709.
+
+    chromaticities: (4, 2), CIE xy of red, green, blue and white.
+    Raises LightError for values that make no RGB space.
+    """
+    checked = _checked(chromaticities)
+    rec709_from_xyz = np.linalg.inv(_xyz_from_rgb(REC709))
+    return rec709_from_xyz @ _adaptation(checked[3], REC709[3]) @ _xyz_from_rgb(checked)
+
+
+def xyz_from_rgb(chromaticities: ArrayLike) -> NDArray[np.float64]:
+    """(3, 3): linear RGB with these primaries and white, a column vector, to CIE XYZ; the white has Y = 1.
+
+    chromaticities: (4, 2), CIE xy of red, green, blue and white.
+    Raises LightError for values that make no RGB space.
+    """
+    return _xyz_from_rgb(_checked(chromaticities))
+
+
+def _checked(chromaticities: ArrayLike) -> NDArray[np.float64]:
+    values = np.asarray(chromaticities, np.float64)
+    if not np.all(np.abs(values) <= _FARTHEST):  # false for NaN too
+        raise _refusal(values, f"each x and y must be a number within {_FARTHEST:g}")
+    if abs(np.linalg.det(_three_coordinates(values[:3]))) < _FLATTEST:
+        raise _refusal(values, "red, green and blue must span a triangle")
+    white = _three_coordinates(values[3])
+    if not (white[1] > 0.0 and np.all(_BRADFORD @ white > 0.0)):
+        raise _refusal(values, "the white must be a colour that an eye can see, its y above 0")
+    if not np.all(_amounts_for_white(values) > 0.0):
+        raise _refusal(values, "the white must lie within the triangle of red, green and blue")
+    return values
+
+
+def _refusal(chromaticities: NDArray[np.float64], rule: str) -> LightError:
+    shown = ", ".join(f"({x:.4g}, {y:.4g})" for x, y in chromaticities)
+    return LightError(f"chromaticities {shown} of red, green, blue, white: {rule}; correct them or export as Rec. 709")
+
+
+def _xyz_from_rgb(chromaticities: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3); (1, 1, 1) has luminance 1."""
+    return _three_coordinates(chromaticities[:3]).T * _amounts_for_white(chromaticities)
+
+
+def _amounts_for_white(chromaticities: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3,): how much of each primary makes the white of luminance 1."""
+    white = _three_coordinates(chromaticities[3])
+    amounts: NDArray[np.float64] = np.linalg.solve(_three_coordinates(chromaticities[:3]).T, white / white[1])
+    return amounts
+
+
+def _three_coordinates(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(..., 2) -> (..., 3): x, y and z = 1 - x - y."""
+    return np.concatenate([xy, 1.0 - xy.sum(axis=-1, keepdims=True)], axis=-1)
+
+
+def _adaptation(old_white: NDArray[np.float64], new_white: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3): XYZ as it looks under one white to XYZ that looks the same under another, both given as xy."""
+    old, new = (_BRADFORD @ _three_coordinates(white) / white[1] for white in (old_white, new_white))
+    adaptation: NDArray[np.float64] = np.linalg.inv(_BRADFORD) @ ((new / old)[:, None] * _BRADFORD)
+    return adaptation

@@ -1,0 +1,257 @@
+"""Feeds spoilt files to the reader of images and reports whatever it does beyond its promise (promise.py).
+
+    python tests/fuzz/harness.py                     20 000 mutations and every truncation
+    python tests/fuzz/harness.py --forever           mutations without end, with a line of progress every 20 000
+    python tests/fuzz/harness.py --seed 7 --case 41  saves one mutation as a file, and checks it in this process
+
+Inputs that break the promise are saved in tests/fuzz/found, where test_fuzz.py checks them ever after.
+
+They are read in a child process: one that dies, or does not come back, is reported with the input it was at, and the
+next goes on behind it. An input is a function of the seed and its number, so both sides know it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import re
+import signal
+import sys
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from functools import cache
+from multiprocessing.connection import Connection
+from pathlib import Path
+from random import Random
+from typing import Any, NamedTuple, Protocol
+
+from mutations import mutated
+from promise import BrokenPromise, Witness
+from seeds import seeds
+
+FOUND = Path(__file__).parent / "found"
+COUNT = 20_000
+_SHARES = {".hdr": 45, ".exr": 30, ".png": 15, ".jpg": 10}  # percent; the reader of .hdr is the one written here
+_LARGE = 2048  # bytes; of seeds up to this size every truncation is tried
+_AT_ONCE = 1000
+_OF_A_KIND = 3
+_NO_SIGN_OF_LIFE_SECONDS = 60.0  # of the wall clock, and so only for what never comes back
+
+_seeds = cache(seeds)
+
+
+class Inputs(Protocol):
+    """A numbered set of files, the same in every process."""
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, number: int) -> tuple[str, bytes]:
+        """The name of the seed and the file made of it."""
+
+
+@dataclass(frozen=True)
+class Mutations:
+    seed: int
+    count: int = COUNT
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, number: int) -> tuple[str, bytes]:
+        random = Random(f"{self.seed}/{number}")
+        (kind,) = random.choices(list(_SHARES), list(_SHARES.values()))
+        names = _names(kind)
+        name, other = random.choice(names), random.choice(names)
+        return name, mutated(_seeds()[name], kind, random, _seeds()[other])
+
+
+@dataclass(frozen=True)
+class Truncations:
+    """Of each seed, from nothing to all but one byte; of large ones about `_LARGE` of them."""
+
+    def __len__(self) -> int:
+        return len(_truncations())
+
+    def __getitem__(self, number: int) -> tuple[str, bytes]:
+        name, length = _truncations()[number]
+        return name, _seeds()[name][:length]
+
+
+@cache
+def _names(kind: str) -> list[str]:
+    return [name for name in _seeds() if name.endswith(kind)]
+
+
+@cache
+def _truncations() -> list[tuple[str, int]]:
+    return [
+        (name, length) for name, data in _seeds().items() for length in range(0, len(data), 1 + len(data) // _LARGE)
+    ]
+
+
+class Broken(NamedTuple):
+    """An input that broke the promise."""
+
+    number: int
+    name: str
+    why: str
+
+
+@dataclass
+class Findings:
+    accepted: Counter[str] = field(default_factory=Counter)
+    refused: Counter[str] = field(default_factory=Counter)
+    broken: list[Broken] = field(default_factory=list)
+
+    @property
+    def count(self) -> int:
+        return self.accepted.total() + self.refused.total() + len(self.broken)
+
+
+def examine(inputs: Inputs, first: int = 0, most_broken: int = 10) -> Findings:
+    """Checks the inputs from number `first` on in child processes; stops early after `most_broken` of them."""
+    findings = Findings()
+    while first < len(inputs) and len(findings.broken) < most_broken:
+        first = _examine_until_death(inputs, first, findings)
+    return findings
+
+
+def _examine_until_death(inputs: Inputs, first: int, findings: Findings) -> int:
+    """The number of the next input: behind the one that killed the child, or behind the last."""
+    spawn = multiprocessing.get_context("spawn")
+    at = spawn.RawValue("q", first)
+    receiver, sender = spawn.Pipe(duplex=False)
+    child = spawn.Process(target=_work, args=(inputs, first, at, sender), daemon=True)
+    child.start()
+    sender.close()
+    seen, since = first, time.monotonic()
+    why = ""
+    try:
+        while not why:
+            if not receiver.poll(1.0):
+                if at.value != seen:
+                    seen, since = at.value, time.monotonic()
+                elif time.monotonic() - since > _NO_SIGN_OF_LIFE_SECONDS:
+                    why = f"did not come back within {_NO_SIGN_OF_LIFE_SECONDS:.0f} s"
+                continue
+            message = receiver.recv()
+            if message is None:
+                return len(inputs)
+            for name, accepted in message[0]:
+                (findings.accepted if accepted else findings.refused)[name] += 1
+            findings.broken += message[1]
+    except EOFError:
+        child.join()
+        why = f"killed its process (exit code {child.exitcode})"
+    finally:
+        child.kill()
+        child.join()
+    findings.broken.append(Broken(at.value, inputs[at.value][0], why))
+    return int(at.value) + 1
+
+
+def _work(inputs: Inputs, first: int, at: Any, sender: Connection) -> None:
+    """The child: sends what it found every now and then, and None when it is through."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is for the parent, which ends its child
+    for name, data in _seeds().items():  # imports and first allocations are no input's fault
+        verdict(Witness(), name, data)
+    witness = Witness()
+    for begin in range(first, len(inputs), _AT_ONCE):
+        outcomes, broken = [], []
+        for number in range(begin, min(begin + _AT_ONCE, len(inputs))):
+            at.value = number
+            name, data = inputs[number]
+            outcome = verdict(witness, name, data)
+            if isinstance(outcome, str):
+                broken.append(Broken(number, name, outcome))
+            else:
+                outcomes.append((name, outcome))
+        sender.send((outcomes, broken))
+    sender.send(None)
+
+
+def verdict(witness: Witness, name: str, data: bytes) -> bool | str:
+    """Whether it was accepted, or how the promise was broken."""
+    try:
+        return witness.check(name, data)
+    except BrokenPromise as broken:
+        return str(broken)
+
+
+def save(data: bytes, stem: str, name: str, folder: Path = FOUND) -> Path:
+    """Writes an input; `name` is its seed's."""
+    folder.mkdir(exist_ok=True)
+    path = folder / f"{stem}-{name}"
+    path.write_bytes(data)
+    return path
+
+
+def report(inputs: Inputs, stem: str, findings: Findings, reported: Counter[str]) -> None:
+    """Prints what broke the promise and saves it, the first few of a kind; `reported` counts the kinds."""
+    for number, name, why in findings.broken:
+        kind = Path(name).suffix + re.sub(r"\d+", "", why)
+        reported[kind] += 1
+        if reported[kind] > _OF_A_KIND:
+            continue
+        path = save(inputs[number][1], f"{stem}-{number}", name)
+        print(f"BROKEN: number {number}, of {name}: {why}; saved as {path}", flush=True)
+
+
+def _print_table(findings: Findings) -> None:
+    for name in _seeds():
+        accepted, refused = findings.accepted[name], findings.refused[name]
+        share = accepted / max(1, accepted + refused)
+        print(f"{name:24} {accepted + refused:6} inputs, {share:6.1%} accepted, {1 - share:6.1%} refused")
+
+
+def _one(seed: int, number: int) -> int:
+    name, data = Mutations(seed)[number]
+    print(f"number {number} of seed {seed}, of {name}, saved as {save(data, f'{seed}-{number}', name)}", flush=True)
+    print({True: "accepted", False: "refused"}.get(outcome := verdict(Witness(), name, data), outcome))
+    return isinstance(outcome, str)
+
+
+def _forever(seed: int) -> int:
+    began, inputs, number, reported = time.monotonic(), Mutations(seed, sys.maxsize), 0, Counter[str]()
+    while True:
+        part = Mutations(seed, number + 20 * _AT_ONCE)
+        findings = examine(part, number, most_broken=sys.maxsize)
+        report(inputs, str(seed), findings, reported)
+        number = len(part)
+        rate = number / (time.monotonic() - began)
+        print(
+            f"{number} inputs of seed {seed}, {rate:.0f} a second, {findings.accepted.total() / findings.count:.0%} of"
+            f" the last {findings.count} accepted, {reported.total()} broke the promise",
+            flush=True,
+        )
+
+
+def _once(seed: int, count: int) -> int:
+    reported = Counter[str]()
+    for stem, inputs in ((str(seed), Mutations(seed, count)), ("truncated", Truncations())):
+        began = time.monotonic()
+        findings = examine(inputs)
+        report(inputs, stem, findings, reported)
+        _print_table(findings)
+        print(f"{stem}: {findings.count} inputs in {time.monotonic() - began:.1f} s, {len(findings.broken)} broken")
+    return reported.total() > 0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seed", type=int, default=0, help="another number, other mutations")
+    parser.add_argument("--count", type=int, default=COUNT)
+    parser.add_argument("--forever", action="store_true")
+    parser.add_argument("--case", type=int, help="the number of one mutation")
+    options = parser.parse_args()
+    if options.case is not None:
+        return _one(options.seed, options.case)
+    return _forever(options.seed) if options.forever else _once(options.seed, options.count)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)

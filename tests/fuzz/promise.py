@@ -1,0 +1,113 @@
+"""What the reader promises about any bytes whatever, checked on one input.
+
+It returns finite float32 of a size that the file declares, or raises LightError with one line; within 2 s; and without
+more memory than twice the image and 200 MB.
+
+Time is that of the processor, so that a busy machine fails nothing. Memory is Linux's high water mark of resident memory,
+set back before each input (25 microseconds): it sees what C libraries allocate, which tracemalloc does not. The better
+known ru_maxrss cannot be set back, and a child process inherits its parent's. Elsewhere memory is not measured.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import struct
+import time
+from pathlib import Path
+
+import numpy as np
+
+from shviewer.errors import LightError
+from shviewer.lights.decoders.decoded import Decoded
+from shviewer.lights.decoders.limits import Limits
+from shviewer.lights.radiance_files import Reading, decode_radiance_image
+
+LIMITS = Limits(texels=2**20)
+"""Below the reader's own, since a header of a few bytes may claim all of them and honest work on those takes seconds."""
+
+MOST_SECONDS = 2.0
+MOST_BYTES_BEYOND_IMAGE = 200 * 10**6
+
+
+class BrokenPromise(Exception):
+    """One line that says which."""
+
+
+class Witness:
+    """Checks inputs one after the other in one process."""
+
+    def __init__(self, limits: Limits = LIMITS) -> None:
+        self.limits = limits
+        _forget_peak()
+        self.start = _peak_bytes()
+
+    def check(self, name: str, data: bytes) -> bool:
+        """Whether the input was accepted. BrokenPromise if the reader misbehaved."""
+        _forget_peak()
+        began = time.process_time()
+        image = _outcome(name, data, self.limits)
+        seconds = time.process_time() - began
+        if seconds > MOST_SECONDS:
+            raise BrokenPromise(f"took {seconds:.1f} s")
+        texels = self.limits.texels if image is None else image.pixels.size // 3
+        grown = _peak_bytes() - self.start
+        if grown > 2 * 12 * texels + MOST_BYTES_BEYOND_IMAGE:
+            raise BrokenPromise(f"took {grown / 1e6:.0f} MB for at most {texels} texels")
+        if image is not None:
+            _check_image(image, data)
+        return image is not None
+
+
+def _outcome(name: str, data: bytes, limits: Limits) -> Decoded | None:
+    """None if it was refused as it should be."""
+    try:
+        return decode_radiance_image(data, name, Reading(limits=limits))
+    except LightError as error:
+        message = str(error)
+        if not message.isprintable() or not message.startswith(f"{name}: ") or len(message) > 1000:
+            raise BrokenPromise(f"refused with {message!r}") from None
+        return None
+    except Exception as error:
+        raise BrokenPromise(f"{type(error).__name__}: {error}") from error
+
+
+def _check_image(image: Decoded, data: bytes) -> None:
+    pixels = image.pixels
+    if pixels.dtype != np.float32 or pixels.ndim != 3 or pixels.shape[2] != 3 or not pixels.flags.c_contiguous:
+        raise BrokenPromise(f"gives {pixels.dtype} {pixels.shape}")
+    if not np.isfinite(pixels).all():
+        raise BrokenPromise("gives values that are not finite")
+    if pixels.shape[:2] not in declared_sizes(data):
+        raise BrokenPromise(f"gives {pixels.shape[:2]} where the file declares {declared_sizes(data)}")
+
+
+def declared_sizes(data: bytes) -> set[tuple[int, int]]:
+    """Every (height, width) that somewhere in the file is stated as the reader understands it; few, mostly one."""
+    if data.startswith(b"\x89PNG"):
+        width, height = struct.unpack_from(">II", data, 16)
+        return {(height, width), (width, height)}  # turned by its EXIF orientation
+    if data.startswith(b"\xff\xd8"):
+        stated = {struct.unpack(">HH", found[1]) for found in re.finditer(rb"(?s)\xff[\xc0-\xcf]..\x08(....)", data)}
+        return {size for height, width in stated for size in ((height, width), (width, height))}
+    if data.startswith(b"#?"):
+        sizes = re.finditer(rb"\n\s*[+-]([XY])\s+\+?(\d+)\s+[+-][XY]\s+\+?(\d+)", data)
+        return {(int(m[2]), int(m[3])) if m[1] == b"Y" else (int(m[3]), int(m[2])) for m in sizes}
+    windows = re.finditer(rb"(?s)displayWindow\0box2i\0....(.{16})", data)
+    corners = [struct.unpack("<4i", found[1]) for found in windows]
+    return {(bottom - top + 1, right - left + 1) for left, top, right, bottom in corners}
+
+
+def _forget_peak() -> None:
+    with contextlib.suppress(OSError):
+        Path("/proc/self/clear_refs").write_bytes(b"5")
+
+
+def _peak_bytes() -> int:
+    """0 where the system does not say."""
+    try:
+        status = Path("/proc/self/status").read_bytes()
+    except OSError:
+        return 0
+    found = re.search(rb"VmHWM:\s*(\d+) kB", status)
+    return 1024 * int(found[1]) if found else 0

@@ -1,0 +1,187 @@
+"""The sound files that are mutated: every format, packing, codec and layout, made in memory and small.
+
+Also three files after known faults of another reader of .hdr (stb_image, issues 317, 318 and 1223).
+"""
+
+from __future__ import annotations
+
+import struct
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenEXR
+from numpy.typing import NDArray
+
+sys.path.append(str(Path(__file__).parents[1] / "lights"))  # the encoders of the readers' tests
+
+from hdr_files import exr_file, exr_part, exr_parts, hdr_file, random_texels, window
+from ldr_files import GREY, GREY_ALPHA, PALETTE, RGB, RGBA, exif, png_file, saved_by_pillow
+from PIL import Image
+
+CODECS = ("NO", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K32", "HTJ2K256", "ZSTD")
+
+
+def seeds() -> dict[str, bytes]:
+    """Name -> file. The suffix is that of its kind."""
+    return {**_hdr_seeds(), **_exr_seeds(), **_png_seeds(), **_jpeg_seeds()}
+
+
+def stb_seeds() -> dict[str, bytes]:
+    """Name -> file that must be refused, and at once."""
+    start = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"
+    scanline = b"\x02\x02\x00\x08"
+    return {
+        # A run and a literal that go past the end of their channel, in the first and in the last one.
+        "stb-317-run.hdr": start + b"-Y 1 +X 8\n" + scanline + b"\xff\x80" * 4,
+        "stb-317-literal.hdr": start
+        + b"-Y 1 +X 8\n"
+        + scanline
+        + b"\x88\x80" * 3
+        + b"\x07"
+        + bytes(7)
+        + b"\x80"
+        + bytes(128),
+        # Sizes whose product with 4 or 12 bytes wraps in 32 bits: to a few bytes, to 0, to a negative number.
+        "stb-318-wraps-to-little.hdr": start + b"-Y 65537 +X 65536\n" + scanline + bytes(4096),
+        "stb-318-wraps-to-nothing.hdr": start + b"-Y 32768 +X 32768\n" + scanline + bytes(4096),
+        "stb-318-turns-negative.hdr": start + b"-Y 2147483647 +X 2\n" + bytes(4096),
+        # Packets of no texels, of which there may be any number without progress.
+        "stb-1223-new.hdr": start + b"-Y 1 +X 8\n" + scanline + bytes(65536),
+        "stb-1223-old.hdr": start + b"-Y 1 +X 8\n\x80\x80\x80\x80" + b"\1\1\1\0" * 16384,
+    }
+
+
+def _hdr_seeds() -> dict[str, bytes]:
+    texels = random_texels(4, 12)
+    exposed = (
+        b"FORMAT=32-bit_rle_rgbe",
+        b"EXPOSURE=2.5",
+        b"COLORCORR=1 0.5 2",
+        b"PRIMARIES=.64 .33 .3 .6 .15 .06 .3127 .329",
+    )
+    xyze = (b"FORMAT=32-bit_rle_xyze",)
+    return {
+        "flat.hdr": hdr_file(texels, "flat"),
+        "old.hdr": hdr_file(texels, "old"),
+        "new.hdr": hdr_file(texels, "new"),
+        "upside-down.hdr": hdr_file(texels, "new", "+Y -X"),
+        "columns.hdr": hdr_file(random_texels(9, 10), "old", "-X +Y"),
+        "xyze.hdr": hdr_file(texels, "new", settings=xyze),
+        "exposed.hdr": hdr_file(texels, "flat", settings=exposed, magic=b"#?RGBE", newline=b"\r\n"),
+        "one-texel.hdr": hdr_file(random_texels(1, 1), "flat"),
+        "lat-long.hdr": hdr_file(random_texels(8, 16), "new"),
+        "vertical-cross.hdr": hdr_file(random_texels(16, 12), "new"),
+        "horizontal-cross.hdr": hdr_file(random_texels(9, 12), "old"),
+        "strip.hdr": hdr_file(random_texels(3, 18), "new"),
+        "vertical-strip.hdr": hdr_file(random_texels(18, 3), "flat"),
+        "angular.hdr": hdr_file(random_texels(11, 11), "new"),
+        "mirror-ball.hdr": hdr_file(random_texels(12, 12), "old"),
+    }
+
+
+def _exr_seeds() -> dict[str, bytes]:
+    half, single = _picture(12, 24, np.float16), _picture(12, 24, np.float32)
+    luminance = single[..., 0].copy()
+    chroma = {name: OpenEXR.Channel(name, luminance, 2, 2) for name in ("BY", "RY")}
+    layers = {f"{layer}.{c}": half[..., i].copy() for layer in ("diffuse", "sun") for i, c in enumerate("RGB")}
+    tiles = OpenEXR.TileDescription()
+    tiles.xSize = tiles.ySize = 8
+    offset: dict[str, Any] = {"dataWindow": window(2, 1, 25, 12), "displayWindow": window(0, 0, 27, 13)}
+    by_codec = {
+        f"{codec.lower()}.exr": exr_file(
+            {"RGB": single if codec == "PIZ" else half}, compression=getattr(OpenEXR, f"{codec}_COMPRESSION")
+        )
+        for codec in CODECS
+        if hasattr(OpenEXR, f"{codec}_COMPRESSION")  # the newest need a recent library
+    }
+    return {
+        **by_codec,
+        "integers.exr": exr_file({"RGB": np.arange(96, dtype=np.uint32).reshape(4, 8, 3)}),
+        "tiled.exr": exr_file({"RGB": half}, type=OpenEXR.tiledimage, tiles=tiles),
+        "mip-mapped.exr": mip_mapped_exr(),
+        "parts.exr": exr_parts(exr_part("light", {"RGB": half}), exr_part("depth", {"Z": luminance})),
+        "layers.exr": exr_file({"RGB": half, **layers}),
+        "grey.exr": exr_file({"Y": luminance}),
+        "luminance-chroma.exr": exr_file({"Y": OpenEXR.Channel("Y", luminance, 1, 1), **chroma}),
+        "chromaticities.exr": exr_file(
+            {"RGB": half}, chromaticities=(0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329)
+        ),
+        "window.exr": exr_file({"RGB": half}, **offset),
+        "cube.exr": exr_file({"RGB": _picture(24, 4, np.float16)}, envmap=OpenEXR.ENVMAP_CUBE),
+        "lat-long.exr": exr_file({"RGB": half}, envmap=OpenEXR.ENVMAP_LATLONG),
+        "angular.exr": exr_file({"RGB": _picture(10, 10, np.float16)}),
+        "cross.exr": exr_file({"RGB": _picture(16, 12, np.float16)}),
+    }
+
+
+def _png_seeds() -> dict[str, bytes]:
+    rng = np.random.default_rng(1)
+    deep = rng.integers(0, 65536, (6, 12, 4))
+    palette = [(b"PLTE", rng.bytes(48)), (b"tRNS", b"\0\x80")]
+    frames = [(_picture(4, 8, np.float32) * 60 * k).astype(np.uint8) for k in (1, 2)]
+    colour = [(b"gAMA", struct.pack(">I", 50000)), (b"cHRM", bytes(32)), (b"tEXt", b"Title\0light")]
+    return {
+        "colour.png": png_file(rng.integers(0, 256, (6, 12, 3)), RGB, extra=colour),
+        "deep.png": png_file(deep[..., :3], RGB, 16, extra=[(b"sRGB", b"\0"), (b"cICP", bytes((1, 13, 0, 1)))]),
+        "deep-alpha.png": png_file(deep, RGBA, 16, interlaced=True),
+        "deep-grey-alpha.png": png_file(deep[..., :2], GREY_ALPHA, 16),
+        "grey.png": png_file(rng.integers(0, 4, (9, 9)), GREY, 2, interlaced=True),
+        "palette.png": png_file(
+            rng.integers(0, 16, (12, 16)), PALETTE, 4, extra=palette, after=[(b"eXIf", exif(6)[6:])]
+        ),
+        "animated.png": saved_by_pillow(frames[0], save_all=True, append_images=[Image.fromarray(frames[1])]),
+    }
+
+
+def _jpeg_seeds() -> dict[str, bytes]:
+    codes = (_picture(16, 32, np.float32) * 60).astype(np.uint8)
+    return {
+        "baseline.jpg": saved_by_pillow(codes, "JPEG"),
+        "progressive.jpg": saved_by_pillow(codes, "JPEG", progressive=True, exif=exif(6)),
+        "grey.jpg": saved_by_pillow(codes[..., 0].copy(), "JPEG", restart_marker_rows=1),
+    }
+
+
+def _picture(height: int, width: int, dtype: type) -> NDArray[Any]:
+    """(height, width, 3), 0 to about 4: smooth, flat and noisy places, so that every codec has something to do."""
+    y, x = np.mgrid[0:height, 0:width]
+    picture = np.stack([x / width, y / height, (x + y) / (width + height)], axis=2) + 0.5
+    picture[: height // 3, : width // 3] = (1, 2, 4)
+    picture[-1] = np.random.default_rng(height).random((width, 3))
+    return picture.astype(dtype)
+
+
+def mip_mapped_exr() -> bytes:
+    """An uncompressed file of 8 x 4 texels in tiles of 4 x 4 with its levels, which the library's Python writes not."""
+
+    def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:
+        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
+
+    width, height, side = 8, 4, 4
+    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    corners = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = (
+        struct.pack("<II", 20000630, 2 | 0x200)  # one part, tiled
+        + attribute(b"channels", b"chlist", channels)
+        + attribute(b"compression", b"compression", b"\0")
+        + attribute(b"dataWindow", b"box2i", corners)
+        + attribute(b"displayWindow", b"box2i", corners)
+        + attribute(b"lineOrder", b"lineOrder", b"\0")
+        + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
+        + attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0))
+        + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1))
+        + attribute(b"tiles", b"tiledesc", struct.pack("<IIB", side, side, 1))
+        + b"\0"
+    )
+    chunks = []
+    for level in range(4):  # 8 x 4, 4 x 2, 2 x 1, 1 x 1
+        columns, rows = max(width >> level, 1), max(height >> level, 1)
+        for left in range(0, columns, side):
+            across = min(side, columns - left)
+            texels = np.full(3 * across * rows, level + 1, np.float32).tobytes()
+            chunks.append(struct.pack("<5i", left // side, 0, level, level, len(texels)) + texels)
+    first = len(header) + 8 * len(chunks)
+    offsets = np.cumsum([first, *(len(chunk) for chunk in chunks[:-1])])
+    return header + offsets.astype("<u8").tobytes() + b"".join(chunks)
