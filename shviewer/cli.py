@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import sys
 from collections.abc import Sequence
@@ -10,11 +11,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shviewer.errors import OutputError, ShviewerError, UsageError
-from shviewer.options import DEFAULT_BANDS, finite, report_parser, screenshot_parser, view_parser
+from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
+from shviewer.options import DEFAULT_BANDS, finite, info_parser, report_parser, screenshot_parser, view_parser
 
 if TYPE_CHECKING:
     from shviewer.lights.light import Light
+    from shviewer.lights.radiance_files import Reading
     from shviewer.viewer.state import ViewState
 
 
@@ -26,6 +28,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             return _screenshot(screenshot_parser().parse_args(arguments[1:]))
         if arguments[:1] == ["report"]:
             return _report(report_parser().parse_args(arguments[1:]))
+        if arguments[:1] == ["info"]:
+            return _info(info_parser().parse_args(arguments[1:]))
         return _view(view_parser().parse_args(arguments))
     except ShviewerError as error:
         print(f"shviewer: {error}", file=sys.stderr)
@@ -59,7 +63,7 @@ def _view(options: argparse.Namespace) -> int:
     state = _state(options, all_lights=True)
     _print_notes(load_light(state))
     try:
-        window.run(state, tuple(options.size), verbose=options.verbose)
+        window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
         out = Path(f"shviewer-{window.file_stem(load_light(state).name)}.png")
         save_picture(prepare(state), compose(options.size[0], options.size[1], state.zoom), out)
@@ -91,6 +95,52 @@ def _screenshot(options: argparse.Namespace) -> int:
     if verdict:
         print(f"shviewer: {verdict}", file=sys.stderr)
     return 1 if verdict else 0
+
+
+def _info(options: argparse.Namespace) -> int:
+    """Every light that can be read is described; the exit code is that of the first that cannot."""
+    from shviewer.viewer.information import as_json_object, as_text, describe
+
+    reading = _reading(options)
+    exit_code = 0
+    objects: list[dict[str, object]] = []
+    for number, text in enumerate(options.lights):
+        refused: str | None = None
+        try:
+            found = describe(text, reading)
+        except ShviewerError as error:
+            refused, code = str(error), error.exit_code
+            objects.append({"light_argument": text, "error": refused})
+        else:
+            refused, code = found.refused, LightError.exit_code
+            objects.append(as_json_object(found))
+            if not options.json:
+                print(("\n" if number else "") + as_text(found), flush=True)
+        if refused is not None:
+            print(f"shviewer: {refused}", file=sys.stderr)
+            exit_code = exit_code or code
+    if options.json:
+        print(json.dumps(objects, indent=2, allow_nan=False))
+    return exit_code
+
+
+def _reading(options: argparse.Namespace) -> Reading:
+    """How images are read. UsageError for an unknown layout."""
+    from shviewer.lights.decoders.limits import Limits
+    from shviewer.lights.radiance_files import Reading
+
+    if options.layout != "auto":
+        from shviewer.lights.layouts.recognise import LAYOUTS
+
+        if options.layout not in LAYOUTS:
+            raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
+    chosen = {
+        "side": options.max_side,
+        "texels": options.max_megatexels and int(options.max_megatexels * 2**20),
+        "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
+    }
+    limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
+    return Reading(sanitize=options.sanitize, layout=options.layout, limits=limits)
 
 
 def _report(options: argparse.Namespace) -> int:
@@ -126,7 +176,6 @@ class _Progress:
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
     from shviewer.lights.light import built_in_lights
-    from shviewer.lights.radiance_files import Reading
     from shviewer.viewer.camera import IDENTITY, towards
     from shviewer.viewer.picture import check
     from shviewer.viewer.state import ViewState, open_light
@@ -139,7 +188,7 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
     state = ViewState(
         lights=tuple(built_in_lights()) if all_lights else (options.light,),
-        reading=Reading(sanitize=options.sanitize),
+        reading=_reading(options),
         n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
         muted=options.mute,
         quantity=options.quantity,

@@ -21,7 +21,10 @@ EXIT_CODES = """exit codes:
 
 DEFAULT_BANDS = 5
 
-LIGHT_HELP = "a built-in name (--list-lights), a .toml scene, a .hdr or .exr lat-long image, or file.py:function"
+LIGHT_HELP = (
+    "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
+    "or file.py:function"
+)
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -37,12 +40,15 @@ def view_parser() -> OneLineParser:
         prog="shviewer",
         usage="shviewer [LIGHT] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
+        "       shviewer info LIGHT [LIGHT ...] [options]\n"
         "       shviewer report --stability [-o DIR]",
         description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
-        epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help",
+        epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
+        "\nwhat a light is, in figures: shviewer info --help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     _add_view_options(parser)
+    parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
     parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
     parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")
     parser.add_argument("--list-lights", action="store_true", help="print the built-in lights and exit")
@@ -79,6 +85,21 @@ def screenshot_parser() -> OneLineParser:
         default=0.001,
         help="share of the pixels, 0 to 1, that may differ from the reference by more than 2/255 (default 0.001)",
     )
+    return parser
+
+
+def info_parser() -> OneLineParser:
+    """shviewer info LIGHT [LIGHT ...]: what lights are, in figures."""
+    parser = OneLineParser(
+        prog="shviewer info",
+        description="Say what each LIGHT is: its file, size and range, its mean and peak, the energy of its bands, and how many"
+        " bands it needs. The figures are the window's.",
+        epilog=f"{EXIT_CODES}\n\nA light that cannot be read does not stop the others; the exit code is that of the first.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("lights", metavar="LIGHT", nargs="+", help=LIGHT_HELP)
+    parser.add_argument("--json", action="store_true", help="the same as a JSON array, one object per LIGHT")
+    _add_reading_options(parser)
     return parser
 
 
@@ -147,10 +168,36 @@ def _add_view_options(parser: OneLineParser) -> None:
     parser.add_argument(
         "--size", metavar=("W", "H"), nargs=2, type=int, default=(1280, 640), help="pixels (default 1280 640)"
     )
+    _add_reading_options(parser)
+
+
+def _add_reading_options(parser: OneLineParser) -> None:
+    """How an image is read."""
     parser.add_argument(
         "--sanitize",
         action="store_true",
         help="repair NaN, infinite and negative texels of an image instead of refusing or keeping them",
+    )
+    parser.add_argument(
+        "--layout",
+        metavar="L",
+        default="auto",
+        help="how an image covers the sphere: auto (default), lat-long, cube, angular or mirror-ball",
+    )
+    parser.add_argument(
+        "--max-side",
+        metavar="N",
+        type=_positive_count,
+        help="texels along a side that an image may have (default 32768)",
+    )
+    parser.add_argument(
+        "--max-megatexels",
+        metavar="M",
+        type=_positive,
+        help="texels that an image may have, in units of 1024 x 1024 (default 128)",
+    )
+    parser.add_argument(
+        "--max-file-mib", metavar="M", type=_positive, help="size that an image's file may have, in MiB (default 512)"
     )
 
 
@@ -168,6 +215,17 @@ def _count(text: str) -> int:
     if value != int(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
     return int(value)
+
+
+def _positive_count(text: str) -> int:
+    return int(_positive(str(_count(text))))
+
+
+def _positive(text: str) -> float:
+    value = finite(text)
+    if not value > 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not positive")
+    return value
 
 
 def finite(text: str) -> float:

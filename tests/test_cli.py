@@ -68,7 +68,9 @@ def failing(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, s
 # --- what is loaded
 
 
-@pytest.mark.parametrize("option", [["--version"], ["--help"], ["screenshot", "--help"], ["--list-keys", "--help"]])
+@pytest.mark.parametrize(
+    "option", [["--version"], ["--help"], ["screenshot", "--help"], ["info", "--help"], ["--list-keys", "--help"]]
+)
 def test_asking_for_help_loads_neither_numpy_nor_opengl(option: list[str]) -> None:
     heavy = ("numpy", "moderngl", "glfw", "PIL", "pyrr", "OpenEXR")
     code = (
@@ -125,6 +127,11 @@ def test_the_lists_are_those_of_the_program(capsys: pytest.CaptureFixture[str]) 
         (["--camera", "inf", "1"], 2, ["'inf'", "finite"]),
         (["--rotate-light", "10", "-90.5"], 2, ["elevation -90.5", "-90 to 90"]),
         (["--zoom", "99"], 2, ["zoom 99", "0.25 to 16"]),
+        (["--max-side", "0"], 2, ["--max-side", "'0'", "not positive"]),
+        (["--max-side", "1.5"], 2, ["--max-side", "'1.5'", "whole number"]),
+        (["--max-megatexels", "-1"], 2, ["--max-megatexels", "'-1'", "not positive"]),
+        (["--max-file-mib", "nan"], 2, ["--max-file-mib", "finite"]),
+        (["--layout", "latlong"], 2, ["'latlong'", "auto, lat-long, cube, angular, mirror-ball"]),
         (["--bogus"], 2, ["--bogus"]),
         (["gren"], 3, ["unknown light 'gren'", "did you mean green"]),
         (["nothing like it"], 3, ["unknown light", "there is: green, "]),
@@ -187,7 +194,9 @@ LOBE = '[[lobe]]\nprofile = "gaussian"\naxis = [0, 0, 1]\nradiance = 1\n'
         ("empty.toml", b"", ["no lobe"]),
         ("text.hdr", b"hello there", ["no known image"]),
         ("cut.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n", ["cut.hdr"]),
-        ("picture.exr", b"\x89PNG\r\n\x1a\n", ["a PNG"]),
+        ("picture.exr", b"\x89PNG\r\n\x1a\n", ["holds PNG", "rename"]),
+        ("picture.exr:layer", b"\x89PNG\r\n\x1a\n", ["picture.exr: ", "holds PNG"]),
+        ("missing.exr:layer", None, ["missing.exr: ", "no such file"]),
         ("light.txt", b"hello", ["must end in .toml"]),
         ("syntax.toml", "[[lobe]\n", ["not valid TOML"]),
         ("key.toml", LOBE + "sharpnes = 3\n", ["lobe 1", "sharpnes"]),
@@ -246,7 +255,7 @@ def test_an_image_with_nan_is_refused_with_counts_and_repaired_on_request(run: R
     assert "1 negative value" in done.stderr
     with Image.open(tmp_path / "a.png") as image:
         said = json.loads(image.info["shviewer"])
-    assert said["sanitize"] is True
+    assert (said["sanitize"], said["layout"]) == (True, "auto")
     assert len(said["light_notes"]) == len(done.stderr.splitlines())
 
 
@@ -258,6 +267,107 @@ def test_negative_texels_are_kept_and_counted_and_an_odd_shape_is_warned_of(run:
     assert done.returncode == 0
     assert "1 negative value, minimum -2, kept" in done.stderr
     assert "4 x 4 is not 2:1" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--max-side", "7", ["8 x 4", "1 to 7"]),
+        ("--max-megatexels", "3e-5", ["8 x 4 = 32 texels", "limit is 31"]),
+        ("--max-file-mib", "1e-4", ["limit is 104"]),
+    ],
+)
+@pytest.mark.parametrize("mode", [["screenshot", "a.png"], ["info"], []], ids=["screenshot", "info", "window"])
+def test_the_limits_of_an_image_are_the_users(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, mode: list[str], option: str, value: str, words: list[str]
+) -> None:
+    write_exr(tmp_path / "small.exr", np.ones((4, 8, 3)))
+    code, line = failing(capsys, *mode, str(tmp_path / "small.exr"), option, value)
+    assert code == 3
+    assert all(word in line for word in [*words, option]), line
+
+
+def test_larger_limits_admit_what_is_refused_otherwise(tmp_path: Path) -> None:
+    write_exr(tmp_path / "wide.exr", np.ones((1, 32769, 3)))
+    assert main(["info", str(tmp_path / "wide.exr")]) == 3
+    assert main(["info", str(tmp_path / "wide.exr"), "--max-side", "4e4", "--layout", "lat-long"]) == 0
+
+
+def test_the_layout_and_the_layer_asked_for_are_taken(run: Run, tmp_path: Path) -> None:
+    pixels = np.random.default_rng(0).random((2, 8, 8, 3)).astype(np.float32)
+    channels = {
+        f"{name}{channel}": pixels[part, ..., i]
+        for part, name in ((0, ""), (1, "key."))
+        for i, channel in enumerate("RGB")
+    }
+    OpenEXR.File({}, {name: np.ascontiguousarray(values) for name, values in channels.items()}).write(
+        str(tmp_path / "two.exr")
+    )
+    done = run("info", "--json", "two.exr", "two.exr:key", "two.exr:none", "--layout", "angular")
+    beauty, key, missing = json.loads(done.stdout)
+    assert (beauty["layout"], key["layout"]) == ("angular", "angular")
+    assert beauty["peak"] in pixels[0]
+    assert key["peak"] in pixels[1]
+    assert key["file"] == "two.exr"
+    assert "none" in missing["error"]
+    assert done.returncode == 3
+
+
+# --- info
+
+
+def test_info_describes_every_light_it_can_read_and_exits_with_the_first_failure(run: Run, tmp_path: Path) -> None:
+    write(tmp_path / "broken.toml", "[[lobe]\n")
+    write_exr(tmp_path / "white.exr", np.ones((4, 8, 3)))
+    done = run("info", "white.exr", "broken.toml", "gren", "green")
+    assert done.returncode == 3
+    blocks = done.stdout.split("\n\n")
+    assert [block.split(":")[0] for block in blocks] == ["white", "green"]
+    errors = done.stderr.splitlines()
+    assert len(errors) == 2
+    assert "broken.toml" in errors[0]
+    assert "did you mean green" in errors[1]
+    assert re.search(r"^  radiance +1 to 1 in any channel", blocks[0], flags=re.MULTILINE)
+    assert re.search(r"^  mean +1 1 1, luminance 1$", blocks[0], flags=re.MULTILINE)
+    assert re.search(r"^  irradiance up +3\.142 3\.142 3\.142$", blocks[0], flags=re.MULTILINE)
+    assert re.search(r"^  dynamic range +0\.0 stops", blocks[0], flags=re.MULTILINE)
+
+
+def test_info_tells_what_is_wrong_with_an_image_and_what_it_would_be_repaired(run: Run, tmp_path: Path) -> None:
+    pixels = np.ones((4, 8, 3))
+    pixels[1, 2, 0], pixels[3, 7] = np.nan, np.inf
+    write_exr(tmp_path / "bad.exr", pixels)
+    done = run("info", "bad.exr")
+    assert done.returncode == 3
+    assert len(done.stderr.splitlines()) == 1
+    for text in (done.stdout, done.stderr):
+        assert "1 NaN, 3 +Inf" in text
+    assert "1 NaN -> 0" in done.stdout
+    done = run("info", "bad.exr", "--sanitize")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "refused" not in done.stdout
+
+
+def test_info_as_json_has_an_object_for_every_argument(run: Run, tmp_path: Path) -> None:
+    write_exr(tmp_path / "grey.exr", np.full((4, 8, 3), 0.5))
+    done = run("info", "--json", "grey.exr", "nothing.hdr", "hemisphere")
+    assert done.returncode == 3
+    said = json.loads(done.stdout)
+    assert [about["light_argument"] for about in said] == ["grey.exr", "nothing.hdr", "hemisphere"]
+    assert said[0]["mean"] == pytest.approx([0.5] * 3, rel=1e-9)
+    assert (said[0]["size"], said[0]["refused"]) == ([8, 4], None)
+    assert said[0]["file_bytes"] == (tmp_path / "grey.exr").stat().st_size
+    assert "no such file" in said[1]["error"]
+    assert f"shviewer: {said[1]['error']}\n" == done.stderr
+
+
+def test_info_loads_no_opengl() -> None:
+    code = (
+        "import sys\nfrom shviewer.cli import main\nassert main(['info', 'green']) == 0\n"
+        "print([name for name in ('moderngl', 'glfw') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
 
 
 # --- where there is no display, or no OpenGL
@@ -376,6 +486,7 @@ def test_a_reference_is_never_overwritten_by_the_picture(capsys: pytest.CaptureF
         (("--window", "dering:3"), "dering has no width"),
         (("screenshot",), "the following arguments are required: OUT"),
         (("report",), "required: --stability"),
+        (("info",), "the following arguments are required: LIGHT"),
     ],
 )
 def test_a_mistyped_command_is_one_line(

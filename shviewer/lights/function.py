@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import sys
 import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -151,22 +151,24 @@ class FunctionLight:
 
 
 def load_function(path: Path, function: str) -> FunctionLight:
-    """The light `function` of the Python file `path`. LightError if the file or the function is missing or fails."""
+    """The light `function` of the Python file `path`. LightError if the file or the function is missing or fails.
+
+    The file is compiled here and not through Python's cache, which takes two versions for one if they are of one size and
+    one second.
+    """
     try:
         missing = not path.is_file()
     except (OSError, ValueError):
         missing = True
     if missing:
         raise LightError(f"{path}: no such file; name a light function as file.py:function")
-    spec = importlib.util.spec_from_file_location(f"_light_function_{path.stem}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
+    module = ModuleType(f"_light_function_{path.stem}")
+    module.__file__ = str(path)
     sys.modules[module.__name__] = module  # dataclasses look their module up
     folder = str(path.parent.resolve())
     sys.path.insert(0, folder)  # as for a script: its neighbours can be imported
     try:
-        spec.loader.exec_module(module)
+        exec(compile(path.read_bytes(), path, "exec"), vars(module))
     except (Exception, SystemExit) as error:
         raise LightError(f"{path}: importing it raised {type(error).__name__}: {error}") from error
     finally:

@@ -12,7 +12,7 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading
 from shviewer.resources import resource_folder
 
-IMAGE_SUFFIXES = (".hdr", ".pic", ".exr")
+IMAGE_SUFFIXES = (".hdr", ".pic", ".rgbe", ".exr", ".png", ".jpg", ".jpeg")
 
 
 class Light(Protocol):
@@ -70,8 +70,20 @@ def built_in_lights() -> dict[str, Path]:
     return {path.stem: path for path in [*scenes, *maps]}
 
 
+def split_light(text: str) -> tuple[Path, str]:
+    """The file that a LIGHT names, and what in it: the layer of "file.exr:layer", the function of "file.py:function", or "".
+
+    A built-in name comes first, then a file of that very name.
+    """
+    path = built_in_lights().get(text) or Path(text)
+    file, _, part = text.rpartition(":")
+    if part and file.lower().endswith((".exr", ".py")) and not _exists(path):
+        return Path(file), part
+    return path, ""
+
+
 def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
-    """The light that `text` names: a built-in, a .toml scene, a .hdr or .exr image, or "file.py:function".
+    """The light that `text` names: a built-in, a .toml scene, an image, a "file.exr:layer" or a "file.py:function".
 
     `reading` says how an image is read.
     LightError if there is no such light or its file is bad.
@@ -80,30 +92,33 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
     from shviewer.lights.function import load_function
     from shviewer.lights.scene import read_scene
 
-    path = built_in_lights().get(text) or Path(text)
+    path, part = split_light(text)
     if path.suffix.lower() == ".toml":
         return read_scene(path)
     if path.suffix.lower() in IMAGE_SUFFIXES:
-        return EnvironmentLight.read(path, reading)
-    file, separator, function = text.rpartition(":")
-    if separator and file.endswith(".py"):
-        return load_function(Path(file), function)
+        return EnvironmentLight.read(path, reading, part)
+    if part:
+        return load_function(path, part)
     raise LightError(_unknown(text))
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # too long for a file name, or with a zero byte
+        return False
 
 
 def _what_it_is(text: str) -> str:
     """What a path is that cannot be a light, and what to do; "" if there is nothing of that name."""
     path = Path(text)
-    try:
-        if not path.exists():
-            return ""
-    except (OSError, ValueError):  # too long for a file name, or with a zero byte
+    if not _exists(path):
         return ""
     if path.is_dir():
         return "a directory; name one file in it"
     if path.suffix == ".py":
         return f"a Python file; name a function in it, such as {path.name}:light"
-    return "a file must end in .toml, .hdr, .pic or .exr, and images of other kinds be converted"
+    return f"a file must end in .toml, {', '.join(IMAGE_SUFFIXES[:-1])} or {IMAGE_SUFFIXES[-1]}: convert it"
 
 
 def _unknown(text: str) -> str:

@@ -1,13 +1,13 @@
 """What is known of a light: its projections, the figures of a reconstruction, the band counts it needs.
 
-What is expensive is remembered: a light is read once, projected once per method to at least MAX_DIRECT_BANDS bands, and
-sampled once for its error figures. A band key then costs a sum of what is there.
+What is expensive is remembered (memory.py): a light is read once, projected once per method to at least MAX_DIRECT_BANDS
+bands, and sampled once for its error figures. A band key then costs a sum of what is there.
 """
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from time import perf_counter
 
 import numpy as np
@@ -33,10 +33,11 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.projection import project_product, project_samples
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.lights.irradiance import IrradianceLight
-from shviewer.lights.light import Light, find_light
-from shviewer.lights.radiance_files import Reading
+from shviewer.lights.light import Light, built_in_lights, find_light
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.memory import MEMORY, remember
 from shviewer.viewer.state import QUANTITIES, ViewState
+from shviewer.viewer.watching import Stamp, stamp
 
 BEST = ("best", 0, 0)
 """Method, samples and seed of the best way, to which the last two do not matter."""
@@ -109,8 +110,42 @@ def sampling_of(state: ViewState) -> tuple[str, int, int]:
 
 def load_light(state: ViewState) -> Light:
     """The state's light, or its irradiance; one named by text is read once."""
-    light = _find(state.light, state.reading) if isinstance(state.light, str) else state.light
+    light = state.light
+    if isinstance(light, str):
+        light = MEMORY.named(_name(state)) or read_again(state)
     return _irradiance(light) if state.quantity == "irradiance" else light
+
+
+def read_again(state: ViewState) -> Light:
+    """The light that the state names, read anew. LightError leaves what was known of it as it was.
+
+    A light that is not named by a text is what it is.
+    """
+    if not isinstance(state.light, str):
+        return state.light
+    read = stamp(state.light)  # before: what is written during the reading is a later change
+    safe = state.light in built_in_lights()
+    light = find_light(state.light, replace(state.reading, isolated=False) if safe else state.reading)
+    MEMORY.name(_name(state), light)
+    MEMORY.results(light, stamp)[None] = read
+    return light
+
+
+def keep_light(state: ViewState, light: Light) -> None:
+    """Let the state's text go on meaning `light`, whatever its file holds by now."""
+    if isinstance(state.light, str):
+        MEMORY.name(_name(state), light)
+
+
+def stamp_read(state: ViewState) -> Stamp | None:
+    """The stamp that the file of the state's light had when it was read; None if that is not known."""
+    light = MEMORY.named(_name(state))
+    found: Stamp | None = MEMORY.results(light, stamp).get(None) if light is not None else None
+    return found
+
+
+def _name(state: ViewState) -> Hashable:
+    return state.light, state.reading
 
 
 def needs(state: ViewState) -> Needs:
@@ -145,17 +180,7 @@ def estimate_from_samples(state: ViewState) -> SampleEstimate:
     return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
 
 
-def forget_lights() -> None:
-    """Read files again when they are next asked for."""
-    _find.cache_clear()
-
-
-@lru_cache(maxsize=16)
-def _find(text: str, reading: Reading) -> Light:
-    return find_light(text, reading)
-
-
-@lru_cache(maxsize=32)
+@remember(most=16)
 def project(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
     """Project a light; the irradiance of a sampled light comes from the samples of the light itself."""
     start = perf_counter()
@@ -179,12 +204,12 @@ def project(light: Light, method: str, samples: int, seed: int, n_bands: int) ->
     return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))
 
 
-@lru_cache(maxsize=32)
+@remember(most=1)
 def _irradiance(light: Light) -> Light:
     return IrradianceLight(light)
 
 
-@lru_cache(maxsize=64)
+@remember(most=16)
 def errors_of(light: Light, method: str, samples: int, seed: int) -> Array:
     """The relative L2 error for every band count that is searched, (MAX_SHOWN_BANDS,) or (MAX_DIRECT_BANDS,) of samples."""
     exact = project(light, *BEST, MAX_SHOWN_BANDS).coefficients
@@ -193,7 +218,7 @@ def errors_of(light: Light, method: str, samples: int, seed: int) -> Array:
     return errors_by_band_count(light.products(), exact[: n_bands**2] / light.unit, shown / light.unit)
 
 
-@lru_cache(maxsize=256)
+@remember(most=64)
 def reconstruct(
     light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
 ) -> tuple[Array, Figures]:
@@ -243,7 +268,7 @@ def grid_rows(n_bands: int) -> int:
     return next(rows for bands, rows in ((16, 96), (32, 128), (64, 256), (MAX_SHOWN_BANDS, 512)) if n_bands <= bands)
 
 
-@lru_cache(maxsize=8)
+@remember(most=8)
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
     return ErrorGrid(light.radiance, light.landmarks(), rows)

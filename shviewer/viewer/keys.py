@@ -27,6 +27,7 @@ from shviewer.viewer.state import (
     next_method,
     next_quantity,
     next_window,
+    reload,
     reset,
     scale_samples,
     solo_band,
@@ -112,6 +113,7 @@ BINDINGS = (
         {"S": scale_samples(4), "Shift+S": scale_samples(0.25)},
         lambda s: f"{s.samples}",
     ),
+    Binding("Ctrl+R / F5", LIGHT, "read its file again", dict.fromkeys(("Ctrl+R", "F5"), reload)),
     Binding("Shift+drag", LIGHT, "turn the light", {}),
     Binding("drop a file", LIGHT, "open it", {}),
     Binding(

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.projection import Synthesis
 from shviewer.harmonics.quadrature import MAX_SAMPLES
+from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
@@ -29,6 +28,7 @@ from shviewer.viewer.analysis import (
 )
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.memory import remember
 from shviewer.viewer.state import MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
 
 DIMMEST, BRIGHTEST = 1e-30, 1e30
@@ -131,7 +131,7 @@ def exposure_stops(state: ViewState, light: Light) -> float:
     return base + state.exposure_offset
 
 
-@lru_cache(maxsize=4)
+@remember(most=2)
 def _reconstruction_map(
     light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
 ) -> LatLongMap:
@@ -141,7 +141,7 @@ def _reconstruction_map(
     return LatLongMap(np.ascontiguousarray(values.transpose(0, 2, 1), dtype=np.float32), rows_on_poles=True)
 
 
-@lru_cache(maxsize=32)
+@remember(most=2)
 def _automatic_exposure(light: Light) -> float:
     grid = error_grid(light, grid_rows(1))
     brightest = grid.original.max(axis=1)

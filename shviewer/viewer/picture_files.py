@@ -48,6 +48,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "samples": projection.evaluations,
         "seed": state.seed if state.method == "jittered" else None,
         "sanitize": state.reading.sanitize,
+        "layout": state.reading.layout,
         "exposure_stops": picture.exposure_stops,
         "size": [composition.width, composition.height],
         "camera_degrees": list(state.camera),

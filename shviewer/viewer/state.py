@@ -25,7 +25,7 @@ ZOOM_RANGE = (0.25, 16.0)
 
 @dataclass(frozen=True)
 class ViewState:
-    """Equal states of equal size give equal pixels; the last four are wishes to the window, not to the picture."""
+    """Equal states of equal size give equal pixels; those after `reloads` are wishes to the window, not to the picture."""
 
     lights: tuple[str | Light, ...] = ("green",)
     light_index: int = 0
@@ -50,6 +50,8 @@ class ViewState:
     zoom: float = 1.0
     help_visible: bool = False
     message: str = ""
+    reloads: int = 0
+    """Counts the wishes to read the light's file anew: the picture before is not that of the state after."""
     fullscreen: bool = field(default=False, compare=False)
     closing: bool = field(default=False, compare=False)
     screenshots: int = field(default=0, compare=False)
@@ -156,11 +158,17 @@ def reset(state: ViewState) -> ViewState:
         lights=state.lights,
         light_index=state.light_index,
         reading=state.reading,
+        reloads=state.reloads,
         fullscreen=state.fullscreen,
         screenshots=state.screenshots,
         fits=state.fits,
         tolerance=state.tolerance,
     )
+
+
+def reload(state: ViewState) -> ViewState:
+    """Read the light's file anew and keep every other setting."""
+    return replace(state, reloads=state.reloads + 1)
 
 
 def escape(state: ViewState) -> ViewState:

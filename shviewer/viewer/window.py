@@ -1,7 +1,7 @@
 """The window: what GLFW reports becomes a new state, and a changed state becomes a frame.
 
 Nothing is drawn and no time is spent while nothing happens. GLFW is asked to return four times a second all the same, so
-that Ctrl-C in the terminal is heard at once.
+that Ctrl-C in the terminal is heard at once; a watched file is looked at then, too.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ import glfw
 import moderngl
 
 from shviewer.errors import ShviewerError
-from shviewer.viewer.analysis import forget_lights, needs
+from shviewer.lights.light import Light
+from shviewer.viewer.analysis import keep_light, needs, read_again, stamp_read
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.glfw_window import key_name, open_window
 from shviewer.viewer.keys import press
@@ -26,9 +27,13 @@ from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import ViewState, open_light, orbit, rotate_light, toggle_band, with_bands, zoom
+from shviewer.viewer.state import ViewState, open_light, orbit, reload, rotate_light, toggle_band, with_bands, zoom
+from shviewer.viewer.watching import Watch
 
 IDLE_SECONDS = 0.25
+LOOK_SECONDS = 0.2
+"""At least so far apart are two looks at a watched file, also while events come; just below IDLE_SECONDS."""
+
 LONG_PROJECTION = 1e8
 """Basis values, about half a second of them."""
 
@@ -36,13 +41,14 @@ CLICK_PIXELS = 4.0
 """A press that moves less than this before its release is a click."""
 
 
-def run(state: ViewState, size: tuple[int, int], *, verbose: bool = False) -> None:
+def run(state: ViewState, size: tuple[int, int], *, verbose: bool = False, watch: bool = False) -> None:
     """Open a window of `size` screen coordinates and stay until it is closed.
 
-    NoDisplayError without a display, GraphicsError without OpenGL 3.3. verbose: one line on stderr per frame.
+    NoDisplayError without a display, GraphicsError without OpenGL 3.3. verbose: one line on stderr per frame. watch: read
+    the light's file again when it changes.
     """
     with open_window(size) as handle:
-        window = Window(handle, state, verbose)
+        window = Window(handle, state, verbose, watch)
         try:
             window.loop()
         finally:
@@ -52,12 +58,15 @@ def run(state: ViewState, size: tuple[int, int], *, verbose: bool = False) -> No
 class Window:
     """One window, one state, one renderer."""
 
-    def __init__(self, handle: Any, state: ViewState, verbose: bool) -> None:
+    def __init__(self, handle: Any, state: ViewState, verbose: bool, watch: bool = False) -> None:
         self.handle = handle
-        self.state = state
+        first = prepare(state)
+        self.state = replace(state, reading=replace(state.reading, isolated=True))
+        self.picture: Picture = replace(first, state=self.state)
+        self.watch = Watch() if watch else None
+        self.looked_at = perf_counter()
         self.verbose = verbose
         self.renderer = Renderer(moderngl.create_context(require=330))
-        self.picture: Picture = prepare(state)
         self.overlay: Overlay | None = None
         self.overlay_key: object = None
         self.frames_due = 2  # the first swap may still have the old size
@@ -85,6 +94,8 @@ class Window:
                 glfw.poll_events()
             else:
                 glfw.wait_events_timeout(IDLE_SECONDS)
+            if self.watch is not None:
+                self._look(self.watch)
 
     def redraw(self) -> None:
         self.frames_due = 2
@@ -117,6 +128,7 @@ class Window:
             self._show(composition)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             self.picture = last
+            glfw.set_window_title(self.handle, f"shviewer - {last.light.name}")
             self._keep(error)
             self._show(composition)
         self.renderer.draw(self.renderer.context.screen, composition)
@@ -144,19 +156,33 @@ class Window:
         assert self.overlay is not None
         self.renderer.show(self.picture, self.overlay.image)
 
+    def _look(self, watch: Watch) -> None:
+        """Read the light's file again if it has changed."""
+        now = perf_counter()
+        if now - self.looked_at < LOOK_SECONDS:
+            return
+        self.looked_at = now
+        if isinstance(self.state.light, str) and watch.changed(self.state.light, stamp_read(self.state)):
+            self.change(reload(replace(self.state, message="")))
+
     def _keep(self, error: ShviewerError) -> None:
         """Stay with the picture there is, and say why."""
+        keep_light(self.picture.state, self.picture.light)
         wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots", "fits")}
         self.state = replace(self.picture.state, message=str(error), **wishes)
         self.picture = replace(self.picture, state=self.state)
+        if self.verbose:
+            print(f"kept {self.picture.light.name}: {error}", file=sys.stderr, flush=True)
 
     def _announce(self, composition: Composition) -> None:
         """Before a projection that takes long, say so over the last picture."""
         state = self.state
-        new = (state.light, state.method, state.samples) != (
-            self.picture.state.light,
-            self.picture.state.method,
-            self.picture.state.samples,
+        last = self.picture.state
+        new = (state.light, state.method, state.samples, state.reloads) != (
+            last.light,
+            last.method,
+            last.samples,
+            last.reloads,
         )
         bands = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
         if state.method != "jittered" or not new or state.samples * bands**2 < LONG_PROJECTION:
@@ -169,19 +195,33 @@ class Window:
         self.overlay_key = None
 
     def _prepare(self) -> None:
-        if self.picture.state == self.state:
+        last = self.picture
+        if last.state == self.state:
             return
+        anew = self.state.reloads != last.state.reloads
         try:
+            if anew:
+                read_again(self.state)
             picture = prepare(self.state)
         except ShviewerError as error:
             self._keep(error)
             return
-        if picture.light is not self.picture.light:
+        if picture.light is not last.light:
             glfw.set_window_title(self.handle, f"shviewer - {picture.light.name}")
-            if picture.light.notes and not self.state.message:
-                self.state = replace(self.state, message=f"{picture.light.name}: {'; '.join(picture.light.notes)}")
-                picture = prepare(self.state)
+            message = self._news(picture.light, again=anew and self.state.light == last.state.light)
+            if message and not self.state.message:
+                self.state = replace(self.state, message=message)
+                picture = replace(picture, state=self.state)
         self.picture = picture
+
+    def _news(self, light: Light, *, again: bool) -> str:
+        """What is worth saying of a light that was not shown before."""
+        notes = f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
+        if not again:
+            return notes
+        if self.verbose:
+            print(f"reloaded {light.name}", file=sys.stderr, flush=True)
+        return f"reloaded {notes or light.name}"
 
     def _draw_overlay(self, composition: Composition) -> None:
         """Anew only if something written in it changed: turning and zooming write nothing unless the help shows them."""
@@ -201,9 +241,9 @@ class Window:
         self._prepare()
         self.state = replace(self.state, message="")
         self._prepare()
-        pixels = render_rgb(self.renderer, self.picture, composition)
-        text = metadata(self.picture, composition, self.renderer.version)
         try:
+            pixels = render_rgb(self.renderer, self.picture, composition)
+            text = metadata(self.picture, composition, self.renderer.version)
             path = write_numbered(f"shviewer-{file_stem(self.picture.light.name)}", pixels, text)
         except ShviewerError as error:
             self.state = replace(self.state, message=str(error))
@@ -278,8 +318,7 @@ class Window:
 
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
-            forget_lights()  # it may be a file that was edited since it was last opened
-            self.change(open_light(self.state, paths[0]))
+            self.change(reload(open_light(self.state, paths[0])))  # it may have been edited since it was last opened
 
 
 def file_stem(name: str) -> str:

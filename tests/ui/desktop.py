@@ -139,3 +139,18 @@ class Viewer:
             self.process.terminate()
         self.reader.join(PATIENCE)
         return self.process.wait(PATIENCE)
+
+
+def screenshot(folder: Path, *arguments: str) -> np.ndarray:
+    """The picture of the screenshot mode, in a process without a display."""
+    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    out = folder / "reference.png"
+    subprocess.run(
+        [sys.executable, "-m", "shviewer", "screenshot", str(out), *arguments],
+        env=environment,
+        cwd=folder,
+        check=True,
+        timeout=PATIENCE,
+    )
+    with Image.open(out) as image:
+        return np.asarray(image.convert("RGB"))

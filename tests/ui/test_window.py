@@ -8,55 +8,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from desktop import PATIENCE, Viewer, missing_programs, virtual_display
-from PIL import Image
+from desktop import PATIENCE, Viewer, screenshot
 
 Start = Callable[..., Viewer]
-
-
-@pytest.fixture(scope="module")
-def display() -> Iterator[str]:
-    missing = missing_programs()
-    if missing:
-        reason = f"window tests need {' and '.join(missing)} (apt-get install -y xvfb xauth xdotool)"
-        if os.environ.get("CI"):
-            pytest.fail(reason)
-        pytest.skip(reason)
-    with virtual_display() as name:
-        yield name
-
-
-@pytest.fixture
-def start(display: str, tmp_path: Path) -> Iterator[Start]:
-    viewers: list[Viewer] = []
-
-    def begin(*arguments: str) -> Viewer:
-        viewers.append(Viewer(display, tmp_path, *arguments))
-        return viewers[-1]
-
-    yield begin
-    for viewer in viewers:
-        viewer.close()
-
-
-def screenshot(folder: Path, *arguments: str) -> np.ndarray:
-    """The picture of the screenshot mode, in a process without a display."""
-    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    out = folder / "reference.png"
-    subprocess.run(
-        [sys.executable, "-m", "shviewer", "screenshot", str(out), *arguments],
-        env=environment,
-        cwd=folder,
-        check=True,
-        timeout=PATIENCE,
-    )
-    with Image.open(out) as image:
-        return np.asarray(image.convert("RGB"))
 
 
 def test_keys_change_bands_and_the_saved_picture_is_that_of_the_screenshot_mode(start: Start, tmp_path: Path) -> None:

@@ -126,7 +126,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
     [
         ("pyrr", ["viewer/camera.py"]),
         ("glfw", ["viewer/glfw_window.py", "viewer/window.py"]),
-        ("OpenEXR", ["lights/decoders/openexr.py", "viewer/picture_files.py"]),
+        ("OpenEXR", ["lights/decoders/openexr_library.py", "viewer/picture_files.py"]),
     ],
 )
 def test_a_delicate_library_is_imported_where_it_is_tamed(module: str, owners: list[str]) -> None:

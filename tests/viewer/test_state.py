@@ -58,7 +58,8 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
-        "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I"
+        "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
+        "Ctrl+R F5"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -187,15 +188,25 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         zoom=2.0,
         help_visible=True,
         message="m",
+        reloads=5,
         fullscreen=True,
         screenshots=3,
         fits=2,
     )
     assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
     after = press(changed, "R")
-    assert after == ViewState(lights=LIGHTS, light_index=2, reading=Reading(sanitize=True), tolerance=0.1)
+    assert after == ViewState(lights=LIGHTS, light_index=2, reading=Reading(sanitize=True), tolerance=0.1, reloads=5)
     assert after.fullscreen
     assert after.screenshots == 3
+
+
+@pytest.mark.parametrize("key", ["Ctrl+R", "F5"])
+def test_reading_the_file_again_makes_another_state_and_keeps_every_setting(key: str) -> None:
+    changed = replace(START, n_bands=9, muted=frozenset({1}), camera=(1.0, 2.0), light_index=1, fits=2)
+    after = press(changed, key)
+    assert after != changed
+    assert replace(after, reloads=0) == changed
+    assert press(after, key) != after
 
 
 def test_f_brings_back_the_camera_alone() -> None:

@@ -1,0 +1,158 @@
+"""What is known of the lights used last: a light is forgotten as a whole, with everything that was computed for it.
+
+A bound per function would keep a light, and its image, alive for as long as any result of any function is; here the bound
+is on lights. The irradiance of a light belongs to that light.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Iterable
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+
+import numpy as np
+
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.lights.light import Light
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+MOST_LIGHTS = 12
+"""Enough for all built-in lights and two of one's own."""
+
+MOST_BYTES = 512 * 2**20
+"""In arrays of the lights but the one in use: about six images of 4096 x 2048 with what was computed for them."""
+
+SCALARS = {float, int, bool, str, type(None)}
+
+Results = OrderedDict[Hashable, Any]
+"""Of one function for one light and its irradiance, the one used longest ago first."""
+
+
+class Memory:
+    """Lights by name, and results by light. Whatever is looked up counts as used; what was used longest ago goes first."""
+
+    def __init__(self, most_lights: int = MOST_LIGHTS, most_bytes: int = MOST_BYTES) -> None:
+        self.most_lights = most_lights
+        self.most_bytes = most_bytes
+        self._known: OrderedDict[Light, dict[object, Results]] = OrderedDict()
+        self._names: dict[Hashable, Light] = {}
+
+    def __contains__(self, light: Light) -> bool:
+        return _source(light) in self._known
+
+    def named(self, name: Hashable) -> Light | None:
+        """The light of that name, if it is still known."""
+        light = self._names.get(name)
+        if light is not None:
+            self._use(light)
+        return light
+
+    def name(self, name: Hashable, light: Light) -> None:
+        """Let `name` mean `light` from now on; the light that it meant before is forgotten."""
+        light, before = _source(light), self._names.get(name)
+        if before is not None and before is not light:
+            self.forget(before)
+        self._names[name] = light
+        self._use(light)
+
+    def results(self, light: Light, function: object) -> Results:
+        """What is remembered of `function` for the light; to be added to."""
+        return self._use(_source(light)).setdefault(function, OrderedDict())
+
+    def forget(self, light: Light) -> None:
+        """The light, its names and all results."""
+        light = _source(light)
+        self._known.pop(light, None)
+        for name in [name for name, meant in self._names.items() if meant is light]:
+            del self._names[name]
+
+    def forget_results(self, function: object) -> None:
+        """Those of one function, of every light."""
+        for results in self._known.values():
+            results.pop(function, None)
+
+    def clear(self) -> None:
+        self._known.clear()
+        self._names.clear()
+
+    def _use(self, light: Light) -> dict[object, Results]:
+        if light not in self._known:
+            self._make_room()
+            self._known[light] = {}
+        self._known.move_to_end(light)
+        return self._known[light]
+
+    def _make_room(self) -> None:
+        """For one more light. Sizes are taken now, when everything the others asked for has been computed."""
+        sizes = [array_bytes(light, entry) for light, entry in self._known.items()]
+        while sizes and (len(sizes) >= self.most_lights or sum(sizes) > self.most_bytes):
+            del sizes[0]
+            self.forget(next(iter(self._known)))
+
+
+MEMORY = Memory()
+"""The program's."""
+
+
+class Remembered(Generic[P, R]):
+    """A function of a light and of hashable values whose last results for each light are kept in MEMORY."""
+
+    def __init__(self, function: Callable[Concatenate[Light, P], R], most: int) -> None:
+        self.function = function
+        self.most = most
+        self.__doc__ = function.__doc__
+
+    def __call__(self, light: Light, *arguments: P.args, **named: P.kwargs) -> R:
+        key = light, arguments, tuple(sorted(named.items()))
+        results = MEMORY.results(light, self)
+        if key in results:
+            results.move_to_end(key)
+        else:
+            results[key] = self.function(light, *arguments, **named)
+            if len(results) > self.most:
+                results.popitem(last=False)
+        found: R = results[key]
+        return found
+
+    def cache_clear(self) -> None:
+        """Forget the results for all lights."""
+        MEMORY.forget_results(self)
+
+
+def remember(most: int) -> Callable[[Callable[Concatenate[Light, P], R]], Remembered[P, R]]:
+    """Decorator: keep the last `most` results for each light and its irradiance together."""
+    return lambda function: Remembered(function, most)
+
+
+def array_bytes(*roots: object) -> int:
+    """Bytes of all arrays that can be reached through containers and this package's objects, each counted once."""
+    total, seen, waiting = 0, set[int](), list(roots)
+    while waiting:
+        item = waiting.pop()
+        if id(item) in seen:
+            continue
+        seen.add(id(item))
+        if isinstance(item, np.ndarray):
+            if item.base is None or not isinstance(item.base, np.ndarray):
+                total += item.nbytes
+            else:
+                waiting.append(item.base)
+        else:
+            waiting.extend(part for part in _parts(item) if type(part) not in SCALARS)
+    return total
+
+
+def _parts(item: object) -> Iterable[object]:
+    if isinstance(item, dict):
+        return item.values()
+    if isinstance(item, list | tuple | set | frozenset):
+        return item
+    if type(item).__module__.startswith("shviewer."):
+        return vars(item).values() if hasattr(item, "__dict__") else ()
+    return ()
+
+
+def _source(light: Light) -> Light:
+    return light.source if isinstance(light, IrradianceLight) else light
