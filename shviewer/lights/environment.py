@@ -1,53 +1,101 @@
-"""A light that is a lat-long image. Its texels are areas of constant radiance, integrated exactly."""
+"""A light that is an image, in any layout. Its texels are areas of constant radiance, integrated exactly."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.projection import channel_products, project_image
+from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.layouts.lat_long import LatLongLayout
+from shviewer.lights.layouts.layout import Layout
+from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading, read_radiance_image
 
+MAX_RASTER_WIDTH = 8192
+"""Of the lat-long raster that an image in another layout is drawn from."""
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, init=False)
 class EnvironmentLight:
-    """map: the image. `radiance` interpolates between texel centres; coefficients and norm are those of the areas."""
+    """`radiance` interpolates between texel centres; coefficients and norm are those of the areas."""
 
-    map: LatLongMap
-    name: str = "image"
-    notes: tuple[str, ...] = ()
-    best_method: str = "exact texel integrals"
-    unit: float = 1.0
+    pixels: NDArray[np.float32]
+    """(height, width, 3), as the layout wants them."""
+    layout: Layout
+    name: str
+    notes: tuple[str, ...]
+    encoding: str | None
+    """The file's format in words; None for an image that was not read."""
+
+    best_method: ClassVar[str] = "exact texel integrals"
+    unit: ClassVar[float] = 1.0
     """Squares of float32 texels are far inside float64."""
 
+    def __init__(
+        self,
+        pixels: NDArray[np.float32] | LatLongMap,
+        layout: Layout | None = None,
+        name: str = "image",
+        notes: tuple[str, ...] = (),
+        encoding: str | None = None,
+    ) -> None:
+        """Without a layout the image is lat-long."""
+        texels = pixels.texels if isinstance(pixels, LatLongMap) else pixels
+        layout = layout or LatLongLayout(*texels.shape[:2])
+        for field, value in (("pixels", texels), ("layout", layout), ("name", name), ("notes", notes)):
+            object.__setattr__(self, field, value)
+        object.__setattr__(self, "encoding", encoding)
+
     @classmethod
-    def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> EnvironmentLight:
-        """The image in a .hdr or .exr file. LightError if it cannot be read."""
-        image = read_radiance_image(path, reading)
-        return cls(LatLongMap(image.pixels), path.stem, image.notes)
+    def read(cls, path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> EnvironmentLight:
+        """The image in a file, or one layer of it. LightError if it cannot be read or has not the layout asked for."""
+        image = read_radiance_image(path, reading, layer)
+        layout, notes = recognise(image.pixels, image.layout, reading.layout)
+        return cls(image.pixels, layout, path.stem, image.notes + notes, image.encoding)
 
     @property
     def description(self) -> str:
-        height, width = self.map.texels.shape[:2]
-        return f"environment map, {width} x {height}"
+        shape = self.layout.size
+        return f"environment map, {shape if self._is_lat_long else f'{self.layout.name}, {shape}'}"
+
+    @property
+    def _is_lat_long(self) -> bool:
+        return isinstance(self.layout, LatLongLayout)
+
+    @cached_property
+    def map(self) -> LatLongMap:
+        """The texels themselves where they are lat-long; else sampled from them, about as fine as they are."""
+        if self._is_lat_long:
+            return LatLongMap(self.pixels)
+        width = max(4, min(self.layout.raster_width, MAX_RASTER_WIDTH))
+        height = width // 2
+        texels = np.empty((height, width, 3), dtype=np.float32)
+        theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
+        block = max(1, BLOCK_VALUES // (16 * width))
+        for start in range(0, height, block):
+            directions = directions_from_angles(theta[start : start + block, None], phi).reshape(-1, 3)
+            texels[start : start + block] = self.layout.sample(self.pixels, directions).reshape(-1, width, 3)
+        return LatLongMap(texels)
 
     def radiance(self, directions: Array) -> Array:
         return self.map.sample(directions)
 
     def integrand(self, directions: Array) -> Array:
-        return self.map.nearest(directions)
+        return np.asarray(self.pixels[self.layout.nearest(directions)], dtype=np.float64)
 
     def coefficients(self, n_bands: int) -> Array:
         """Projected once to the most bands asked for so far; fewer are the first rows of more."""
         held = self._projected
         if not held or len(held[0]) < n_bands**2:
-            held[:] = [project_image(self.map.texels, n_bands)]
+            held[:] = [self.layout.project(self.pixels, n_bands)]
         return held[0][: n_bands**2]
 
     @cached_property
@@ -62,17 +110,26 @@ class EnvironmentLight:
 
     @cached_property
     def _products(self) -> Array:
-        height, width = self.map.texels.shape[:2]
-        edges = np.linspace(0, np.pi, height + 1)
-        solid_angle = 2 * np.sin((edges[1:] + edges[:-1]) / 2) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width
-        return channel_products(self.map.texels, solid_angle)
+        solid_angles = self.layout.solid_angles()
+        if solid_angles.shape[1] == 1:
+            return channel_products(self.pixels, solid_angles[:, 0])
+        products = np.zeros((3, 3))
+        for row, weights in zip(self.pixels, solid_angles, strict=True):
+            wide = row.astype(np.float64)
+            products += (wide.T * weights) @ wide
+        return products
 
     def landmarks(self) -> Array:
         """The centre of the brightest texel."""
-        height, width = self.map.texels.shape[:2]
-        row, column = divmod(int(np.abs(self.map.texels).max(axis=2).argmax()), width)
-        theta = np.pi * (row + 0.5) / height
-        return directions_from_angles(np.array([theta]), column_azimuths(width)[[column]])
+        return self._landmarks
+
+    @cached_property
+    def _landmarks(self) -> Array:
+        seen = np.abs(self.pixels).max(axis=2)
+        if not self._is_lat_long:
+            seen[self.layout.solid_angles() == 0] = 0.0
+        row, column = np.unravel_index([int(seen.argmax())], seen.shape)
+        return self.layout.centres(row, column)
 
     def radiance_map(self) -> LatLongMap:
         return self.map

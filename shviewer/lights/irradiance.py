@@ -15,8 +15,8 @@ import numpy as np
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
-from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, gegenbauer_ratios
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light

@@ -24,17 +24,25 @@ class Layout(Protocol):
     def name(self) -> str:
         """One of LAYOUTS in recognise.py."""
 
+    @property
+    def size(self) -> str:
+        """In words, such as "1024 x 512", width first, or "6 x 512 x 512" for a cube."""
+
+    @property
+    def raster_width(self) -> int:
+        """Columns of a lat-long image that is about as fine."""
+
     def solid_angles(self) -> Array:
         """Steradians of each texel, exact, in all 4 pi: (height, width), or (height, 1) where a row's are equal.
 
-        0 for texels that show nothing, such as the corners of a cross.
+        0 for texels that show nothing: the empty cells of a cross, the corners around a disc.
         """
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         """Row and column, (k,) each, of the texel in whose area each unit direction (k, 3) lies."""
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
-        """Unit directions (k, 3) of the centres of texels (k,)."""
+        """Unit directions (k, 3) of the centres of texels (k,); anywhere for texels that show nothing."""
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
         """Bilinear radiance (k, 3) in unit directions (k, 3), from pixels (height, width, 3)."""

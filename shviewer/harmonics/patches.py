@@ -1,0 +1,122 @@
+"""Exact integrals of images of constant texels against the basis, on curved patches of the sphere.
+
+A patch is a square on which direction and density (steradians per unit area) are analytic functions of the two image
+coordinates. There the kernel K = density * Y is a polynomial of moderate degree up to rounding, so it is known from its values
+at few points, and what the image contributes at each of them is a closed form:
+    integral of I K = sum over i, j of K(x_i, y_j) W_ij,      W = R I C^T,
+    R[i, r] = integral over row r of the polynomial that is 1 at x_i and 0 at the other points, alike C for columns.
+With Chebyshev points and polynomials (T. J. Rivlin, "Chebyshev Polynomials", 2nd ed., chapters 1 and 2) the integrals are
+differences of cosines, and two matrix products are the only pass over the image. The error is that of the interpolation
+of K, rho**-points with rho the Bernstein ellipse in which K is analytic; the texels may be as small or large as they like.
+
+The four quadrants of an image that is symmetric about its centre are mirror images on the sphere, and so are opposite faces of
+a cube. Mirroring only changes signs of Y, so one quadrant of the points is enough.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, check_bands, degrees, evaluate_basis
+
+BLOCK_VALUES = 2**21
+"""Basis values, or texel values, held in float64 at a time."""
+
+
+def texel_weights(edges: Array, n_points: int) -> tuple[Array, Array]:
+    """Points (n_points,) in the interval that `edges` (texels + 1,) divide, and the matrix (n_points, texels) above.
+
+    Row i applied to the texels, times K at point i, adds up to the integral of texel * K for every polynomial K of degree
+    below n_points.
+    """
+    middle, half = (edges[0] + edges[-1]) / 2, (edges[-1] - edges[0]) / 2
+    angle = np.pi * (np.arange(n_points) + 0.5) / n_points
+    edge_angle = np.arccos(np.clip((edges - middle) / half, -1, 1))
+    degree = np.arange(n_points)[:, None]
+    lower = np.divide(
+        np.cos((degree - 1) * edge_angle), degree - 1, where=degree != 1, out=np.zeros((n_points, len(edges)))
+    )
+    antiderivative = (np.cos((degree + 1) * edge_angle) / (degree + 1) - lower) / 2
+    to_points = np.cos(angle[:, None] * degree.T) * (2 / n_points)
+    to_points[:, 0] /= 2
+    return middle + half * np.cos(angle), half * (to_points @ np.diff(antiderivative, axis=1))
+
+
+def quadrant_points(n_texels: int, n_points: int) -> tuple[Array, Array]:
+    """`texel_weights` of the half [0, 1] of n_texels equal texels on [-1, 1]: n_texels - n_texels // 2 of them.
+
+    The middle one of an odd number counts with its half. The half [-1, 0] is the same, mirrored.
+    """
+    edges = np.maximum((2 * np.arange(n_texels // 2, n_texels + 1) - n_texels) / n_texels, 0.0)
+    return texel_weights(edges, n_points)
+
+
+def quadrant_weights(
+    image: NDArray[np.floating], n_points: int, spans: NDArray[np.int64] | None = None
+) -> tuple[Array, Array]:
+    """W of the four quadrants of an image (height, width, 3) on the square [-1, 1]^2, rows downwards.
+
+    spans: (height, 2), first and last-plus-one column of each row; texels outside count as 0. None for all.
+    Returns the points (n_points,) in [0, 1] and W, shape (2, 2, n_points, n_points, 3): the lower half of the rows second,
+    the right half of the columns second, then the distances from the centre down or up, and sideways.
+    """
+    height, width = image.shape[:2]
+    points, rows = quadrant_points(height, n_points)
+    columns = rows if width == height else quadrant_points(width, n_points)[1]
+    result = np.empty((2, 2, n_points, n_points, 3))
+    for down, (row_weights, part) in enumerate(_halves(rows, height)):
+        sums = _sum_rows(row_weights, image[part], None if spans is None else spans[part])
+        by_column = np.ascontiguousarray(sums.reshape(n_points, width, 3).transpose(1, 0, 2)).reshape(width, -1)
+        for right, (column_weights, half) in enumerate(_halves(columns, width)):
+            product = column_weights @ by_column[half]
+            result[down, right] = product.reshape(n_points, n_points, 3).transpose(1, 0, 2)
+    return points, result
+
+
+def _halves(weights: Array, n_texels: int) -> tuple[tuple[Array, slice], tuple[Array, slice]]:
+    """The weights and the texels of [-1, 0] and of [0, 1]."""
+    return (weights[:, ::-1], slice(0, n_texels - n_texels // 2)), (weights, slice(n_texels // 2, n_texels))
+
+
+def _sum_rows(weights: Array, image: NDArray[np.floating], spans: NDArray[np.int64] | None) -> Array:
+    """weights (n, rows) times image (rows, width, 3): (n, width * 3), float64, in blocks of rows."""
+    height, width = image.shape[:2]
+    sums = np.zeros((len(weights), width * 3))
+    block = max(1, BLOCK_VALUES // (8 * width))
+    column = np.arange(width)
+    for start in range(0, height, block):
+        rows = slice(start, start + block)
+        wide = image[rows].astype(np.float64)
+        if spans is not None:
+            wide[(column < spans[rows, :1]) | (column >= spans[rows, 1:])] = 0.0
+        sums += weights[:, rows] @ wide.reshape(len(wide), -1)
+    return sums
+
+
+def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
+    """Sum of value * Y over directions and their mirror images, (n_bands**2, 3).
+
+    directions: (k, 3). values: (x, y, z, k, 3) with 1 or 2 along each of the first three axes; index 1 is the value in the
+    direction whose coordinate of that name is negated.
+
+    Y is even or odd in each coordinate: in y as cos or sin(m phi) is, in z with l + m, in x with m, the other way for sin.
+    """
+    check_bands(n_bands)
+    for axis in range(3):
+        if values.shape[axis] == 2:
+            first, second = np.take(values, 0, axis), np.take(values, 1, axis)
+            values = np.stack([first + second, first - second], axis)
+    mirrors = values.shape[:3]
+    flat = np.moveaxis(values, 3, 0).reshape(len(directions), -1)
+    sums = np.zeros((n_bands**2, flat.shape[1]))
+    block = max(128, BLOCK_VALUES // n_bands**2)
+    for start in range(0, len(directions), block):
+        points = slice(start, start + block)
+        sums += evaluate_basis(directions[points], n_bands).T @ flat[points]
+    degree = degrees(n_bands)
+    order = np.arange(n_bands**2) - degree * (degree + 1)
+    sine = (order < 0).astype(np.int64)
+    parities = ((order + sine) % 2, sine, (degree + order) % 2)
+    odd = [parity * (count - 1) for parity, count in zip(parities, mirrors, strict=True)]
+    return np.asarray(sums.reshape(n_bands**2, *mirrors, 3)[np.arange(n_bands**2), odd[0], odd[1], odd[2]])

@@ -1,0 +1,251 @@
+"""Six square faces of a cube, each seen from its centre under 90 degrees. Where they lie in the image is an Arrangement.
+
+Every face is drawn as seen from inside, not mirrored. In the world of basis.py, x forward, y left and z up:
+
+    arrangement        image   faces, left to right or top to bottom
+    vertical strip     1 x 6   right -y, left +y, up +z, down -z, front +x, back -x: the OpenGL and Direct3D order
+    horizontal strip   6 x 1   the same. Both are left-handed there: their +X is our right, their +Y up, their +Z front;
+                               the lower edge of their up face and the upper edge of their down face touch the front
+    OpenEXR            1 x 6   the `envmap` attribute, +X -X +Y -Y +Z -Z of a right-handed space with X left, Y up and Z
+                               forward: left, right, up, down, front, back; up and down are turned so that the image's
+                               right is left in the world, and the lower edge of up touches the back
+    vertical cross     3 x 4   up; left, front, right; down; back: the back hangs below down, turned by 180 degrees
+                               (as HDRShop writes it and the published probes have it)
+    horizontal cross   4 x 3   up over front, down under it; left, front, right, back in the middle row
+
+OpenEXR puts the centres of a face's border texels on the cube's edges; here, as everywhere, texels are areas that tile a face.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.patches import project_mirrored, quadrant_weights
+from shviewer.lights.layouts.layout import Indices
+
+_AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}
+
+
+@dataclass(frozen=True)
+class Face:
+    """row, column: of its cell. centre, right, down: where its middle looks and its columns and rows lead, as "+x"."""
+
+    row: int
+    column: int
+    centre: str
+    right: str
+    down: str
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    name: str
+    rows: int
+    columns: int
+    faces: tuple[Face, ...]
+
+    def face_size(self, height: int, width: int) -> int:
+        """The side of a face, in texels; 0 if the image is not made of whole faces like this."""
+        size = height // self.rows
+        return size if size * self.rows == height and size * self.columns == width else 0
+
+
+_STRIP = (
+    ("-y", "-x", "-z"),
+    ("+y", "+x", "-z"),
+    ("+z", "-y", "+x"),
+    ("-z", "-y", "-x"),
+    ("+x", "-y", "-z"),
+    ("-x", "+y", "-z"),
+)
+_OPENEXR = (
+    ("+y", "+x", "-z"),
+    ("-y", "-x", "-z"),
+    ("+z", "+y", "-x"),
+    ("-z", "+y", "+x"),
+    ("+x", "-y", "-z"),
+    ("-x", "+y", "-z"),
+)
+_UP, _DOWN = ("+z", "-y", "+x"), ("-z", "-y", "-x")
+_LEFT, _FRONT, _RIGHT = ("+y", "+x", "-z"), ("+x", "-y", "-z"), ("-y", "-x", "-z")
+
+VERTICAL_STRIP = Arrangement("vertical strip", 6, 1, tuple(Face(i, 0, *axes) for i, axes in enumerate(_STRIP)))
+HORIZONTAL_STRIP = Arrangement("horizontal strip", 1, 6, tuple(Face(0, i, *axes) for i, axes in enumerate(_STRIP)))
+OPENEXR = Arrangement("OpenEXR order", 6, 1, tuple(Face(i, 0, *axes) for i, axes in enumerate(_OPENEXR)))
+VERTICAL_CROSS = Arrangement(
+    "vertical cross",
+    4,
+    3,
+    (
+        Face(0, 1, *_UP),
+        Face(1, 0, *_LEFT),
+        Face(1, 1, *_FRONT),
+        Face(1, 2, *_RIGHT),
+        Face(2, 1, *_DOWN),
+        Face(3, 1, "-x", "-y", "+z"),
+    ),
+)
+HORIZONTAL_CROSS = Arrangement(
+    "horizontal cross",
+    3,
+    4,
+    (
+        Face(0, 1, *_UP),
+        Face(1, 0, *_LEFT),
+        Face(1, 1, *_FRONT),
+        Face(1, 2, *_RIGHT),
+        Face(1, 3, "-x", "+y", "-z"),
+        Face(2, 1, *_DOWN),
+    ),
+)
+
+
+@dataclass(frozen=True)
+class CubeLayout:
+    """face: the side of a face in texels."""
+
+    arrangement: Arrangement
+    face: int
+    name: str = field(default="cube", init=False)
+
+    @property
+    def size(self) -> str:
+        return f"6 x {self.face} x {self.face}"
+
+    @property
+    def raster_width(self) -> int:
+        """Of a lat-long image that is nowhere coarser than the middle of a face."""
+        return 4 * self.face
+
+    def solid_angles(self) -> Array:
+        shape = (self.arrangement.rows * self.face, self.arrangement.columns * self.face)
+        angles = np.zeros(shape)
+        for face in self.arrangement.faces:
+            angles[self._cell(face)] = self._face_solid_angles
+        return angles
+
+    def nearest(self, directions: Array) -> tuple[Indices, Indices]:
+        face, u, v = self._on_faces(directions)
+        column = np.minimum((self.face * (u + 1) / 2).astype(np.int64), self.face - 1)
+        row = np.minimum((self.face * (v + 1) / 2).astype(np.int64), self.face - 1)
+        return row + self._corners[face, 0], column + self._corners[face, 1]
+
+    def centres(self, rows: Indices, columns: Indices) -> Array:
+        """Of a texel in an empty cell: the middle of the front."""
+        cells = np.full((self.arrangement.rows, self.arrangement.columns), -1)
+        for i, part in enumerate(self.arrangement.faces):
+            cells[part.row, part.column] = i
+        face = cells[rows // self.face, columns // self.face]
+        u, v = ((2 * (index % self.face) + 1) / self.face - 1 for index in (columns, rows))
+        directions = self._directions(np.maximum(face, 0), u, v)
+        directions[face < 0] = [1.0, 0.0, 0.0]
+        return np.asarray(directions / np.linalg.norm(directions, axis=-1, keepdims=True))
+
+    def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
+        """Continuous across the edges: beyond one comes the next face. At a corner of the cube three texels meet."""
+        face, u, v = self._on_faces(directions)
+        column, row = self.face * (u + 1) / 2 - 0.5, self.face * (v + 1) / 2 - 0.5
+        left, top = np.floor(column).astype(np.int64), np.floor(row).astype(np.int64)
+        right, down = column - left, row - top
+        weights = np.stack([(1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down])
+        taps = np.empty((4, len(directions), 3))
+        absent = np.zeros((4, len(directions)), dtype=bool)
+        for i in range(4):
+            at_column, at_row = left + i % 2, top + i // 2
+            beyond_column = (at_column < 0) | (at_column >= self.face)
+            beyond_row = (at_row < 0) | (at_row >= self.face)
+            absent[i] = beyond_column & beyond_row
+            rows, columns = at_row + self._corners[face, 0], at_column + self._corners[face, 1]
+            beyond = beyond_column | beyond_row
+            centre = self._directions(
+                face[beyond], (2 * at_column[beyond] + 1) / self.face - 1, (2 * at_row[beyond] + 1) / self.face - 1
+            )
+            rows[beyond], columns[beyond] = self.nearest(centre)
+            taps[i] = pixels[rows, columns]
+        weights = weights + (weights * absent).sum(axis=0) / 3
+        weights[absent] = 0.0
+        return np.asarray(np.einsum("ik,ikc->kc", weights, taps))
+
+    def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
+        """By one quadrant each of the front, the left and the upper face, of which all others are mirror images."""
+        n_points = quadrant_point_count(n_bands)
+        values = np.zeros((2, 2, 2, 3, n_points, n_points, 3))
+        directions = np.empty((3, n_points, n_points, 3))
+        for face in self.arrangement.faces:
+            points, weights = quadrant_weights(pixels[self._cell(face)], n_points)
+            axes = ["xyz".index(axis[1]) for axis in (face.centre, face.right, face.down)]
+            backward = [int(axis[0] == "-") for axis in (face.centre, face.right, face.down)]
+            towards = directions[axes[0]]
+            towards[..., axes[0]], towards[..., axes[1]], towards[..., axes[2]] = 1.0, points, points[:, None]
+            density = (towards**2).sum(axis=-1) ** -1.5
+            for down, right in np.ndindex(2, 2):
+                mirror = [0, 0, 0]
+                mirror[axes[0]], mirror[axes[1]], mirror[axes[2]] = (
+                    backward[0],
+                    backward[1] ^ (1 - right),
+                    backward[2] ^ (1 - down),
+                )
+                values[mirror[0], mirror[1], mirror[2], axes[0]] = weights[down, right] * density[..., None]
+        return project_mirrored(directions.reshape(-1, 3), values.reshape(2, 2, 2, -1, 3), n_bands)
+
+    def _cell(self, face: Face) -> tuple[slice, slice]:
+        row, column = face.row * self.face, face.column * self.face
+        return slice(row, row + self.face), slice(column, column + self.face)
+
+    @cached_property
+    def _corners(self) -> NDArray[np.int64]:
+        """Row and column of each face's first texel, (6, 2)."""
+        return np.array([(face.row * self.face, face.column * self.face) for face in self.arrangement.faces])
+
+    @cached_property
+    def _frames(self) -> Array:
+        """Centre, right and down of each face, (6, 3, 3)."""
+        return np.array([[_AXES[axis] for axis in (f.centre, f.right, f.down)] for f in self.arrangement.faces])
+
+    def _directions(self, face: Indices, u: Array, v: Array) -> Array:
+        """Not of unit length, (k, 3), at u to the right and v down, in [-1, 1] within the face."""
+        frame = self._frames[face]
+        return np.asarray(frame[:, 0] + u[:, None] * frame[:, 1] + v[:, None] * frame[:, 2])
+
+    def _on_faces(self, directions: Array) -> tuple[Indices, Array, Array]:
+        """The face that each direction of any length meets, and where, u and v in [-1, 1]."""
+        axis = np.abs(directions).argmax(axis=1)
+        depth = np.take_along_axis(directions, axis[:, None], axis=1)[:, 0]
+        centre = self._frames[:, 0]
+        by_axis = np.array(
+            [[int(np.argmax(centre @ (sign * _AXES["+" + name]))) for sign in (1, -1)] for name in "xyz"]
+        )
+        face = by_axis[axis, (depth < 0).astype(np.int64)]
+        along = np.einsum("kij,kj->ki", self._frames[face, 1:], directions) / np.abs(depth)[:, None]
+        return face, along[:, 0], along[:, 1]
+
+    @cached_property
+    def _face_solid_angles(self) -> Array:
+        """(face, face) steradians: the integral over v in closed form, without cancellation, over u by Gauss's rule.
+
+        The integral of (1 + u^2 + v^2)^(-3/2) over v is v / (a sqrt(a + v^2)) with a = 1 + u^2.
+        """
+        half = self.face - self.face // 2
+        edges = np.maximum((2 * np.arange(self.face // 2, self.face + 1) - self.face) / self.face, 0.0)
+        lower, upper = edges[:-1, None], edges[1:, None]
+        quadrant = np.zeros((half, half))
+        for node, weight in zip(*np.polynomial.legendre.leggauss(12 if self.face < 16 else 6), strict=True):
+            a = 1 + (lower.T + (upper - lower).T * (1 + node) / 2) ** 2
+            low, high = np.sqrt(a + lower**2), np.sqrt(a + upper**2)
+            between = (upper - lower) * (upper + lower) / (low * high * (upper * low + lower * high))
+            quadrant += weight / 2 * (upper - lower).T * between
+        if self.face % 2:
+            quadrant[0] *= 2
+            quadrant[:, 0] *= 2
+        rows = np.concatenate([quadrant[::-1], quadrant[self.face % 2 :]])
+        return np.asarray(np.concatenate([rows[:, ::-1], rows[:, self.face % 2 :]], axis=1))
+
+
+def quadrant_point_count(n_bands: int) -> int:
+    """So many Chebyshev points a side make a quadrant of a face exact to rounding; measured, see the tests."""
+    return 26 + int(np.ceil(0.55 * n_bands))

@@ -1,0 +1,162 @@
+"""What the angular map and the mirror ball have in common: the sphere within a disc, turned about the direction ahead.
+
+The centre of the image looks along +x. A direction at the angle theta from there lies at a radius that depends on theta
+alone, 1 (the rim, half the image's side) for straight back, and on the side where it is seen: the image's right is -y, its
+top +z, as in all layouts. What lies outside the disc shows nothing.
+
+HDRShop and the published probes use the same two, unmirrored against their lat-long images. (A photograph of a mirror ball
+shows left and right exchanged, like any mirror: turn it over first.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+from shviewer.lights.layouts.layout import Indices
+from shviewer.lights.layouts.rim import RimPoints, rim_points
+
+_RIM_BLOCK = 512
+"""Texels on the rim whose points are held at a time."""
+
+
+@dataclass(frozen=True)
+class DiscLayout:
+    """side: of the square image, in texels. The subclasses say how the radius follows from theta."""
+
+    side: int
+    name: str = ""
+
+    @property
+    def size(self) -> str:
+        return f"{self.side} x {self.side}"
+
+    @property
+    def raster_width(self) -> int:
+        """Of a lat-long image that is nowhere much coarser."""
+        return 2 * self.side
+
+    def radius(self, theta: Array) -> Array:
+        """In [0, 1], of the angle from the direction ahead, radians."""
+        raise NotImplementedError
+
+    def theta(self, radius: Array) -> Array:
+        """The inverse."""
+        raise NotImplementedError
+
+    def nearest(self, directions: Array) -> tuple[Indices, Indices]:
+        x, y, z = directions.T
+        across = np.hypot(y, z)
+        radius = self.radius(np.arctan2(across, x))
+        scale = np.divide(radius, across, where=across > 0, out=np.zeros_like(across))
+        right = np.where((across == 0) & (x < 0), 1.0, -y * scale)
+        return self._texel(-z * scale), self._texel(right)
+
+    def _texel(self, position: Array) -> Indices:
+        return np.clip(((1 + position) / 2 * self.side).astype(np.int64), 0, self.side - 1)
+
+    def centres(self, rows: Indices, columns: Indices) -> Array:
+        """Of a texel whose centre is outside the disc: a point of it inside; of one wholly outside: straight back."""
+        right, down = ((2 * index + 1) / self.side - 1 for index in (columns, rows))
+        radius = np.hypot(right, down)
+        inner_right, inner_down = (np.sign(a) * np.maximum(np.abs(a) - 1 / self.side, 0) for a in (right, down))
+        inner = np.hypot(inner_right, inner_down)
+        outside = (radius >= 1) & (inner < 1)
+        share = np.where(outside, (1 - inner) / 2 / np.maximum(radius - inner, 1e-300), 1.0)
+        right, down = inner_right + share * (right - inner_right), inner_down + share * (down - inner_down)
+        return self._directions(right, down)
+
+    def _directions(self, right: Array, down: Array) -> Array:
+        """Unit directions (k, 3) at points of the square [-1, 1]^2; outside the disc straight back."""
+        radius = np.hypot(right, down)
+        theta = self.theta(np.minimum(radius, 1))
+        across = np.where(radius < 1, np.sin(theta), 0.0)
+        scale = np.divide(across, radius, where=radius > 0, out=np.zeros_like(radius))
+        return np.stack([np.cos(theta), -right * scale, -down * scale], axis=-1)
+
+    def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
+        """Texels whose centres are outside the disc do not count: beyond the rim comes the side opposite."""
+        x, y, z = directions.T
+        across = np.hypot(y, z)
+        radius = self.radius(np.arctan2(across, x))
+        scale = np.divide(radius, across, where=across > 0, out=np.zeros_like(across))
+        column = (1 + np.where((across == 0) & (x < 0), 1.0, -y * scale)) / 2 * self.side - 0.5
+        row = (1 - z * scale) / 2 * self.side - 0.5
+        left, top = np.floor(column), np.floor(row)
+        total = np.zeros((len(directions), 3))
+        for down, right in np.ndindex(2, 2):
+            weight = np.abs(1 - right - (column - left)) * np.abs(1 - down - (row - top))
+            total += weight[:, None] * self._beyond_the_rim(pixels, top + down, left + right)
+        return total
+
+    def _beyond_the_rim(self, pixels: NDArray[np.float32], rows: Array, columns: Array) -> Array:
+        """Texels (k, 3); for centres at radius r > 1 the ones at 2 - r on the other side."""
+        right, down = ((2 * index + 1) / self.side - 1 for index in (columns, rows))
+        radius = np.hypot(right, down)
+        folded = np.where(radius < 1, 1.0, np.minimum(1 - 2 / np.maximum(radius, 1), 0.0))
+        return np.asarray(pixels[self._texel(down * folded), self._texel(right * folded)], dtype=np.float64)
+
+    # A quadrant: texels by their distance from the centre, down or up and sideways, from 0 to half.
+
+    @property
+    def half(self) -> int:
+        """Texels from the centre to the rim, counting the middle one of an odd number."""
+        return self.side - self.side // 2
+
+    @cached_property
+    def edges(self) -> Array:
+        """Their edges, (half + 1,), from 0 to 1."""
+        return np.maximum((2 * np.arange(self.side // 2, self.side + 1) - self.side) / self.side, 0.0)
+
+    @cached_property
+    def whole(self) -> NDArray[np.int64]:
+        """How many texels of each row of the quadrant lie wholly inside the disc, (half,)."""
+        reach = np.sqrt(np.maximum(1 - self.edges[1:] ** 2, 0.0))
+        return np.searchsorted(self.edges[1:], reach, side="right")
+
+    @cached_property
+    def cut(self) -> tuple[Indices, Indices]:
+        """Row and column in the quadrant of the texels that the rim cuts."""
+        reach = np.sqrt(np.maximum(1 - self.edges[:-1] ** 2, 0.0))
+        stop = np.searchsorted(self.edges[:-1], reach, side="left")
+        counts = np.maximum(stop - self.whole, 0)
+        rows = np.repeat(np.arange(self.half), counts)
+        first = np.repeat(self.whole - np.concatenate([[0], np.cumsum(counts)[:-1]]), counts)
+        return rows, first + np.arange(len(rows))
+
+    def rim_blocks(self, rows: Indices, columns: Indices, n_points: int) -> list[tuple[Indices, Indices]]:
+        """The texels in parts small enough to be worked on at once."""
+        block = max(1, _RIM_BLOCK * 64 // n_points**2)
+        return [(rows[i : i + block], columns[i : i + block]) for i in range(0, len(rows), block)]
+
+    def rim(self, rows: Indices, columns: Indices, n_points: int) -> RimPoints:
+        """Points of texels of the quadrant, clipped to the disc."""
+        return rim_points(
+            self.edges[columns], self.edges[columns + 1], self.edges[rows], self.edges[rows + 1], n_points
+        )
+
+    def mirrored(self, pixels: NDArray[np.float32], rows: Indices, columns: Indices) -> NDArray[np.float32]:
+        """Texels of all four quadrants by their places in one, (2, 2, k, 3): +y and -y of the world, +z and -z."""
+        first = self.side // 2
+        return np.stack(
+            [
+                np.stack([pixels[row, column] for row in (self.half - 1 - rows, first + rows)])
+                for column in (self.half - 1 - columns, first + columns)
+            ]
+        )
+
+    def whole_sphere(self, quadrant: Array) -> Array:
+        """What a quadrant (half, half) says for the image (side, side), with the halves of middle texels added up."""
+        odd = self.side % 2
+        if odd:
+            quadrant = (
+                quadrant
+                * np.where(np.arange(self.half) == 0, 2, 1)
+                * np.where(np.arange(self.half) == 0, 2, 1)[:, None]
+            )
+        rows = np.concatenate([quadrant[::-1], quadrant[odd:]])
+        return np.asarray(np.concatenate([rows[:, ::-1], rows[:, odd:]], axis=1))

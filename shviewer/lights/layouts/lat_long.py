@@ -1,0 +1,53 @@
+"""Rows of constant theta, columns of constant phi; see shviewer/lights/lat_long.py for where they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.quadrature import directions_from_angles
+from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.layouts.layout import Indices
+
+
+@dataclass(frozen=True)
+class LatLongLayout:
+    """Of any height and width: the whole sphere, however far from 2:1."""
+
+    height: int
+    width: int
+    name: str = "lat-long"
+
+    @property
+    def size(self) -> str:
+        return f"{self.width} x {self.height}"
+
+    @property
+    def raster_width(self) -> int:
+        return self.width
+
+    def solid_angles(self) -> Array:
+        """The difference of the cosines of a row's edges, which does not cancel in this form; (height, 1)."""
+        theta = np.pi * (np.arange(self.height) + 0.5) / self.height
+        rows = 2 * np.sin(theta) * np.sin(np.pi / (2 * self.height)) * (2 * np.pi / self.width)
+        return np.asarray(rows[:, None])
+
+    def nearest(self, directions: Array) -> tuple[Indices, Indices]:
+        x, y, z = directions.T
+        row = (np.arctan2(np.hypot(x, y), z) * (self.height / np.pi)).astype(np.int64)
+        column = np.floor((0.5 - np.arctan2(y, x) / (2 * np.pi)) * self.width).astype(np.int64)
+        return np.minimum(row, self.height - 1), column % self.width
+
+    def centres(self, rows: Indices, columns: Indices) -> Array:
+        phi = np.pi * (1 - (2 * columns + 1) / self.width)
+        return directions_from_angles(np.pi * (rows + 0.5) / self.height, phi)
+
+    def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
+        return LatLongMap(pixels).sample(directions)
+
+    def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
+        return project_image(pixels, n_bands)

@@ -1,0 +1,56 @@
+"""Texels that the rim of a disc cuts: what of them lies inside the unit circle, as points with weights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+
+
+@dataclass(frozen=True, eq=False)
+class RimPoints:
+    """All (k,). x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation; weights are areas.
+
+    texels: the index of the rectangle of each point.
+    """
+
+    x: Array
+    y: Array
+    depth: Array
+    weights: Array
+    texels: NDArray[np.int64]
+
+
+def rim_points(x0: Array, x1: Array, y0: Array, y1: Array, n_points: int) -> RimPoints:
+    """Gauss's rule on the part inside the unit circle of rectangles [x0, x1] x [y0, y1], (k,) each, none negative.
+
+    With y = sin(p) and x = cos(p) sin(t) the circle is t = pi/2 and sqrt(1 - x^2 - y^2) = cos(p) cos(t), so that nothing is
+    singular there. Where the circle leaves the rectangle through a side x = x', which is p' = acos(x'), the limits in t go
+    like sqrt(p' - p): substituting p = p' - s^2 makes them smooth as well. Below p' of the outer side the rectangle is whole,
+    above it the circle bounds it: two parts of n_points^2 points. Both roots and polynomials in x and y are analytic.
+    """
+    node, weight = np.polynomial.legendre.leggauss(n_points)
+    node, weight = (1 + node) / 2, weight / 2
+    lowest, highest = np.arcsin(np.minimum(y0, 1)), np.arcsin(np.minimum(y1, 1))
+    outer, inner = np.arccos(np.minimum(x1, 1)), np.arccos(np.minimum(x0, 1))
+    parts = []
+    for leaves, start, stop, bound in (
+        (outer, lowest, np.minimum(highest, outer), x1),
+        (inner, np.maximum(lowest, outer), np.minimum(highest, inner), np.full_like(x1, np.inf)),
+    ):
+        texels = np.flatnonzero(stop > start)
+        leaves, start, stop, bound, left = (a[texels, None, None] for a in (leaves, start, stop, bound, x0))
+        first, last = np.sqrt(leaves - stop), np.sqrt(leaves - start)
+        s = first + (last - first) * node[:, None]
+        angle = leaves - s * s
+        c = np.cos(angle)
+        t0, t1 = np.arcsin(np.minimum(left / c, 1)), np.arcsin(np.minimum(bound / c, 1))
+        t = t0 + (t1 - t0) * node
+        depth = c * np.cos(t)
+        weights = (2 * s * (last - first) * weight[:, None] * c) * ((t1 - t0) * weight) * depth
+        y = np.broadcast_to(np.sin(angle), t.shape)
+        parts.append((c * np.sin(t), y, depth, weights, np.broadcast_to(texels[:, None, None], t.shape)))
+    return RimPoints(*(np.concatenate([part[i].ravel() for part in parts]) for i in range(5)))
