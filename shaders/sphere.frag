@@ -18,10 +18,11 @@ uniform bool linear_output;     // radiance as it is, zero outside, for comparin
 out vec4 colour;
 
 vec3 radiance_from(vec3 direction) {
-    if (source == SOURCE_LOBES) return lobe_radiance(direction);
-    if (source == SOURCE_MAP) return map_radiance(direction);
-    if (source == SOURCE_SMOOTH_MAP) return smooth_map_radiance(direction);
-    return sh_radiance(direction);
+    vec3 lobes = lobe_radiance(direction);  // all there is, or suns that were split off the reconstruction
+    if (source == SOURCE_LOBES) return lobes;
+    if (source == SOURCE_MAP) return lobes + map_radiance(direction);
+    if (source == SOURCE_SMOOTH_MAP) return lobes + smooth_map_radiance(direction);
+    return lobes + sh_radiance(direction);
 }
 
 void main() {

@@ -15,8 +15,8 @@ from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
 from shviewer.options import DEFAULT_BANDS, finite, info_parser, report_parser, screenshot_parser, view_parser
 
 if TYPE_CHECKING:
-    from shviewer.lights.light import Light
     from shviewer.lights.radiance_files import Reading
+    from shviewer.viewer.analysis import Subject
     from shviewer.viewer.state import ViewState
 
 
@@ -54,18 +54,18 @@ def _view(options: argparse.Namespace) -> int:
             print(f"{name:<20}{find_light(name).description}")
         return 0
     from shviewer.viewer import window
-    from shviewer.viewer.analysis import load_light
+    from shviewer.viewer.analysis import subject
     from shviewer.viewer.composition import compose
     from shviewer.viewer.glfw_window import NoDisplayError
     from shviewer.viewer.picture import prepare
     from shviewer.viewer.screenshot import save_picture
 
     state = _state(options, all_lights=True)
-    _print_notes(load_light(state))
+    _print_notes(subject(state))
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
-        out = Path(f"shviewer-{window.file_stem(load_light(state).name)}.png")
+        out = Path(f"shviewer-{window.file_stem(subject(state).light.name)}.png")
         save_picture(prepare(state), compose(options.size[0], options.size[1], state.zoom), out)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0
@@ -87,7 +87,7 @@ def _screenshot(options: argparse.Namespace) -> int:
     picture = prepare(state)
     composition = compose(options.size[0], options.size[1], state.zoom)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
-    _print_notes(picture.light)
+    _print_notes(picture.subject)
     if options.reference is None or pixels is None:
         return 0
     difference = options.out.with_name(f"{options.out.stem}-difference.png")
@@ -192,6 +192,7 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
         muted=options.mute,
         quantity=options.quantity,
+        split_sun=options.split_sun,
         window=window,
         window_width=_finite_width(width) if separator else None,
         method=options.method,
@@ -233,9 +234,11 @@ def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:
     return replace(state, n_bands=wanted or found.best_bands)
 
 
-def _print_notes(light: Light) -> None:
-    for note in light.notes:
-        print(f"shviewer: note: {light.name}: {note}", file=sys.stderr)
+def _print_notes(subject: Subject) -> None:
+    for note in subject.light.notes:
+        print(f"shviewer: note: {subject.light.name}: {note}", file=sys.stderr)
+    if subject.refusal:
+        print(f"shviewer: note: {subject.refusal}", file=sys.stderr)
 
 
 def _finite_width(text: str) -> float:

@@ -136,6 +136,9 @@ def _add_view_options(parser: OneLineParser) -> None:
         help="radiance (default), or irradiance: what a white Lambertian surface receives",
     )
     parser.add_argument(
+        "--split-sun", action="store_true", help="take suns out of the light as discs of their own and project the rest"
+    )
+    parser.add_argument(
         "--window",
         metavar="W[:WIDTH]",
         default="none",

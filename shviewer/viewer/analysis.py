@@ -12,7 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
-from shviewer.errors import UsageError
+from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
 from shviewer.harmonics.extremes import ErrorGrid, Extremes
@@ -34,6 +34,7 @@ from shviewer.harmonics.projection import project_product, project_samples
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light, built_in_lights, find_light
+from shviewer.lights.sun import Split, Sun, split_suns
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.memory import MEMORY, remember
 from shviewer.viewer.state import QUANTITIES, ViewState
@@ -108,12 +109,35 @@ def sampling_of(state: ViewState) -> tuple[str, int, int]:
     return BEST if state.method == "best" else (state.method, state.samples, state.seed)
 
 
-def load_light(state: ViewState) -> Light:
-    """The state's light, or its irradiance; one named by text is read once."""
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What is shown as the original, and what is projected: the same, unless suns are split off."""
+
+    whole: Light
+    light: Light
+    """What the figures are of."""
+    suns: tuple[Sun, ...] = ()
+    refusal: str = ""
+    """Why nothing was split off although it was asked for."""
+
+
+def subject(state: ViewState) -> Subject:
+    """Of the state's light, or of its irradiance; a light named by text is read once."""
     light = state.light
     if isinstance(light, str):
         light = MEMORY.named(_name(state)) or read_again(state)
-    return _irradiance(light) if state.quantity == "irradiance" else light
+    found = Subject(light, light)
+    if state.split_sun:
+        split = _split(light)
+        found = replace(found, refusal=split) if isinstance(split, str) else Subject(light, split.rest, split.suns)
+    if state.quantity == "irradiance":
+        return replace(found, whole=_irradiance(found.whole), light=_irradiance(found.light))
+    return found
+
+
+def load_light(state: ViewState) -> Light:
+    """The light that is projected."""
+    return subject(state).light
 
 
 def read_again(state: ViewState) -> Light:
@@ -202,6 +226,15 @@ def project(light: Light, method: str, samples: int, seed: int, n_bands: int) ->
         coefficients = light.coefficients(n_bands)
         words = light.best_method
     return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))
+
+
+@remember(most=1)
+def _split(light: Light) -> Split | str:
+    """The light and its suns apart, or why it has none."""
+    try:
+        return split_suns(light)
+    except LightError as error:
+        return str(error)
 
 
 @remember(most=1)

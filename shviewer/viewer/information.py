@@ -13,7 +13,8 @@ from shviewer.harmonics.extremes import LUMINANCE, SEARCH_ROUNDS, climb
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.light import IMAGE_SUFFIXES, Light, split_light
 from shviewer.lights.radiance_files import Reading
-from shviewer.viewer.analysis import error_grid, grid_rows, load_light, needs
+from shviewer.lights.sun import Sun
+from shviewer.viewer.analysis import error_grid, grid_rows, load_light, needs, subject
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.watching import stamp
@@ -62,6 +63,20 @@ class BandsNeeded:
 
 
 @dataclass(frozen=True)
+class SunInformation:
+    """A compact source, as a disc."""
+
+    direction: Triple
+    theta_phi_degrees: tuple[float, float]
+    width_degrees: float
+    radiance: Triple
+    irradiance: Triple
+    """Of a surface that faces it."""
+    share_of_flux: float
+    """Of the light's, over the channels' mean."""
+
+
+@dataclass(frozen=True)
 class Information:
     """About one LIGHT."""
 
@@ -92,6 +107,10 @@ class Information:
     energy_share: tuple[float, ...]
     """Of each band, of the light's energy over the sphere."""
     bands_needed: tuple[BandsNeeded, ...]
+    suns: tuple[SunInformation, ...]
+    """What --split-sun takes out, the greatest flux first."""
+    bands_needed_without_suns: tuple[BandsNeeded, ...]
+    """By the rest; none if there are no suns."""
 
 
 def describe(text: str, reading: Reading) -> Information:
@@ -138,12 +157,8 @@ def as_text(information: Information) -> str:
     rows.append(("irradiance up", _numbers(information.irradiance_up)))
     shares = " ".join(f"{100 * share:.2f}" for share in information.energy_share)
     rows.append(("energy, %", f"{shares} in bands 0 to {len(information.energy_share) - 1}; {information.method}"))
-    for quantity in ("radiance", "irradiance"):
-        counts = (
-            f"{getattr(need, quantity) or f'over {need.searched}'} for {100 * need.tolerance:g} %"
-            for need in information.bands_needed
-        )
-        rows.append((f"bands, {quantity}", ", ".join(counts)))
+    rows += _bands("bands", information.bands_needed)
+    rows += _suns(information)
     lines = [f"{information.light}: {information.description}"]
     return "\n".join(lines + [f"  {label:<18}{text}" for label, text in rows])
 
@@ -155,10 +170,10 @@ def _describe(text: str, reading: Reading) -> Information:
     image = light if isinstance(light, EnvironmentLight) else None
     values, peak = _image_values(image) if image is not None else _grid_values(light)
     mean = picture.projection.coefficients[0] / (2 * np.sqrt(np.pi))
-    theta, phi = np.degrees([np.arctan2(np.hypot(peak[0], peak[1]), peak[2]), np.arctan2(peak[1], peak[0])])
     irradiance = load_light(replace(state, quantity="irradiance"))
     file = stamp(text)
-    found = [needs(replace(state, tolerance=tolerance)) for tolerance in TOLERANCES]
+    split = subject(replace(state, split_sun=True))
+    total = float(mean.mean()) * 4 * np.pi
     return Information(
         light_argument=text,
         light=light.name,
@@ -175,14 +190,37 @@ def _describe(text: str, reading: Reading) -> Information:
         mean_luminance=float(mean @ LUMINANCE),
         peak=max(-values.minimum, values.maximum),
         peak_direction=_triple(peak),
-        peak_theta_phi_degrees=(float(theta), float(phi)),
+        peak_theta_phi_degrees=_theta_phi(peak),
         irradiance_up=_triple(irradiance.radiance(np.array([[0.0, 0.0, 1.0]]))[0]),
         method=picture.projection.method,
         energy_share=picture.figures.energy_share[:SHOWN_BANDS],
-        bands_needed=tuple(
-            BandsNeeded(need.tolerance, need.radiance, need.irradiance, need.searched) for need in found
-        ),
+        bands_needed=_needed(state),
+        suns=tuple(_sun(sun, total) for sun in split.suns),
+        bands_needed_without_suns=_needed(replace(state, split_sun=True)) if split.suns else (),
     )
+
+
+def _needed(state: ViewState) -> tuple[BandsNeeded, ...]:
+    found = (needs(replace(state, tolerance=tolerance)) for tolerance in TOLERANCES)
+    return tuple(BandsNeeded(need.tolerance, need.radiance, need.irradiance, need.searched) for need in found)
+
+
+def _sun(sun: Sun, total: float) -> SunInformation:
+    """total: the light's flux, of the channels' mean."""
+    return SunInformation(
+        direction=_triple(sun.axis),
+        theta_phi_degrees=_theta_phi(sun.axis),
+        width_degrees=float(np.degrees(2 * sun.half_angle)),
+        radiance=_triple(sun.radiance),
+        irradiance=_triple(sun.irradiance),
+        share_of_flux=float(sun.flux.mean()) / total,
+    )
+
+
+def _theta_phi(direction: Array) -> tuple[float, float]:
+    """Degrees."""
+    x, y, z = direction
+    return float(np.degrees(np.arctan2(np.hypot(x, y), z))), float(np.degrees(np.arctan2(y, x)))
 
 
 def _image_values(image: EnvironmentLight) -> tuple[Values, Array]:
@@ -246,6 +284,30 @@ def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
         dynamic_range_stops=max(0.0, float(np.log2(brightest / darkest))) if darkest else None,
         source=source,
     )
+
+
+def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:
+    return [
+        (
+            f"{what}, {quantity}",
+            ", ".join(
+                f"{getattr(need, quantity) or f'over {need.searched}'} for {100 * need.tolerance:g} %"
+                for need in counts
+            ),
+        )
+        for quantity in ("radiance", "irradiance")
+    ]
+
+
+def _suns(information: Information) -> list[tuple[str, str]]:
+    rows = []
+    for sun in information.suns:
+        theta, phi = sun.theta_phi_degrees
+        share = f"{100 * sun.share_of_flux:.3g} % of the flux"
+        place = f"at theta {theta:.2f}, phi {phi:.2f}, {sun.width_degrees:.3g} degrees wide"
+        colour = " ".join(f"{value:.3g}" for value in sun.irradiance)
+        rows.append(("sun", f"{share} {place}; irradiance {colour}"))
+    return rows + (_bands("rest", information.bands_needed_without_suns) if rows else [])
 
 
 def _dynamic_range(values: Values) -> list[tuple[str, str]]:

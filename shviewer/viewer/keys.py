@@ -33,6 +33,7 @@ from shviewer.viewer.state import (
     solo_band,
     toggle_band,
     toggle_cursor,
+    toggle_split,
     with_bands,
 )
 
@@ -105,6 +106,7 @@ BINDINGS = (
         lambda s: light_name(s.light),
     ),
     Binding("I", LIGHT, "radiance or irradiance", {"I": next_quantity}, lambda s: s.quantity),
+    Binding("U", LIGHT, "sun as a disc of its own", {"U": toggle_split}, lambda s: "split" if s.split_sun else "whole"),
     Binding("M", LIGHT, "projection method", {"M": next_method}, lambda s: s.method),
     Binding(
         "S / Shift+S",

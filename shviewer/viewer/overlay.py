@@ -127,7 +127,9 @@ class _Painter:
         bands = f"{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
         original = "Original" if state.quantity == "radiance" else "Irradiance"
         self.text("original", left, y, original, 17, INK, "mm")
-        changes = [change for change in (describe_window(state), muted) if change]
+        suns = len(picture.subject.suns)
+        apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
+        changes = [change for change in (apart, describe_window(state), muted) if change]
         captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
         any(self.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
         projection = picture.projection
@@ -158,9 +160,10 @@ class _Painter:
         if 2 * at.margin < at.width:
             self.draw.rectangle((at.margin, y, at.width - at.margin, y + max(0, round(at.scale) - 1)), fill=RULE)
         extremes = figures.extremes
+        of_the_rest = " of rest" if picture.subject.suns else ""
         columns = (
-            ("relative_l2", _percent(figures.relative_l2, floor=figures.floor), "relative L2 error"),
-            ("max_error", _radiance(extremes.max_error, extremes.peak), "largest error"),
+            ("relative_l2", _percent(figures.relative_l2, floor=figures.floor), f"relative L2 error{of_the_rest}"),
+            ("max_error", _radiance(extremes.max_error, extremes.peak), f"largest error{of_the_rest}"),
             ("minimum", _radiance(extremes.minimum, extremes.peak), "minimum"),
             ("negative_area", _percent(extremes.negative_area, 2), "of the sphere negative"),
         )
@@ -227,12 +230,13 @@ class _Painter:
         self.boxes["bars"] = Box(left, base - tallest - at.px(16), last, base + at.px(20))
 
     def hint(self, picture: Picture) -> None:
-        """A message, or else the most useful keys; on the right the exposure."""
+        """A message, what was split off, or else the most useful keys; on the right the exposure."""
         at, state = self.at, picture.state
         y = at.hairline_y + at.px(104)
-        if state.message:
+        message = state.message or picture.subject.refusal
+        if message:
             face = self.face(13)
-            text = state.message
+            text = message
             while text and face.getlength(text) > at.width - 2 * at.margin:
                 text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
             self.text("message", at.margin, y, text, 13, WARNING, "lm")
@@ -242,8 +246,30 @@ class _Painter:
         bands = "band" if needs.radiance == 1 else "bands"
         within = f"{100 * needs.tolerance:g} % needs {radiance} {bands}, irradiance {irradiance}"
         any(self.text("exposure", far, y, text, 12, FAINT, "rm") for text in (f"{within}     {stops}", within, stops))
-        if not state.message:
-            self.text("hint", at.margin, y, HINT, 12, FAINT, "lm")
+        if not message:
+            hints = [*_describe_suns(picture), HINT]
+            any(self.text("hint", at.margin, y, text, 12, GREY if text is not HINT else FAINT, "lm") for text in hints)
+
+
+def _describe_suns(picture: Picture) -> list[str]:
+    """What the suns are and what it buys to split them off, the longest form first; none if there are none."""
+    suns, before = picture.subject.suns, picture.needs_unsplit
+    if not suns or before is None:
+        return []
+    counts = (str(count or f"over {before.searched}") for count in (before.radiance, before.irradiance))
+    unsplit = "with it {} bands, irradiance {}".format(*counts)
+    sun = suns[0]
+    theta = np.degrees(np.arctan2(np.hypot(sun.axis[0], sun.axis[1]), sun.axis[2]))
+    phi = np.degrees(np.arctan2(sun.axis[1], sun.axis[0]))
+    place = f"theta {theta:.1f}, phi {phi:.1f}"
+    size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide"
+    colour = " ".join(_radiance(value, 0.0) for value in sun.irradiance)
+    count = "sun" if len(suns) == 1 else f"{len(suns)} suns, the first"
+    return [
+        f"{count} at {place}, {size}, irradiance {colour}; {unsplit}",
+        f"{count} at {place}, {size}; {unsplit}",
+        f"{count} at {place}, {size}",
+    ]
 
 
 def _shortened(name: str, length: int) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,13 +18,14 @@ from shviewer.viewer.analysis import (
     Figures,
     Needs,
     Projection,
+    Subject,
     error_grid,
     grid_rows,
-    load_light,
     needs,
     project,
     reconstruct,
     sampling_of,
+    subject,
 )
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
@@ -49,9 +50,12 @@ class Picture:
     """What the GPU and the overlay need for one state."""
 
     state: ViewState
-    light: Light
-    """What is shown on the left: the state's light, or its irradiance."""
+    subject: Subject
+    """What is shown on the left, what is projected, and the suns that were split off."""
     lobes: tuple[Lobe, ...]
+    """Of the original."""
+    added_lobes: tuple[Lobe, ...]
+    """The suns, drawn on top of the reconstruction."""
     original_map: LatLongMap | None
     coefficients: Array
     """Shown, (n_bands**2, 3): muted ones are zero."""
@@ -63,15 +67,23 @@ class Picture:
     projection: Projection
     figures: Figures
     needs: Needs
+    needs_unsplit: Needs | None
+    """What the light would need with its suns; None if none were split off."""
+
+    @property
+    def light(self) -> Light:
+        """What the figures are of."""
+        return self.subject.light
 
 
 def prepare(state: ViewState) -> Picture:
     """Everything to be drawn and said. LightError if the light cannot be read, UsageError for a state out of range."""
     check(state)
-    light = load_light(state)
+    shown = subject(state)
+    light, whole = shown.light, shown.whole
     projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
     projection = project(light, *sampling_of(state), projected)
-    peak = error_grid(light, grid_rows(1)).peak
+    peak = error_grid(whole, grid_rows(1)).peak
     if not (peak == 0 or DIMMEST <= peak <= BRIGHTEST):
         raise LightError(
             f"{light.name}: its largest radiance is {peak:.3g}; float32 shows {DIMMEST:g} to {BRIGHTEST:g}: scale the light"
@@ -80,20 +92,26 @@ def prepare(state: ViewState) -> Picture:
     coefficients, figures = reconstruct(light, projection, *shape)
     return Picture(
         state=state,
-        light=light,
-        lobes=light.lobes if isinstance(light, LobeLight) else (),
-        original_map=light.radiance_map(),
+        subject=shown,
+        lobes=whole.lobes if isinstance(whole, LobeLight) else (),
+        added_lobes=_sun_lobes(shown, state.quantity),
+        original_map=whole.radiance_map(),
         coefficients=coefficients,
         reconstruction_map=None
         if state.n_bands <= MAX_DIRECT_BANDS
         else _reconstruction_map(light, projection, *shape),
         world_from_view=camera.world_from_view(*state.camera),
         light_from_world=camera.light_from_world(state.light_rotation),
-        exposure_stops=exposure_stops(state, light),
+        exposure_stops=exposure_stops(state, whole),
         projection=projection,
         figures=figures,
         needs=needs(state),
+        needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
     )
+
+
+def _sun_lobes(shown: Subject, quantity: str) -> tuple[Lobe, ...]:
+    return tuple(sun.irradiance_lobe if quantity == "irradiance" else sun.lobe for sun in shown.suns)
 
 
 def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> None:
@@ -137,8 +155,7 @@ def _reconstruction_map(
 ) -> LatLongMap:
     shown, _ = reconstruct(light, projection, n_bands, muted, window_name, width)
     rows, columns = MAP_SIZE
-    values = Synthesis(shown).on_rows(np.linspace(0, np.pi, rows), columns)
-    return LatLongMap(np.ascontiguousarray(values.transpose(0, 2, 1), dtype=np.float32), rows_on_poles=True)
+    return LatLongMap(Synthesis(shown).pole_to_pole(rows, columns), rows_on_poles=True)
 
 
 @remember(most=2)

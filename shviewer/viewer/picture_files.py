@@ -20,6 +20,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from shviewer import __version__
 from shviewer.errors import OutputError, UsageError
+from shviewer.lights.sun import Sun
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.picture import Picture
 
@@ -39,6 +40,8 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "bands": state.n_bands,
         "muted": list(state.muted_shown),
         "quantity": state.quantity,
+        "split_sun": state.split_sun,
+        "suns": [_described(sun) for sun in picture.subject.suns],
         "window": state.window,
         "window_width": state.window_width,
         "factors": list(figures.factors),
@@ -74,9 +77,20 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
             "peak": extremes.peak,
             "energy_share": list(figures.energy_share),
             "bands_needed": asdict(picture.needs),
+            "bands_needed_unsplit": asdict(picture.needs_unsplit) if picture.needs_unsplit else None,
         },
     }
     return json.dumps(_finite(description), allow_nan=False)
+
+
+def _described(sun: Sun) -> dict[str, Any]:
+    return {
+        "direction_in_light": sun.axis.tolist(),
+        "half_angle_degrees": math.degrees(sun.half_angle),
+        "solid_angle": sun.solid_angle,
+        "radiance": sun.radiance.tolist(),
+        "irradiance": sun.irradiance.tolist(),
+    }
 
 
 def _finite(value: Any) -> Any:

@@ -42,7 +42,8 @@ class Renderer:
         self.sphere_quad = context.vertex_array(self.sphere_program, [])
         self.overlay_quad = context.vertex_array(self.overlay_program, [])
         self.sh_buffer = _block_buffer(self.sphere_program, "ShBlock", SH_BINDING)
-        self.lobe_buffer = _block_buffer(self.sphere_program, "LobeBlock", LOBE_BINDING)
+        self.lobe_buffers = [_block_buffer(self.sphere_program, "LobeBlock", LOBE_BINDING) for _ in range(2)]
+        """Of the original, and of what is added to the reconstruction."""
         self.textures: dict[int, tuple[LatLongMap, moderngl.Texture]] = {}
         self.no_map = context.texture((1, 1), 4, dtype="f4")
         self.overlay: moderngl.Texture | None = None
@@ -60,8 +61,9 @@ class Renderer:
     def show(self, picture: Picture, overlay: NDArray[np.uint8] | None = None) -> None:
         """Upload what differs from the last picture. overlay: (height, width, 4) RGBA, or None for none."""
         last = self.picture
-        if last is None or picture.lobes is not last.lobes:
-            self.lobe_buffer.write(pack_lobes(picture.lobes))
+        for side, lobes in enumerate((picture.lobes, picture.added_lobes)):
+            if last is None or lobes is not (last.lobes, last.added_lobes)[side]:
+                self.lobe_buffers[side].write(pack_lobes(lobes))
         if picture.reconstruction_map is None and (last is None or picture.coefficients is not last.coefficients):
             self.sh_buffer.write(pack_coefficients(picture.coefficients))
         for side, wanted in enumerate((picture.original_map, picture.reconstruction_map)):
@@ -85,13 +87,13 @@ class Renderer:
         _set(program, "linear_output", linear)
         _set(program, "soft_edges", not linear)
         _set(program, "exposure", 2.0**picture.exposure_stops)
-        _set(program, "n_lobes", len(picture.lobes))
         _set(program, "n_bands", count_bands(picture.coefficients))
         self.sh_buffer.bind_to_uniform_block(SH_BINDING)
-        self.lobe_buffer.bind_to_uniform_block(LOBE_BINDING)
         original = SOURCE_LOBES if picture.original_map is None else SOURCE_MAP
         reconstruction = SOURCE_HARMONICS if picture.reconstruction_map is None else SOURCE_SMOOTH_MAP
         for side, source in enumerate((original, reconstruction)):
+            self.lobe_buffers[side].bind_to_uniform_block(LOBE_BINDING)
+            _set(program, "n_lobes", len((picture.lobes, picture.added_lobes)[side]))
             self._draw_sphere(target, composition, side, source)
         target.viewport = (0, 0, composition.width, composition.height)
         if not linear and self.overlay is not None:
@@ -109,7 +111,7 @@ class Renderer:
             self.overlay,
             self.no_map,
             self.sh_buffer,
-            self.lobe_buffer,
+            *self.lobe_buffers,
             self.sphere_quad,
             self.overlay_quad,
         ):

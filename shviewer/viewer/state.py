@@ -35,6 +35,8 @@ class ViewState:
     cursor: int = 0
     cursor_visible: bool = False
     quantity: str = "radiance"
+    split_sun: bool = False
+    """Take compact sources out of the light as discs, where it has any, and project the rest."""
     window: str = "none"
     window_width: float | None = None
     """In bands; where it is None, as many as are shown."""
@@ -124,6 +126,10 @@ def next_window(state: ViewState) -> ViewState:
 
 def next_quantity(state: ViewState) -> ViewState:
     return replace(state, quantity=QUANTITIES[(QUANTITIES.index(state.quantity) + 1) % len(QUANTITIES)])
+
+
+def toggle_split(state: ViewState) -> ViewState:
+    return replace(state, split_sun=not state.split_sun)
 
 
 def next_method(state: ViewState) -> ViewState:

@@ -167,7 +167,7 @@ class Window:
 
     def _keep(self, error: ShviewerError) -> None:
         """Stay with the picture there is, and say why."""
-        keep_light(self.picture.state, self.picture.light)
+        keep_light(self.picture.state, self.picture.subject.whole)
         wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots", "fits")}
         self.state = replace(self.picture.state, message=str(error), **wishes)
         self.picture = replace(self.picture, state=self.state)

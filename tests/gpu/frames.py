@@ -86,8 +86,7 @@ def reconstructing(picture: Picture, coefficients: Array) -> Picture:
     if count_bands(coefficients) <= 32:
         return replace(picture, coefficients=coefficients, reconstruction_map=None)
     rows, columns = MAP_SIZE
-    values = Synthesis(coefficients).on_rows(np.linspace(0, np.pi, rows), columns)
-    texels = np.ascontiguousarray(values.transpose(0, 2, 1), dtype=np.float32)
+    texels = Synthesis(coefficients).pole_to_pole(rows, columns)
     return replace(picture, coefficients=coefficients, reconstruction_map=LatLongMap(texels, rows_on_poles=True))
 
 

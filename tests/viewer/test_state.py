@@ -59,7 +59,7 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5"
+        "Ctrl+R F5 U"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -175,6 +175,7 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         cursor=3,
         cursor_visible=True,
         quantity="irradiance",
+        split_sun=True,
         window="hann",
         window_width=3.0,
         tolerance=0.1,
