@@ -31,16 +31,36 @@ def texel_weights(edges: Array, n_points: int) -> tuple[Array, Array]:
     below n_points.
     """
     middle, half = (edges[0] + edges[-1]) / 2, (edges[-1] - edges[0]) / 2
-    angle = np.pi * (np.arange(n_points) + 0.5) / n_points
     edge_angle = np.arccos(np.clip((edges - middle) / half, -1, 1))
     degree = np.arange(n_points)[:, None]
     lower = np.divide(
         np.cos((degree - 1) * edge_angle), degree - 1, where=degree != 1, out=np.zeros((n_points, len(edges)))
     )
     antiderivative = (np.cos((degree + 1) * edge_angle) / (degree + 1) - lower) / 2
-    to_points = np.cos(angle[:, None] * degree.T) * (2 / n_points)
-    to_points[:, 0] /= 2
-    return middle + half * np.cos(angle), half * (to_points @ np.diff(antiderivative, axis=1))
+    points = middle + half * chebyshev_points(n_points)
+    return points, half * (_points_from_series(n_points) @ np.diff(antiderivative, axis=1))
+
+
+def chebyshev_points(n_points: int) -> Array:
+    """(n_points,) in (-1, 1), descending."""
+    return np.asarray(np.cos(np.pi * (np.arange(n_points) + 0.5) / n_points))
+
+
+def chebyshev_shares(positions: Array, n_points: int) -> Array:
+    """How much each Chebyshev point counts at positions (...) in [-1, 1]: (..., n_points).
+
+    These are the polynomials that are 1 at their own point and 0 at the others.
+    """
+    angle = np.arccos(np.clip(positions, -1, 1))
+    return np.asarray(np.cos(angle[..., None] * np.arange(n_points)) @ _points_from_series(n_points).T)
+
+
+def _points_from_series(n_points: int) -> Array:
+    """Takes values of the Chebyshev polynomials T(0) to T(n-1), or linear functionals of them, to shares of the points."""
+    angle = np.pi * (np.arange(n_points) + 0.5) / n_points
+    matrix = np.cos(angle[:, None] * np.arange(n_points)) * (2 / n_points)
+    matrix[:, 0] /= 2
+    return np.asarray(matrix)
 
 
 def quadrant_points(n_texels: int, n_points: int) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
@@ -58,7 +59,10 @@ class EnvironmentLight:
     def read(cls, path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> EnvironmentLight:
         """The image in a file, or one layer of it. LightError if it cannot be read or has not the layout asked for."""
         image = read_radiance_image(path, reading, layer)
-        layout, notes = recognise(image.pixels, image.layout, reading.layout)
+        try:
+            layout, notes = recognise(image.pixels, image.layout, reading.layout)
+        except LightError as error:
+            raise LightError(f"{path}: {error}") from None
         return cls(image.pixels, layout, path.stem, image.notes + notes, image.encoding)
 
     @property

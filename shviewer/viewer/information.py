@@ -304,7 +304,7 @@ def _suns(information: Information) -> list[tuple[str, str]]:
     for sun in information.suns:
         theta, phi = sun.theta_phi_degrees
         share = f"{100 * sun.share_of_flux:.3g} % of the flux"
-        place = f"at theta {theta:.2f}, phi {phi:.2f}, {sun.width_degrees:.3g} degrees wide"
+        place = f"at theta {theta:.2f}, phi {phi:.2f}, {sun.width_degrees:.3g} deg wide"
         colour = " ".join(f"{value:.3g}" for value in sun.irradiance)
         rows.append(("sun", f"{share} {place}; irradiance {colour}"))
     return rows + (_bands("rest", information.bands_needed_without_suns) if rows else [])

@@ -1,7 +1,7 @@
 """What the reader promises about any bytes whatever, checked on one input.
 
 It returns finite float32 of a size that the file declares, or raises LightError with one line; within 2 s; and without
-more memory than twice the image and 200 MB.
+more memory than twice the image and 200 MB. What it returns makes a light, in whatever layout it is recognised to have.
 
 Time is that of the processor, so that a busy machine fails nothing. Memory is Linux's high water mark of resident memory,
 set back before each input (25 microseconds): it sees what C libraries allocate, which tracemalloc does not. The better
@@ -21,6 +21,8 @@ import numpy as np
 from shviewer.errors import LightError
 from shviewer.lights.decoders.decoded import Decoded
 from shviewer.lights.decoders.limits import Limits
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.radiance_files import Reading, decode_radiance_image
 
 LIMITS = Limits(texels=2**20)
@@ -28,6 +30,12 @@ LIMITS = Limits(texels=2**20)
 
 MOST_SECONDS = 2.0
 MOST_BYTES_BEYOND_IMAGE = 200 * 10**6
+
+_AXES = np.stack(np.meshgrid(*[(-1.0, 0.0, 1.0)] * 3), axis=-1).reshape(-1, 3)
+_AXES = _AXES[_AXES.any(axis=1)]
+DIRECTIONS = np.vstack([_AXES, np.random.default_rng(0).standard_normal((100, 3))])
+DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1, keepdims=True)
+"""(126, 3): both poles, the seam, edges and corners of a cube, and some anywhere."""
 
 
 class BrokenPromise(Exception):
@@ -56,6 +64,7 @@ class Witness:
             raise BrokenPromise(f"took {grown / 1e6:.0f} MB for at most {texels} texels")
         if image is not None:
             _check_image(image, data)
+            _check_light(image)
         return image is not None
 
 
@@ -80,6 +89,21 @@ def _check_image(image: Decoded, data: bytes) -> None:
         raise BrokenPromise("gives values that are not finite")
     if pixels.shape[:2] not in declared_sizes(data):
         raise BrokenPromise(f"gives {pixels.shape[:2]} where the file declares {declared_sizes(data)}")
+
+
+def _check_light(image: Decoded) -> None:
+    """What is seen lies between the darkest and the brightest texel: it is interpolated."""
+    try:
+        light = EnvironmentLight(image.pixels, *recognise(image.pixels, image.layout, "auto")[:1])
+        seen, coefficients = light.radiance(DIRECTIONS), light.coefficients(3)
+    except Exception as error:
+        raise BrokenPromise(f"makes no light: {type(error).__name__}: {error}") from error
+    if not (np.isfinite(seen).all() and np.isfinite(coefficients).all()):
+        raise BrokenPromise(f"makes a light that is not finite, {light.layout.name}")
+    lowest, highest = image.pixels.min(axis=(0, 1)), image.pixels.max(axis=(0, 1))
+    rounding = 1e-5 * np.maximum(np.abs(lowest), np.abs(highest))  # of float32, some operations deep
+    if (seen < lowest - rounding).any() or (seen > highest + rounding).any():
+        raise BrokenPromise(f"makes a light beyond its texels, {light.layout.name}")
 
 
 def declared_sizes(data: bytes) -> set[tuple[int, int]]:

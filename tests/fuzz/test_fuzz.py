@@ -18,6 +18,7 @@ from seeds import seeds, stb_seeds
 from shviewer.errors import LightError
 from shviewer.lights.decoders.decoded import Decoded
 from shviewer.lights.decoders.limits import Limits
+from shviewer.lights.environment import EnvironmentLight
 
 SEEDS = seeds()
 SEED = 0
@@ -148,6 +149,22 @@ def test_an_honest_reader_is_cleared(judged):
 )
 def test_a_reader_that_misbehaves_is_reported(judged, reader, why):
     assert why in judged(reader)
+
+
+@pytest.mark.parametrize(
+    ("method", "spoil", "why"),
+    [
+        ("radiance", lambda seen: 1 // 0, "makes no light: ZeroDivisionError"),
+        ("radiance", lambda seen: seen * np.nan, "makes a light that is not finite, lat-long"),
+        ("coefficients", lambda coefficients: coefficients + np.inf, "makes a light that is not finite, lat-long"),
+        ("radiance", lambda seen: seen * 1.001, "makes a light beyond its texels, lat-long"),
+        ("radiance", lambda seen: seen * 0.999, "makes a light beyond its texels, lat-long"),
+    ],
+)
+def test_a_light_that_misbehaves_is_reported(judged, monkeypatch, method, spoil, why):
+    right = getattr(EnvironmentLight, method)
+    monkeypatch.setattr(EnvironmentLight, method, lambda light, argument: spoil(right(light, argument)))
+    assert why in judged(image)
 
 
 def test_a_slow_reader_is_reported(judged, monkeypatch):

@@ -25,7 +25,8 @@ def test_texel_weights_integrate_polynomials_exactly(n_points, n_texels):
 def test_half_of_an_odd_middle_texel_is_in_each_half(n_texels):
     points, weights = quadrant_points(n_texels, 6)
     assert weights.shape == (6, n_texels - n_texels // 2)
-    assert (points > 0).all() and (points < 1).all()
+    assert (points > 0).all()
+    assert (points < 1).all()
     sizes = np.full(n_texels - n_texels // 2, 2 / n_texels)
     sizes[0] /= 1 + n_texels % 2
     assert_allclose(weights.sum(axis=0), sizes, rtol=0, atol=1e-15)

@@ -1,5 +1,7 @@
 """What shviewer.lights.environment promises: an image whose texels are areas of constant radiance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hdr_files import FORMAT, hdr_file, random_texels
@@ -9,8 +11,14 @@ from shviewer.errors import LightError
 from shviewer.harmonics.metrics import squared_error
 from shviewer.harmonics.projection import project_image, project_samples
 from shviewer.harmonics.quadrature import jittered
+from shviewer.lights.decoders.limits import Limits
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.layouts.angular import AngularLayout
+from shviewer.lights.layouts.cube import HORIZONTAL_CROSS, OPENEXR, CubeLayout
+from shviewer.lights.layouts.lat_long import LatLongLayout
+from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
+from shviewer.lights.radiance_files import Reading
 
 
 def random_light(height, width, seed=0):
@@ -84,12 +92,15 @@ def test_a_file_is_read_with_its_name_and_size(tmp_path):
     assert (light.name, light.description, light.notes) == ("a street", "environment map, 16 x 8", ())
     assert light.best_method == "exact texel integrals"
     assert light.map.texels.shape == (8, 16, 3)
+    assert "RGBE" in light.encoding
 
 
-def test_notes_of_the_reader_pass_through(tmp_path):
+def test_notes_of_the_reader_pass_through_before_those_about_the_layout(tmp_path):
     path = tmp_path / "square.hdr"
     path.write_bytes(hdr_file(random_texels(8, 8), settings=(FORMAT, b"EXPOSURE=2")))
-    assert EnvironmentLight.read(path).notes == ("EXPOSURE 2 divided out",)
+    first, second = EnvironmentLight.read(path).notes
+    assert first == "EXPOSURE 2 divided out"
+    assert "8 x 8 is not 2:1" in second
 
 
 def test_a_missing_file_is_one_line(tmp_path):
@@ -106,3 +117,120 @@ def test_sampling_an_image_converges_to_its_texels_and_not_to_their_interpolatio
     assert np.abs(sampled - exact).max() < 2e-3 * exact.max()  # texel edges cut one cell in fifty
     smooth = project_samples(light.radiance, jittered(250_000, 0), 6)
     assert np.abs(smooth - exact).max() > 1e-2 * exact.max()
+
+
+# --- other layouts
+
+
+OTHERS = [CubeLayout(OPENEXR, 6), CubeLayout(HORIZONTAL_CROSS, 5), AngularLayout(16), MirrorBallLayout(15)]
+of_other_layouts = pytest.mark.parametrize("layout", OTHERS, ids=lambda layout: f"{layout.name} {layout.size}")
+
+
+def random_light_of(layout, seed=0):
+    pixels = np.random.default_rng(seed).random((*layout.solid_angles().shape, 3)).astype(np.float32)
+    return EnvironmentLight(pixels, layout)
+
+
+def random_directions(count, seed=1):
+    directions = np.random.default_rng(seed).normal(size=(count, 3))
+    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
+
+
+@of_other_layouts
+def test_coefficients_and_norm_are_those_of_the_true_texels(layout):
+    light = random_light_of(layout)
+    assert_array_equal(light.coefficients(4), layout.project(light.pixels, 4))
+    squares = np.einsum("rc,rci,rcj->ij", layout.solid_angles(), *[light.pixels.astype(np.float64)] * 2)
+    assert_allclose(light.products(), squares, rtol=1e-13, atol=0)
+    sampled = project_samples(light.integrand, jittered(250_000, 0), 4)
+    exact = light.coefficients(4)
+    assert np.abs(sampled - exact).max() < 2e-3 * exact.max()  # texel edges cut one cell in fifty
+
+
+@of_other_layouts
+def test_many_bands_hold_the_energy_of_any_layout(layout):
+    light = random_light_of(layout)
+    share = (light.coefficients(64) ** 2).sum(axis=0) / light.products().diagonal()
+    assert (share < 1).all()
+    assert (share > 0.97).all()
+
+
+@of_other_layouts
+def test_cpu_and_gpu_look_at_one_raster_that_is_about_as_fine_as_the_texels(layout):
+    rows, columns = np.indices(layout.solid_angles().shape).reshape(2, -1)
+    x, y, z = layout.centres(rows, columns).T
+    pixels = np.stack([x + 0.5, y * z, 1 + z], axis=-1).reshape(*layout.solid_angles().shape, 3)
+    light = EnvironmentLight(pixels.astype(np.float32), layout)
+    directions = random_directions(2000)
+    raster = light.radiance_map()
+    assert raster is light.map
+    assert light.map is raster
+    assert raster.texels.shape == (layout.raster_width // 2, layout.raster_width, 3)
+    assert_array_equal(light.radiance(directions), raster.sample(directions))
+    x, y, z = directions.T
+    assert np.abs(light.radiance(directions) - np.stack([x + 0.5, y * z, 1 + z], axis=-1)).mean() < 0.03
+
+
+def test_the_raster_of_a_large_image_is_bounded(monkeypatch):
+    monkeypatch.setattr("shviewer.lights.environment.MAX_RASTER_WIDTH", 20)
+    assert random_light_of(AngularLayout(16)).map.texels.shape == (10, 20, 3)
+
+
+def test_blocks_of_the_raster_change_nothing(monkeypatch):
+    whole = random_light_of(AngularLayout(16)).map.texels
+    monkeypatch.setattr("shviewer.lights.environment.BLOCK_VALUES", 1)
+    assert_array_equal(random_light_of(AngularLayout(16)).map.texels, whole)
+
+
+@of_other_layouts
+def test_the_landmark_is_the_brightest_texel_that_shows_something(layout):
+    light = random_light_of(layout)
+    shown = layout.solid_angles() > 0
+    light.pixels[~shown] = 1e6
+    row, column = np.argwhere(shown)[len(shown)]
+    light.pixels[row, column] = 100
+    assert light.integrand(light.landmarks()).tolist() == [[100.0] * 3]
+
+
+def test_the_description_names_the_layout_unless_it_is_lat_long():
+    descriptions = [light.description for light in (random_light(512, 1024), *map(random_light_of, OTHERS[::2]))]
+    assert descriptions == [
+        "environment map, 1024 x 512",
+        "environment map, cube, 6 x 6 x 6",
+        "environment map, angular, 16 x 16",
+    ]
+
+
+def test_a_light_with_other_pixels_keeps_the_rest():
+    light = random_light_of(AngularLayout(16))
+    other = replace(light, pixels=light.pixels * 2)
+    assert other.layout == light.layout
+    assert_allclose(other.coefficients(3), 2 * light.coefficients(3), rtol=1e-12, atol=0)
+
+
+def test_without_a_layout_pixels_and_maps_are_lat_long():
+    texels = random_light(3, 4).pixels
+    for light in (EnvironmentLight(texels), EnvironmentLight(LatLongMap(texels))):
+        assert light.layout == LatLongLayout(3, 4)
+        assert light.map.texels is texels
+
+
+def test_the_layout_asked_for_is_used_or_refused(tmp_path):
+    path = tmp_path / "probe.hdr"
+    path.write_bytes(hdr_file(random_texels(16, 16)))
+    assert EnvironmentLight.read(path, Reading(layout="mirror-ball")).layout == MirrorBallLayout(16)
+    with pytest.raises(LightError, match=r"probe\.hdr: 16 x 16 is no cube") as caught:
+        EnvironmentLight.read(path, Reading(layout="cube"))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("width", "height"), [(1, 1), (3, 2), (1000, 500), (38400, 4)])
+def test_any_size_is_read_and_projected_exactly(tmp_path, width, height):
+    path = tmp_path / "odd.hdr"
+    path.write_bytes(hdr_file(random_texels(height, width)))
+    light = EnvironmentLight.read(path, Reading(limits=Limits(side=40000)))
+    assert light.pixels.shape == (height, width, 3)
+    weights = solid_angles(height, width)
+    expected = np.einsum("r,rcx->x", weights, light.pixels.astype(np.float64)) / np.sqrt(4 * np.pi)
+    assert_allclose(light.coefficients(5)[0], expected, rtol=1e-12, atol=0)
+    assert ((light.coefficients(5) ** 2).sum(axis=0) <= light.products().diagonal() * (1 + 1e-12)).all()

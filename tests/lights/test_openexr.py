@@ -1,8 +1,12 @@
 """What shviewer.lights.decoders.openexr and its helpers promise about .exr files."""
 
 import os
+import struct
+import subprocess
 import sys
+import tracemalloc
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import numpy as np
@@ -79,6 +83,15 @@ def test_of_several_levels_the_finest_is_read(read, mode, word):
     image = read(tiled_exr(pixels, mode), "light.exr")
     assert_same(image.pixels, pixels)
     assert image.encoding == f"OpenEXR, half, uncompressed, tiled{word}"
+
+
+def test_every_half_keeps_its_value():
+    patterns = np.arange(2**16, dtype=np.uint16).reshape(256, 256)
+    halves_of_all_kinds = patterns.view(np.float16)
+    decoded = decode_openexr(exr_file({"Y": halves_of_all_kinds}, compression=OpenEXR.NO_COMPRESSION)).pixels
+    with np.errstate(invalid="ignore"):
+        expected = halves_of_all_kinds.astype(np.float32)
+    assert_same(decoded, np.dstack([expected] * 3))
 
 
 def test_alpha_is_ignored(read):
@@ -420,15 +433,69 @@ GREEN_IS_DARK = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1 / 3, 1 / 3)
         (bare_exr((0, 0, 7, 3), (0, 0, 32768, 3)), "display window of 32769 x 4"),
         (bare_exr((0, 0, 32767, 4095), channels=[(name, 1) for name in "ABGRZ"]), "values in all channels"),
         (exr_file({"RGB": halves()}).replace(b"B\0", b"\xff\0", 1), "header unreadable"),
-        (exr_parts(exr_part("a", {"Z": PLANE}), exr_part("b", {"RGB": halves()}))[:-10], "chunks end behind its end"),
-        (bare_exr((0, 0, -1, -1)), "damaged"),
+        (exr_parts(exr_part("a", {"Z": PLANE}), exr_part("b", {"RGB": halves()}))[:-10], "chunks end behind the end"),
+        (bare_exr((0, 0, -1, -1)), "dataWindow from (0, 0) to (-1, -1) ends before it begins;"),
         (bare_exr((-(2**31), 0, 2**31 - 1, 3)), "damaged"),
+        (bare_exr()[:8] + b"a\0a\0\0\0\0\0" * 2**16 + bare_exr()[8:], "more than 32768 attributes in its headers;"),
+        (bare_exr((0, 0, 7, 3), (7, 0, 0, 3)), "displayWindow from (7, 0) to (0, 3) ends before it begins;"),
+        (bare_exr((0, 0, 7, 3), (0, 0, 7, -1)), "displayWindow from (0, 0) to (7, -1) ends before it begins;"),
+        (bare_exr().replace(b"displayWindow\0", b"displayHollow\0"), "no displayWindow in its header"),
+        (bare_exr().replace(b"displayWindow\0box2i", b"displayWindow\0box2f"), "no displayWindow in its header"),
+        (bare_exr().replace(b"dataWindow\0box2i", b"dataWindow\0box2f"), "no dataWindow in its header"),
         (bare_exr(), "Unable to query scanline information"),
     ],
 )
 def test_an_openexr_file_that_is_no_flat_rgb_is_refused_by_name(refusal, capfd, data, fragment):
     assert fragment in refusal(data, "light.exr")
     assert capfd.readouterr() == ("", "")
+
+
+def test_a_window_is_read_from_the_header_and_from_nowhere_else(refusal):
+    """The library takes a window of 64 x 64 for one that it does not find."""
+    pixels = halves(64, 64)
+    elsewhere = b"\0displayWindow\0box2i\0" + struct.pack("<5i", 16, 0, 0, 63, 63)
+    data = exr_file({"RGB": pixels}, comments="#" * len(elsewhere)).replace(b"#" * len(elsewhere), elsewhere)
+    own, comment = data.rindex(b"displayWindow\0box2i"), data.index(b"displayWindow\0box2i")
+    assert comment < own
+    spoilt = data[:own] + b"displayWindow\0box2j" + data[own + 19 :]
+    assert_same(decode_openexr(data).pixels, pixels)
+    assert "no displayWindow in its header" in refusal(spoilt, "light.exr")
+
+
+def test_the_windows_of_every_part_are_needed(refusal):
+    wrong = FOUR_LIGHTS[::-1].replace(b"displayWindow\0box2i"[::-1], b"displayWindow\0box2f"[::-1], 1)[::-1]
+    assert "no displayWindow in its header" in refusal(wrong, "light.exr")
+
+
+@pytest.mark.parametrize("mode", [ONE_LEVEL, MIP_MAPPED, RIP_MAPPED])
+@pytest.mark.parametrize("side", [2**20, 2**24])
+@pytest.mark.parametrize("down", [False, True])
+def test_a_tile_far_larger_than_the_image_is_refused_before_anything_of_its_size_is_made(refusal, mode, side, down):
+    tile = struct.pack("<2I", *((4, side) if down else (side, 4)))
+    data = tiled_exr(halves(), mode, tile=4).replace(struct.pack("<2I", 4, 4), tile, 1)
+    tracemalloc.start()
+    message = refusal(data, "light.exr")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert (
+        f"tiles of {'4 x ' if down else ''}{side}{'' if down else ' x 4'} texels for a data window of 8 x 4;" in message
+    )
+    assert peak < 2**20
+
+
+@pytest.mark.parametrize("side", [1, 64, 1024])
+def test_a_tile_of_any_usual_size_is_read_however_small_the_image(read, side):
+    pixels = halves()
+    assert_same(read(tiled_exr(pixels, tile=side), "light.exr").pixels, pixels)
+
+
+def test_a_single_tile_may_be_of_the_next_power_of_two(read):
+    pixels = np.zeros((1100, 1100, 3), np.float16)
+    pixels[-1, -1] = 1
+    tiles = OpenEXR.TileDescription()
+    tiles.xSize = tiles.ySize = 2048
+    data = exr_file({"RGB": pixels}, type=OpenEXR.tiledimage, tiles=tiles)
+    assert_same(read(data, "light.exr").pixels, pixels)
 
 
 @pytest.mark.parametrize(
@@ -493,10 +560,55 @@ def test_every_truncation_of_an_openexr_file_is_refused_and_the_library_kept_qui
     assert capfd.readouterr() == ("", "")
 
 
-def test_stderr_works_again_after_a_damaged_file(refusal, capfd):
+@pytest.mark.parametrize("descriptor", [1, 2])
+def test_what_is_printed_after_a_damaged_file_is_seen_again(refusal, capfd, descriptor):
     refusal(bare_exr(), "light.exr")
-    os.write(2, b"still here")
-    assert capfd.readouterr().err == "still here"
+    os.write(descriptor, b"still here")
+    assert capfd.readouterr()[descriptor - 1] == "still here"
+
+
+CHATTY = """
+import sys
+from shviewer.lights.decoders.openexr import decode_openexr
+sys.stdout.write("before ")
+decode_openexr(sys.stdin.buffer.read())
+sys.stdout.write("after")
+"""
+
+
+def chatty_exr():
+    """Sound but for a field of HTJ2K's SIZ marker, of which the library warns through C's stdout."""
+    data = bytearray(exr_file({"RGB": halves(40, 80)}, compression=OpenEXR.HTJ2K32_COMPRESSION))
+    data[data.index(b"\xff\x4f\xff\x51") + 6] = 255
+    return bytes(data)
+
+
+def test_a_warning_of_htj2k_is_not_printed_not_even_at_exit():
+    done = subprocess.run([sys.executable, "-c", CHATTY], input=chatty_exr(), capture_output=True, check=True)
+    assert (done.stdout, done.stderr) == (b"before after", b"")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no shell that closes streams")
+@pytest.mark.parametrize(("closed", "printed"), [("1", b""), ("2", b"before after"), ("1 2", b"")])
+def test_a_closed_stream_is_left_closed_and_nothing_printed_on_the_other(closed, printed):
+    closing = " ".join(f"{descriptor}>&-" for descriptor in closed.split())
+    quiet = CHATTY.replace("sys.stdout.write", "sys.stdout and sys.stdout.write")
+    script = f'exec "$0" -c "$1" {closing}'
+    damaged = chatty_exr()[:-100]
+    for data in (chatty_exr(), damaged):
+        done = subprocess.run(["sh", "-c", script, sys.executable, quiet], input=data, capture_output=True)
+        assert done.stdout == printed.removesuffix(b"after" if data is damaged else b"")
+        if data is not damaged:
+            assert (done.returncode, done.stderr) == (0, b"")
+
+
+def test_two_threads_that_decode_leave_the_streams_as_they_were(capfd):
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(decode_openexr, [chatty_exr()] * 40))
+    os.write(1, b"one")
+    os.write(2, b"two")
+    print("three", flush=True)
+    assert capfd.readouterr() == ("onethree\n", "two")
 
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(refusal, monkeypatch):

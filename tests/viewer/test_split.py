@@ -97,7 +97,7 @@ def test_info_names_the_sun_and_what_the_rest_needs():
     found = describe("sun-sky", ViewState().reading)
     assert [need.radiance for need in found.bands_needed_without_suns] == [1, 1, 1]
     assert_allclose(found.suns[0].theta_phi_degrees, [52, 107], atol=1e-9)
-    assert "0.53 wide" in as_text(found)
+    assert "0.53 deg wide" in as_text(found)
     assert describe("green", ViewState().reading).suns == ()
 
 

@@ -52,6 +52,16 @@ def xyz_from_rgb(chromaticities: ArrayLike) -> NDArray[np.float64]:
     return _xyz_from_rgb(_checked(chromaticities))
 
 
+def luminance_weights(chromaticities: ArrayLike) -> NDArray[np.float64]:
+    """(3,): the luminance of red, of green and of blue; their sum is 1, that of white.
+
+    chromaticities: (4, 2), CIE xy of red, green, blue and white.
+    Raises LightError for values that make no RGB space.
+    """
+    weights: NDArray[np.float64] = xyz_from_rgb(chromaticities)[1]
+    return weights
+
+
 def _checked(chromaticities: ArrayLike) -> NDArray[np.float64]:
     values = np.asarray(chromaticities, np.float64)
     if not np.all(np.abs(values) <= _FARTHEST):  # false for NaN too

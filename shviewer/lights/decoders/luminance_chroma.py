@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.decoders.chromaticities import REC709
+from shviewer.lights.decoders.chromaticities import REC709, luminance_weights
 
 _SMALLEST_WEIGHT = 1e-3  # of green, by which is divided; it is 0.72 for Rec. 709
 _ROWS = 64  # of an image at a time
@@ -33,9 +33,10 @@ def rgb_from_luminance_chroma(
     luminance: (height, width). chroma: RY and BY, each with its first sample at the first texel and a whole number of
     texels from sample to sample, in either direction.
     chromaticities: CIE x and y of red, green, blue and white; None for those of Rec. 709.
-    Raises LightError if green has no luminance in them.
+    Raises LightError if green has no luminance in them, or if they make no RGB space.
     """
-    red, green, blue = luminance_weights(chromaticities)
+    xy = REC709 if chromaticities is None else np.reshape(chromaticities, (4, 2))
+    red, green, blue = luminance_weights(xy).tolist()
     if not green > _SMALLEST_WEIGHT:
         raise LightError(
             f"green of luminance {green:.3g} by its chromaticities, so it does not follow from Y, RY and BY: export"
@@ -52,15 +53,6 @@ def rgb_from_luminance_chroma(
             pixels[rows, :, 0], pixels[rows, :, 2] = r, b
             pixels[rows, :, 1] = (y - red * r - blue * b) / green
     return pixels
-
-
-def luminance_weights(chromaticities: tuple[float, ...] | None) -> tuple[float, float, float]:
-    """Of red, green and blue; their sum is 1, the luminance of white."""
-    xy = REC709 if chromaticities is None else np.array(chromaticities, np.float64).reshape(4, 2)
-    relative = np.column_stack([xy, 1.0 - xy.sum(axis=1)]) / xy[3, 1]  # XYZ, up to the amounts of the primaries
-    amounts = np.linalg.solve(relative[:3].T, relative[3])
-    red, green, blue = (float(weight) for weight in amounts * relative[:3, 1])
-    return red, green, blue
 
 
 def _interpolated(samples: NDArray[np.floating], height: int, width: int) -> NDArray[np.float32]:

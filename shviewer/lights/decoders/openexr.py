@@ -5,6 +5,7 @@ Alpha is ignored: colour in an OpenEXR file is premultiplied, and what is seen t
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ from shviewer.lights.decoders.openexr_library import damaged, import_openexr, op
 from shviewer.lights.decoders.openexr_parts import part_alone
 
 _SAMPLES_PER_TEXEL = 4  # of all channels together, times the limit of texels: RGBA of the largest image
+_TILE_OF_WINDOW = 4  # times its size: both sides may be up to the next power of two
+_SMALL_TILE = 2**22  # values: 1024 x 1024 RGBA
 _ROWS = 64  # of an image at a time, so that they stay in the cache
 _KINDS = {"float16": "half", "float32": "float", "uint32": "uint"}
 
@@ -65,6 +68,15 @@ def _check_size(part: Part, limits: Limits) -> None:
     most = _SAMPLES_PER_TEXEL * limits.texels
     if part.samples > most:
         raise LightError(f"{part.samples} values in all channels; the limit is {most}: export only R, G and B")
+    if part.tile is None:
+        return
+    across, down = part.tile
+    most = max(_TILE_OF_WINDOW * part.samples, _SMALL_TILE)
+    if not 0 < across * down * len(part.channels) <= most:
+        raise LightError(
+            f"tiles of {across} x {down} texels for a data window of {part.window.width} x {part.window.height}; a tile"
+            f" may hold {most} values: export it with tiles of 64 x 64"
+        )
 
 
 def _to_rec709(part: Part, source: Source) -> tuple[NDArray[np.float64] | None, tuple[str, ...]]:
@@ -99,12 +111,24 @@ def _radiance(planes: list[_Plane], part: Part, source: Source) -> NDArray[np.fl
     if source.luminance_chroma:
         luminance, chroma_red, chroma_blue = planes
         return rgb_from_luminance_chroma(luminance, (chroma_red, chroma_blue), part.chromaticities)
-    red, green, blue = planes * 3 if source.grey else planes
     pixels = np.empty((part.window.height, part.window.width, 3), np.float32)
     for top in range(0, part.window.height, _ROWS):
         rows = slice(top, top + _ROWS)
-        pixels[rows, :, 0], pixels[rows, :, 1], pixels[rows, :, 2] = red[rows], green[rows], blue[rows]
+        for i, plane in enumerate(planes * 3 if source.grey else planes):
+            pixels[rows, :, i] = _float32(plane[rows])
     return pixels
+
+
+def _float32(plane: _Plane) -> _Plane:
+    """Halves through a table: three quarters of the time of a cast."""
+    return _every_half().take(plane.view(np.uint16)) if plane.dtype == np.float16 else plane
+
+
+@cache
+def _every_half() -> NDArray[np.float32]:
+    """(65536,): the value of each pattern of bits."""
+    with np.errstate(invalid="ignore"):  # signalling NaN
+        return np.arange(2**16, dtype=np.uint16).view(np.float16).astype(np.float32)
 
 
 def _convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64]) -> None:

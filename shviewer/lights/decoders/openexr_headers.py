@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from shviewer.lights.decoders.openexr_attributes import read_attributes
 from shviewer.lights.decoders.openexr_library import damaged, open_openexr
 
 
@@ -47,38 +48,52 @@ class Part(NamedTuple):
     display: Window
     """What the image is meant to show."""
     channels: tuple[Channel, ...]
+    tile: tuple[int, int] | None
+    """Texels across and down of each tile, on every level; None for scanlines."""
 
     @property
     def samples(self) -> int:
-        """Values in all channels."""
+        """Values in all channels of the finest level."""
         across, down = self.window.width, self.window.height
         return sum(-(-across // c.subsampling[0]) * -(-down // c.subsampling[1]) for c in self.channels)
 
 
 def read_headers(openexr: ModuleType, data: bytes) -> tuple[Part, ...]:
     """Every part, without its pixels. Raises LightError."""
+    raw = read_attributes(data)
+    windows = [(Window(*own.window(b"dataWindow")), Window(*own.window(b"displayWindow"))) for own in raw]
     file = open_openexr(openexr, data, header_only=True)
+    if len(raw) != len(file.parts):
+        raise damaged(f"{len(file.parts)} parts where there are {len(raw)} headers")
     try:  # the library converts an attribute when it is asked for: UnicodeDecodeError, KeyError, ...
         headers = [part.header for part in file.parts]
         shared = _chromaticities(openexr, headers[0])  # one attribute for all parts, often in the first only
-        return tuple(_plain(openexr, header, shared) for header in headers)
+        return tuple(_plain(openexr, *both, shared) for both in zip(headers, windows, strict=True))
     except Exception as error:
         raise damaged(f"header unreadable ({error})") from None
 
 
-def _plain(openexr: ModuleType, header: dict[str, Any], chromaticities: tuple[float, ...] | None) -> Part:
+def _plain(
+    openexr: ModuleType,
+    header: dict[str, Any],
+    windows: tuple[Window, Window],
+    chromaticities: tuple[float, ...] | None,
+) -> Part:
+    """windows: of the data and of the display."""
+    tiles = header.get("tiles")
     return Part(
         name=str(header.get("name", "")),
         deep=header.get("type") in (openexr.deepscanline, openexr.deeptile),
         storage=_storage(openexr, header),
         layout={openexr.ENVMAP_LATLONG: "lat-long", openexr.ENVMAP_CUBE: "cube"}.get(header.get("envmap")),
         chromaticities=_chromaticities(openexr, header) or chromaticities,
-        window=_window(header["dataWindow"]),
-        display=_window(header["displayWindow"]),
+        window=windows[0],
+        display=windows[1],
         channels=tuple(
             Channel(channel.name, (max(1, channel.xSampling), max(1, channel.ySampling)))
             for channel in header["channels"]
         ),
+        tile=None if tiles is None else (int(tiles.xSize), int(tiles.ySize)),
     )
 
 
@@ -98,8 +113,3 @@ def _chromaticities(openexr: ModuleType, header: dict[str, Any]) -> tuple[float,
     if values is None and "colorInteropID" in header:
         values = openexr.colorInteropIDToChromaticities(header["colorInteropID"])
     return None if values is None else tuple(float(value) for value in values)
-
-
-def _window(corners: Any) -> Window:
-    (left, top), (right, bottom) = corners
-    return Window(int(left), int(top), int(right), int(bottom))

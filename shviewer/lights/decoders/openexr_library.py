@@ -2,6 +2,7 @@
 
 Traps of the library (3.5.3), each with a test:
     a damaged chunk raises nothing: it prints one line on stderr (from C) and one on sys.stdout, and `parts` is empty;
+    damage in HTJ2K is printed on stdout from C, into a buffer that may be written out as late as at exit;
     a header may claim any window, and pixels of that size are allocated at once: open with header_only first;
     every part is decoded, also the deep ones, whose size no header tells: see openexr_parts.py.
 """
@@ -11,11 +12,16 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import sys
+import threading
 from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
 
 from shviewer.errors import LightError
+
+_one_at_a_time = threading.Lock()
+"""What follows turns streams of the whole process away and back."""
 
 
 def import_openexr() -> ModuleType:
@@ -34,7 +40,7 @@ def open_openexr(openexr: ModuleType, data: bytes, *, header_only: bool) -> Any:
     """
     printed = io.StringIO()
     try:
-        with contextlib.redirect_stdout(printed), _c_stderr_silenced():
+        with _one_at_a_time, _c_output_silenced(), contextlib.redirect_stdout(printed):
             file = openexr.File(io.BytesIO(data), separate_channels=True, header_only=header_only)
     except MemoryError:
         raise
@@ -56,17 +62,52 @@ def damaged(reason: str) -> LightError:
 
 
 @contextlib.contextmanager
-def _c_stderr_silenced() -> Iterator[None]:
-    """File descriptor 2 points nowhere meanwhile: the C part of the library writes past sys.stderr."""
-    try:
-        saved = os.dup(2)
-    except OSError:  # closed, as under a service manager: nothing to keep clean
+def _c_output_silenced() -> Iterator[None]:
+    """File descriptors 1 and 2 point nowhere meanwhile: the C part of the library writes past Python's streams.
+
+    A stream that was closed when Python started, as under a service manager, is left alone: its descriptor may be that
+    of another file by now.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            with contextlib.suppress(OSError, ValueError):
+                stream.flush()
+    _flush_c()
+    with contextlib.ExitStack() as restored:
+        for stream, descriptor in ((sys.__stdout__, 1), (sys.__stderr__, 2)):
+            if stream is not None:
+                with contextlib.suppress(OSError):  # closed since: nothing to keep clean
+                    restored.enter_context(_to_nowhere(descriptor))
+        restored.callback(_flush_c)
         yield
-        return
+
+
+@contextlib.contextmanager
+def _to_nowhere(descriptor: int) -> Iterator[None]:
+    saved = _copy(descriptor)
     try:
         with open(os.devnull, "wb") as nowhere:
-            os.dup2(nowhere.fileno(), 2)
+            os.dup2(nowhere.fileno(), descriptor)
         yield
     finally:
-        os.dup2(saved, 2)
+        os.dup2(saved, descriptor)
         os.close(saved)
+
+
+def _copy(descriptor: int) -> int:
+    """Above 2: at a free 1 or 2 it would be what the library prints to."""
+    copy = os.dup(descriptor)
+    if copy > 2:
+        return copy
+    try:
+        return _copy(descriptor)
+    finally:
+        os.close(copy)
+
+
+def _flush_c() -> None:
+    """Writes out what the C library still holds of its streams."""
+    import ctypes
+
+    with contextlib.suppress(OSError, AttributeError):  # a Python that is linked in another way
+        ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)

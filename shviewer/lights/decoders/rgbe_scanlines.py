@@ -24,7 +24,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from shviewer.errors import LightError
 
@@ -164,6 +163,8 @@ def _walk(
 
 def _unpack(packbits: NDArray[np.uint8] | bytearray, length: int, rows: int) -> NDArray[np.uint8] | None:
     """(rows, 4, length) from PackBits; None if a packet goes past the end of its channel, as Pillow cuts it off."""
+    from PIL import Image  # here, so that lights without such a file start faster
+
     try:
         image = Image.frombytes("L", (length, 4 * rows), packbits, "packbits", "L")
     except ValueError:  # so there are not enough values in the end

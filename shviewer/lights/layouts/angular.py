@@ -15,8 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.patches import project_mirrored, quadrant_weights
+from shviewer.harmonics.patches import chebyshev_points, chebyshev_shares, project_mirrored, quadrant_weights
 from shviewer.lights.layouts.disc import DiscLayout
+from shviewer.lights.layouts.layout import Indices
+
+SMALLEST_SIDE = 16
+"""Texels of smaller images are divided, so that none on the rim needs many points."""
 
 
 @dataclass(frozen=True)
@@ -32,22 +36,25 @@ class AngularLayout(DiscLayout):
     def solid_angles(self) -> Array:
         quadrant = np.zeros((self.half, self.half))
         low, size = self.edges[:-1], np.diff(self.edges)
-        nodes, weights = np.polynomial.legendre.leggauss(14 if self.side < 16 else 6)
+        nodes, weights = np.polynomial.legendre.leggauss(14 if self.side < SMALLEST_SIDE else 6)
         for x_node, x_weight in zip((1 + nodes) / 2, weights / 2, strict=True):
             for y_node, y_weight in zip((1 + nodes) / 2, weights / 2, strict=True):
                 radius = np.hypot(low + size * x_node, (low + size * y_node)[:, None])
                 quadrant += (x_weight * y_weight * np.pi**2) * np.sinc(radius)
         quadrant *= size * size[:, None]
         quadrant[np.arange(self.half) >= self.whole[:, None]] = 0.0
-        n_points = self._rim_point_count(1)
+        n_points = 20 if self.side < SMALLEST_SIDE else self._rim_point_count(1)
         for rows, columns in self.rim_blocks(*self.cut, n_points):
             points = self.rim(rows, columns, n_points)
             area = points.weights * np.pi**2 * np.sinc(np.hypot(points.x, points.y))
-            quadrant[rows, columns] = np.bincount(points.texels, area, minlength=len(rows))
+            quadrant[rows, columns] = np.bincount(points.texels, area.sum(axis=1), minlength=len(rows))
         return self.whole_sphere(quadrant)
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         """The disc in one patch, except the texels on the rim, which have points of their own."""
+        if self.side < SMALLEST_SIDE:
+            times = -(-SMALLEST_SIDE // self.side)
+            return AngularLayout(times * self.side).project(pixels.repeat(times, axis=0).repeat(times, axis=1), n_bands)
         row = np.arange(self.side)
         inside = self.whole[np.where(row < self.side // 2, self.half - 1 - row, row - self.side // 2)]
         spans = np.stack([self.half - inside, self.side // 2 + inside], axis=1)
@@ -56,10 +63,26 @@ class AngularLayout(DiscLayout):
         coefficients = self._add(x, y, weights.swapaxes(0, 1).reshape(2, 2, -1, 3), n_bands)
         n_points = self._rim_point_count(n_bands)
         for at_rows, at_columns in self.rim_blocks(*self.cut, n_points):
-            rim = self.rim(at_rows, at_columns, n_points)
-            texels = self.mirrored(pixels, at_rows, at_columns)[:, :, rim.texels] * rim.weights[:, None]
-            coefficients += self._add(rim.x, rim.y, texels, n_bands)
+            x, y, areas = self._rim_shares(at_rows, at_columns, n_points)
+            texels = self.mirrored(pixels, at_rows, at_columns)[:, :, :, None, None] * areas[..., None]
+            coefficients += self._add(x.ravel(), y.ravel(), texels.reshape(2, 2, -1, 3), n_bands)
         return coefficients
+
+    def _rim_shares(self, rows: Indices, columns: Indices, n_points: int) -> tuple[Array, Array, Array]:
+        """x, y and areas, (k, n, n) each, of few points on each texel, of which the rim leaves a part.
+
+        The kernel goes on smoothly outside the disc, so its integral over that part follows from its values at these.
+        """
+        rim, n_shares = self.rim(rows, columns, n_points), n_points - 2
+        middle, half = (self.edges[:-1] + self.edges[1:]) / 2, np.diff(self.edges) / 2
+        of = rim.texels[:, None]
+        across = chebyshev_shares((rim.x - middle[columns][of]) / half[columns][of], n_shares)
+        upward = chebyshev_shares((rim.y - middle[rows][of]) / half[rows][of], n_shares)
+        areas = np.zeros((len(rows), n_shares, n_shares))
+        np.add.at(areas, rim.texels, (upward * rim.weights[..., None]).swapaxes(1, 2) @ across)
+        points = chebyshev_points(n_shares)
+        x, y = (middle[at][:, None] + half[at][:, None] * points for at in (columns, rows))
+        return np.broadcast_to(x[:, None, :], areas.shape), np.broadcast_to(y[:, :, None], areas.shape), areas
 
     def _add(self, x: Array, y: Array, values: Array, n_bands: int) -> Array:
         """Of values (2, 2, k, 3) per area: world +y and -y, +z and -z, at distances x sideways and y up or down (k,)."""
@@ -69,9 +92,12 @@ class AngularLayout(DiscLayout):
         return project_mirrored(directions, (values * density[:, None])[None], n_bands)
 
     def _rim_point_count(self, n_bands: int) -> int:
-        """So many points a side of each part make the texels on the rim exact to rounding; fitted to measurements."""
-        phase = np.pi * n_bands / max(self.side, 2)
-        return int(np.ceil(6 + 16 * max(self.side, 2) ** -0.4 + 1.1 * phase + 3.5 * phase**0.4))
+        """So many points a side of each piece make the texels on the rim exact to rounding; fitted to measurements.
+
+        Two fewer a side of the whole texel suffice for the kernel on it.
+        """
+        phase = np.pi * n_bands / self.side
+        return int(np.ceil(6 + 16 * self.side**-0.4 + 1.1 * phase + 3 * np.sqrt(phase)))
 
 
 def quadrant_point_count(n_bands: int) -> int:

@@ -139,15 +139,18 @@ class DiscLayout:
             self.edges[columns], self.edges[columns + 1], self.edges[rows], self.edges[rows + 1], n_points
         )
 
-    def mirrored(self, pixels: NDArray[np.float32], rows: Indices, columns: Indices) -> NDArray[np.float32]:
-        """Texels of all four quadrants by their places in one, (2, 2, k, 3): +y and -y of the world, +z and -z."""
-        first = self.side // 2
-        return np.stack(
-            [
-                np.stack([pixels[row, column] for row in (self.half - 1 - rows, first + rows)])
-                for column in (self.half - 1 - columns, first + columns)
-            ]
+    def mirrored(
+        self, pixels: NDArray[np.float32], rows: Indices, columns: Indices, repeat: int = 1
+    ) -> NDArray[np.float32]:
+        """Texels of all four quadrants by their places in one, (2, 2, ..., 3): +y and -y of the world, +z and -z.
+
+        repeat: the texels along each side that one of the pixels stands for. Places beyond the image give any texel.
+        """
+        up, down = (np.clip(i, 0, self.side - 1) // repeat for i in (self.half - 1 - rows, self.side // 2 + rows))
+        left, right = (
+            np.clip(i, 0, self.side - 1) // repeat for i in (self.half - 1 - columns, self.side // 2 + columns)
         )
+        return np.stack([np.stack([pixels[row, column] for row in (up, down)]) for column in (left, right)])
 
     def whole_sphere(self, quadrant: Array) -> Array:
         """What a quadrant (half, half) says for the image (side, side), with the halves of middle texels added up."""

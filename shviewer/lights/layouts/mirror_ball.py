@@ -42,7 +42,7 @@ class MirrorBallLayout(DiscLayout):
         quadrant[np.arange(self.half) >= self.whole[:, None]] = 0.0
         for rows, columns in self.rim_blocks(*self.cut, 14):
             points = self.rim(rows, columns, 14)
-            quadrant[rows, columns] = np.bincount(points.texels, 4 * points.weights, minlength=len(rows))
+            quadrant[rows, columns] = np.bincount(points.texels, 4 * points.weights.sum(axis=1), minlength=len(rows))
         return self.whole_sphere(quadrant)
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
@@ -126,16 +126,13 @@ class _Tiles:
         n_points = (6 if self.ball.side > 16 else 14) + int(np.ceil(n_bands * np.sqrt(2 / self.ball.half)))
         for at_rows, at_columns in self.ball.rim_blocks(rows, columns, n_points):
             rim = self.ball.rim(at_rows, at_columns, n_points)
-            texels = self._mirrored(at_rows, at_columns)[:, :, rim.texels] * rim.weights[:, None]
-            coefficients += self._add(rim.x, rim.y, rim.depth, texels, n_bands)
+            texels = self._mirrored(at_rows, at_columns)[:, :, rim.texels, None] * rim.weights[..., None]
+            x, y, depth = rim.x.ravel(), rim.y.ravel(), rim.depth.ravel()
+            coefficients += self._add(x, y, depth, texels.reshape(2, 2, -1, 3), n_bands)
         return coefficients
 
     def _mirrored(self, rows: Indices, columns: Indices) -> NDArray[np.float32]:
-        """Texels by their places in a quadrant, (2, 2, ..., 3): +y and -y of the world, +z and -z. Any beyond the image."""
-        half, last = self.ball.half, 2 * self.ball.half - 1
-        up, down = (np.clip(i, 0, last) // self.repeat for i in (half - 1 - rows, half + rows))
-        left, right = (np.clip(i, 0, last) // self.repeat for i in (half - 1 - columns, half + columns))
-        return np.stack([np.stack([self.pixels[row, column] for row in (up, down)]) for column in (left, right)])
+        return self.ball.mirrored(self.pixels, rows, columns, self.repeat)
 
     def _add(self, x: Array, y: Array, depth: Array, values: Array, n_bands: int) -> Array:
         """Of values (2, 2, k, 3) per area: world +y and -y, +z and -z, at distances x sideways and y up or down (k,)."""

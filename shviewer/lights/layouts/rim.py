@@ -12,9 +12,9 @@ from shviewer.harmonics.basis import Array
 
 @dataclass(frozen=True, eq=False)
 class RimPoints:
-    """All (k,). x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation; weights are areas.
+    """Of k pieces of rectangles, (k, n). x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation.
 
-    texels: the index of the rectangle of each point.
+    weights: areas. texels: the index of each piece's rectangle, (k,).
     """
 
     x: Array
@@ -52,5 +52,6 @@ def rim_points(x0: Array, x1: Array, y0: Array, y1: Array, n_points: int) -> Rim
         depth = c * np.cos(t)
         weights = (2 * s * (last - first) * weight[:, None] * c) * ((t1 - t0) * weight) * depth
         y = np.broadcast_to(np.sin(angle), t.shape)
-        parts.append((c * np.sin(t), y, depth, weights, np.broadcast_to(texels[:, None, None], t.shape)))
-    return RimPoints(*(np.concatenate([part[i].ravel() for part in parts]) for i in range(5)))
+        parts.append([a.reshape(len(texels), n_points**2) for a in (c * np.sin(t), y, depth, weights)] + [texels])
+    x, y, depth, weights = (np.concatenate([part[i] for part in parts]) for i in range(4))
+    return RimPoints(x, y, depth, weights, np.concatenate([part[4] for part in parts]))
