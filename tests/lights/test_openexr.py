@@ -602,6 +602,25 @@ def test_a_closed_stream_is_left_closed_and_nothing_printed_on_the_other(closed,
             assert (done.returncode, done.stderr) == (0, b"")
 
 
+NOT_STDOUT = """
+import sys
+from types import SimpleNamespace
+from shviewer.lights.decoders.openexr_library import open_openexr
+with open(sys.argv[1], "wb", buffering=0) as file:
+    assert file.fileno() == 1
+    printing = lambda *arguments, **options: file.write(b"kept") and SimpleNamespace(parts=[1])
+    open_openexr(SimpleNamespace(File=printing), b"", header_only=True)
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no shell that closes streams")
+def test_a_file_in_the_place_of_a_closed_stream_is_not_silenced(tmp_path):
+    path = tmp_path / "file"
+    script = 'exec "$0" -c "$1" "$2" >&-'
+    subprocess.run(["sh", "-c", script, sys.executable, NOT_STDOUT, str(path)], check=True)
+    assert path.read_bytes() == b"kept"
+
+
 def test_two_threads_that_decode_leave_the_streams_as_they_were(capfd):
     with ThreadPoolExecutor(4) as pool:
         list(pool.map(decode_openexr, [chatty_exr()] * 40))

@@ -1,0 +1,98 @@
+"""The headers of an OpenEXR file as the bytes have them: what the library cannot be asked.
+
+It puts a window of 64 x 64 in the place of one that is missing or of another type, and says nothing.
+
+Source: openexr.com, "OpenEXR File Layout": headers of name, type, size and value, each ended by an empty name; the
+headers of a file of several parts are followed by an empty one.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import NamedTuple
+
+from shviewer.errors import LightError
+
+_FIRST_HEADER = 8  # bytes; before it a magic number and the version field
+_SEVERAL_PARTS = 0x1000  # a flag of the version field
+_LONGEST_NAME = 255
+_MOST_ATTRIBUTES = 2**15  # of all parts; files of hundreds of passes have thousands, and the library takes its time
+
+
+class Attribute(NamedTuple):
+    kind: bytes
+    """The name of its type, such as b"box2i"."""
+    value: bytes
+
+
+class RawHeader(NamedTuple):
+    """Of one part; start and end are offsets into the file."""
+
+    start: int
+    end: int
+    attributes: dict[bytes, Attribute]
+
+    def count(self, name: bytes) -> int:
+        """An attribute of type int, not negative. Raises LightError."""
+        return count_in(self.attributes.get(name, Attribute(b"", b"")).value)
+
+    def window(self, name: bytes) -> tuple[int, int, int, int]:
+        """Left, top, right and bottom, both ends included. Raises LightError if they are not given or not in order."""
+        kind, value = self.attributes.get(name, Attribute(b"", b""))
+        shown = name.decode("ascii")
+        if kind != b"box2i" or len(value) != 16:
+            raise LightError(f"no {shown} in its header, so its size is not known; fetch or export the file again")
+        left, top, right, bottom = struct.unpack("<4i", value)
+        if right < left or bottom < top:
+            raise LightError(
+                f"{shown} from ({left}, {top}) to ({right}, {bottom}) ends before it begins; export the file again"
+            )
+        return left, top, right, bottom
+
+
+def read_attributes(data: bytes) -> list[RawHeader]:
+    """The header of every part. Raises LightError if the bytes end before the headers do, or they have no end."""
+    headers = [_header(data, _FIRST_HEADER, _MOST_ATTRIBUTES)]
+    left = _MOST_ATTRIBUTES - len(headers[0].attributes)
+    if count_in(data[4:_FIRST_HEADER]) & _SEVERAL_PARTS:
+        while data[headers[-1].end : headers[-1].end + 1] != b"\0":
+            headers.append(_header(data, headers[-1].end, left))
+            left -= len(headers[-1].attributes)
+    return headers
+
+
+def count_in(field: bytes) -> int:
+    """Four bytes as an integer that is not negative. Raises LightError."""
+    if len(field) != 4 or field[3] > 127:
+        raise broken("a count in a header is none")
+    return int.from_bytes(field, "little")
+
+
+def broken(reason: str) -> LightError:
+    """The error for bytes that contradict themselves."""
+    return LightError(f"damaged or cut short: {reason}; fetch or export the file again")
+
+
+def _header(data: bytes, start: int, most: int) -> RawHeader:
+    """With at most so many attributes."""
+    attributes: dict[bytes, Attribute] = {}
+    at = start
+    for _ in range(most + 1):
+        name, at = _text(data, at)
+        if not name:
+            return RawHeader(start, at, attributes)
+        kind, at = _text(data, at)
+        size = count_in(data[at : at + 4])
+        at += 4
+        if at + size > len(data):
+            raise broken("an attribute ends behind the end of the file")
+        attributes[name] = Attribute(kind, data[at : at + size])  # the last counts, for the library's windows too
+        at += size
+    raise LightError(f"more than {_MOST_ATTRIBUTES} attributes in its headers; export it without metadata")
+
+
+def _text(data: bytes, at: int) -> tuple[bytes, int]:
+    end = data.find(b"\0", at, at + _LONGEST_NAME + 1)
+    if end < 0:
+        raise broken("a header does not end")
+    return data[at:end], end + 1
