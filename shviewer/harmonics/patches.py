@@ -18,7 +18,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, check_bands, degrees, evaluate_basis
+from shviewer.harmonics.basis import Array, check_bands, normalise
+from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
 
 BLOCK_VALUES = 2**21
 """Basis values, or texel values, held in float64 at a time."""
@@ -117,26 +118,57 @@ def _sum_rows(weights: Array, image: NDArray[np.floating], spans: NDArray[np.int
 def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
     """Sum of value * Y over directions and their mirror images, (n_bands**2, 3).
 
-    directions: (k, 3). values: (x, y, z, k, 3) with 1 or 2 along each of the first three axes; index 1 is the value in the
-    direction whose coordinate of that name is negated.
+    directions: (k, 3), any length. values: (x, y, z, k, 3) with 1 or 2 along each of the first three axes; index 1 is the value in
+    the direction whose coordinate of that name is negated.
 
-    Y is even or odd in each coordinate: in y as cos or sin(m phi) is, in z with l + m, in x with m, the other way for sin.
+    Every Y is a sum of products of {cos, sin}(m phi) and, for even m, cos(k theta), for odd m, sin(k theta)
+    (theta_series.py), each even or odd in every coordinate. So the values are summed with the products alone, and each kind
+    needs only the sum or the difference of mirror images.
     """
-    check_bands(n_bands)
+    check_bands(n_bands, MAX_SEPARABLE_BANDS)
     for axis in range(3):
         if values.shape[axis] == 2:
             first, second = np.take(values, 0, axis), np.take(values, 1, axis)
             values = np.stack([first + second, first - second], axis)
-    mirrors = values.shape[:3]
-    flat = np.moveaxis(values, 3, 0).reshape(len(directions), -1)
-    sums = np.zeros((n_bands**2, flat.shape[1]))
-    block = max(128, BLOCK_VALUES // n_bands**2)
+    last = np.array(values.shape[:3]) - 1
+    n_even = (n_bands + 1) // 2
+    sums = np.zeros((n_bands, 2, 3, n_bands))  # m, {cos, sin}(m phi), channel, k by parity
+    block = max(64, BLOCK_VALUES // (8 * n_bands))
     for start in range(0, len(directions), block):
         points = slice(start, start + block)
-        sums += evaluate_basis(directions[points], n_bands).T @ flat[points]
-    degree = degrees(n_bands)
-    order = np.arange(n_bands**2) - degree * (degree + 1)
-    sine = (order < 0).astype(np.int64)
-    parities = ((order + sine) % 2, sine, (degree + order) % 2)
-    odd = [parity * (count - 1) for parity, count in zip(parities, mirrors, strict=True)]
-    return np.asarray(sums.reshape(n_bands**2, *mirrors, 3)[np.arange(n_bands**2), odd[0], odd[1], odd[2]])
+        x, y, z = normalise(directions[points]).T
+        from_axis = np.hypot(x, y)
+        off_axis = from_axis > 0
+        phi = np.where(off_axis, x, 1.0), np.where(off_axis, y, 0.0)
+        azimuth = waves(
+            phi[0] / np.where(off_axis, from_axis, 1.0), phi[1] / np.where(off_axis, from_axis, 1.0), n_bands
+        )
+        polar = waves(z, from_axis, n_bands)
+        for parity, sine, odd_k in np.ndindex(2, 2, 2):
+            if max(parity, odd_k) >= n_bands:
+                continue
+            odd = np.array([(parity + sine) % 2, sine, (parity + odd_k) % 2])
+            mirrored = values[(*(odd * last), points)]
+            along_theta = polar[parity][odd_k::2, None] * mirrored.T  # k, channel, point
+            product = azimuth[sine][parity::2] @ along_theta.reshape(-1, len(x)).T
+            kept = slice(n_even, None) if odd_k else slice(0, n_even)
+            sums[parity::2, sine, :, kept] += product.reshape(len(product), -1, 3).swapaxes(1, 2)
+    return from_waves(sums)
+
+
+def waves(cosine: Array, sine: Array, n: int) -> tuple[Array, Array]:
+    """cos(j t) and sin(j t) for j < n at angles given by their cosine and sine (points,), (n, points) each.
+
+    By the powers of e^it, whose error grows like j roundings.
+    """
+    cosines, sines = np.empty((2, n, len(cosine)))
+    cosines[0], sines[0] = 1.0, 0.0
+    for j in range(1, n):
+        half = j // 2
+        rest = j - half  # as few factors as may be
+        if j == 1:
+            cosines[1], sines[1] = cosine, sine
+        else:
+            cosines[j] = cosines[half] * cosines[rest] - sines[half] * sines[rest]
+            sines[j] = sines[half] * cosines[rest] + cosines[half] * sines[rest]
+    return cosines, sines

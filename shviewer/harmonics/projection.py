@@ -1,45 +1,32 @@
-"""From radiance to coefficients, c(l, m) = integral of f Y(l, m).
+"""From radiance on rows to coefficients, c(l, m) = integral of f Y(l, m); scattered.py has the samples that lie anywhere.
 
-Scattered samples take one pass of the basis. Anything on rows of constant theta is separable, in three steps: sums over the
-rows with cos(k theta) and sin(k theta), the only pass over the values (row_transform.py); sums over the columns with
-cos(m phi) and sin(m phi); and a small product with the series of the basis (theta_series.py). It also makes texels exact: the
-integral of cos(k theta) sin(theta) over a row, and of cos(m phi) over a column, are closed forms.
+Anything on rows of constant theta is separable, in three steps: sums over the rows with cos(k theta) and sin(k theta), the
+only pass over the values (row_transform.py); sums over the columns with cos(m phi) and sin(m phi); and a small product with
+the series of the basis (theta_series.py). It also makes texels exact: the integral of cos(k theta) sin(theta) over a row, and
+of cos(m phi) over a column, are closed forms.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, check_bands, evaluate_basis
-from shviewer.harmonics.quadrature import DirectionSet, ProductRule
+from shviewer.harmonics.basis import Array, check_bands
+from shviewer.harmonics.quadrature import ProductRule, Radiance
 from shviewer.harmonics.row_transform import Precision, RowFunctions, row_sums
-from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, azimuth_functions, degrees_and_orders, series_by_parity
-
-Radiance = Callable[[Array], Array]
-"""Directions (k, 3) -> linear RGB (k, 3)."""
+from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, azimuth_functions, from_waves
 
 BLOCK_VALUES = 2**21
-"""Basis values, or values of a light, held at a time."""
+"""Eight times the directions a light is called with."""
 
-
-def project_samples(radiance: Radiance, samples: DirectionSet, n_bands: int) -> Array:
-    """Sum of weight * radiance * Y over the samples, (n_bands**2, 3); blocks keep the memory small."""
-    check_bands(n_bands)
-    coefficients = np.zeros((n_bands**2, 3))
-    block = max(64, BLOCK_VALUES // n_bands**2)
-    for start in range(0, len(samples.weights), block):
-        directions = samples.directions[start : start + block]
-        weighted = radiance(directions) * samples.weights[start : start + block, None]
-        coefficients += evaluate_basis(directions, n_bands).T @ weighted
-    return coefficients
+BLOCK_PRODUCTS = 2**12
+"""Values of three channels multiplied at a time."""
 
 
 def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tuple[Array, Array]:
-    """The same sum over a product rule, separably: (coefficients (n_bands**2, 3), products (3, 3)).
+    """Sum of weight * radiance * Y over a product rule, separably: (coefficients (n_bands**2, 3), products (3, 3)).
 
     Products are the integrals of f_i f_j over the channels by the same rule, so that Bessel's inequality holds exactly.
     """
@@ -47,7 +34,7 @@ def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tupl
     block = max(1, BLOCK_VALUES // (8 * rule.n_columns))
     for start in range(0, len(rule.theta), block):
         rows = slice(start, start + block)
-        values[rows] = radiance(rule.direction_set(rows).directions).reshape(-1, rule.n_columns, 3)
+        values[rows] = radiance(rule.directions(rows)).reshape(-1, rule.n_columns, 3)
     angle = np.arange(n_bands)[:, None] * rule.theta
     row_weights = rule.row_weights * (2 * np.pi / rule.n_columns)
     functions = RowFunctions(row_weights * np.cos(angle), row_weights * np.sin(angle))
@@ -58,9 +45,11 @@ def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tupl
 def channel_products(values: NDArray[np.floating], row_weights: Array) -> Array:
     """Integrals of f_i f_j over the sphere, (3, 3): values (rows, columns, 3), steradians of one value per row (rows,)."""
     products = np.zeros((3, 3))
-    for row, weight in zip(values, row_weights, strict=True):
-        wide = row.astype(np.float64, copy=False)
-        products += weight * (wide.T @ wide)
+    block = max(1, BLOCK_PRODUCTS // values.shape[1])
+    for start in range(0, len(values), block):
+        wide = values[start : start + block].astype(np.float64, copy=False)
+        weighted = row_weights[start : start + block, None, None] * wide
+        products += weighted.reshape(-1, 3).T @ wide.reshape(-1, 3)
     return products
 
 
@@ -113,14 +102,7 @@ def _from_row_sums(even: Array, odd: Array, azimuth: Array) -> Array:
         for part in (0, 1):
             product = _over_columns(azimuth[part, parity::2], sums.reshape(columns, -1), part == parity)
             by_order[parity::2, part] = product.reshape(-1, 3, n_bands)
-    table = np.empty((n_bands, 6, n_bands))  # m, ..., l
-    start = 0
-    for parity, series in enumerate(series_by_parity(n_bands)):
-        stop = start + series.shape[1]
-        table[..., parity::2] = by_order.reshape(n_bands, 6, n_bands)[..., start:stop] @ series
-        start = stop
-    degree, order, sine = degrees_and_orders(n_bands)
-    return np.asarray(table.reshape(n_bands, 2, 3, n_bands)[order, sine, :, degree])
+    return from_waves(by_order)
 
 
 def _over_columns(azimuth: Array, sums: Array, mirrored: bool) -> Array:

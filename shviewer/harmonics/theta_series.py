@@ -70,3 +70,19 @@ def azimuth_functions(n_bands: int, n_columns: int) -> Array:
     """cos(m phi) and sin(m phi) at the column centres, shape (2, n_bands, n_columns)."""
     angle = np.arange(n_bands)[:, None] * column_azimuths(n_columns)
     return np.stack([np.cos(angle), np.sin(angle)])
+
+
+def from_waves(sums: Array) -> Array:
+    """Sums with cos(k theta), for odd m sin(k theta), and {cos, sin}(m phi) -> coefficients (n**2, 3).
+
+    sums: (m, {cos, sin}, channel, k), the even k first, then the odd ones.
+    """
+    n_bands = len(sums)
+    table = np.empty((n_bands, 6, n_bands))  # m, ..., l
+    start = 0
+    for parity, series in enumerate(series_by_parity(n_bands)):
+        stop = start + series.shape[1]
+        table[..., parity::2] = sums.reshape(n_bands, 6, n_bands)[..., start:stop] @ series
+        start = stop
+    degree, order, sine = degrees_and_orders(n_bands)
+    return np.asarray(table.reshape(n_bands, 2, 3, n_bands)[order, sine, :, degree])
