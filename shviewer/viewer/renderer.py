@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError, ShaderError
-from shviewer.harmonics.basis import count_bands
+from shviewer.harmonics.basis import Array, count_bands
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.resources import ShaderSource, load_shader
 from shviewer.viewer.composition import Composition, Sphere
@@ -49,6 +49,8 @@ class Renderer:
         self.overlay: moderngl.Texture | None = None
         self.overlay_image: NDArray[np.uint8] | None = None
         self.picture: Picture | None = None
+        self.coefficients: Array | None = None
+        """Those in the buffer."""
         self.rest = context.simple_framebuffer((1, 1))
         """Bound while no other framebuffer is in use."""
 
@@ -64,8 +66,9 @@ class Renderer:
         for side, lobes in enumerate((picture.lobes, picture.added_lobes)):
             if last is None or lobes is not (last.lobes, last.added_lobes)[side]:
                 self.lobe_buffers[side].write(pack_lobes(lobes))
-        if picture.reconstruction_map is None and (last is None or picture.coefficients is not last.coefficients):
+        if picture.reconstruction_map is None and picture.coefficients is not self.coefficients:
             self.sh_buffer.write(pack_coefficients(picture.coefficients))
+            self.coefficients = picture.coefficients
         for side, wanted in enumerate((picture.original_map, picture.reconstruction_map)):
             self._upload_map(side, wanted)
         self._upload_overlay(overlay)

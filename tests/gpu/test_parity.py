@@ -538,6 +538,14 @@ def test_reconstructing_replaces_only_what_the_right_sphere_shows() -> None:
     assert other.light is picture.light
 
 
+def test_the_sum_is_right_after_a_map_of_the_same_coefficients(renderer: Renderer) -> None:
+    picture = picture_of("green", n_bands=3)
+    linear(renderer, picture)
+    other = replace(picture, coefficients=noise(3))
+    linear(renderer, replace(other, reconstruction_map=LatLongMap(np.zeros((3, 4, 3), np.float32), rows_on_poles=True)))
+    assert_sum_is_right(renderer, other)
+
+
 # --- suns that were split off
 
 
