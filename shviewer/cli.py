@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
+from shviewer.errors import LightError, ShviewerError, UsageError
 from shviewer.options import DEFAULT_BANDS, finite, info_parser, report_parser, screenshot_parser, view_parser
 
 if TYPE_CHECKING:
@@ -144,33 +144,64 @@ def _reading(options: argparse.Namespace) -> Reading:
 
 
 def _report(options: argparse.Namespace) -> int:
-    from shviewer import stability
-    from shviewer.viewer.picture_files import write_atomically
+    if options.stability and not (
+        options.lights or options.output or options.quick or options.peers or options.against
+    ):
+        return _stability(options)
+    from shviewer.report.options import DEFAULT_BUDGET, Options
+    from shviewer.report.run import write_report
 
-    if options.output is not None:
-        try:
-            options.output.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise OutputError(f"{options.output}: cannot be made a folder: {error.strerror}; choose another") from error
-    progress = _Progress() if sys.stderr.isatty() else None
-    outcomes = stability.run(progress=progress, shader=not options.no_shader)
-    if progress:
-        progress.clear()
+    wanted = Options(
+        budget=DEFAULT_BUDGET if options.budget is None else options.budget,
+        quick=options.quick,
+        against=options.against,
+        stability=options.stability,
+        peers=options.peers,
+        seed=options.seed,
+        methods=tuple(options.methods.split(",")) if options.methods else (),
+        reading=_reading(options),
+        shader=not options.no_shader,
+    )
+    line = _StatusLine() if sys.stderr.isatty() else None
+    try:
+        summary = write_report(
+            options.lights,
+            options.output or Path("shviewer-report"),
+            wanted,
+            progress=line.fraction if line else None,
+        )
+    finally:
+        if line:
+            line.clear()
+    print(summary.text)
+    print(f"wrote {summary.rows} rows: {', '.join(str(summary.folder / name) for name in summary.files)}")
+    return 1 if summary.stability_failed else 0
+
+
+def _stability(options: argparse.Namespace) -> int:
+    from shviewer import stability
+
+    line = _StatusLine() if sys.stderr.isatty() else None
+    outcomes = stability.run(progress=line.show if line else None, shader=not options.no_shader)
+    if line:
+        line.clear()
     print(stability.as_text(outcomes))
-    if options.output is not None:
-        write_atomically(options.output / "stability.md", stability.as_markdown(outcomes).encode())
-        write_atomically(options.output / "stability.json", stability.as_json(outcomes).encode())
     return 0 if all(outcome.passed for outcome in outcomes) else 1
 
 
-class _Progress:
-    """The case at work, on one line of the terminal."""
+class _StatusLine:
+    """What is at work, on one line of the terminal."""
 
-    def __call__(self, name: str) -> None:
-        print(f"\r\033[K{name}", end="", file=sys.stderr, flush=True)
+    def show(self, text: str) -> None:
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+
+    def fraction(self, done: float, seconds_left: float, what: str) -> None:
+        """done: 0 to 1."""
+        filled = round(24 * done)
+        self.show(f"[{'#' * filled}{'.' * (24 - filled)}] {seconds_left:4.0f} s left  {what[:60]}")
 
     def clear(self) -> None:
-        self("")
+        self.show("")
 
 
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:

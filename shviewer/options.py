@@ -41,7 +41,7 @@ def view_parser() -> OneLineParser:
         usage="shviewer [LIGHT] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
         "       shviewer info LIGHT [LIGHT ...] [options]\n"
-        "       shviewer report --stability [-o DIR]",
+        "       shviewer report [LIGHT ...] [-o DIR] [options]",
         description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
         epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
         "\nwhat a light is, in figures: shviewer info --help",
@@ -104,18 +104,40 @@ def info_parser() -> OneLineParser:
 
 
 def report_parser() -> OneLineParser:
-    """shviewer report: measurements of the program itself."""
+    """shviewer report [LIGHT ...]: speed against error, measured on this machine."""
     parser = OneLineParser(
         prog="shviewer report",
-        description="Measure the program on this machine. --stability runs the hard numerical cases (about 15 s).",
-        epilog=EXIT_CODES,
+        description="Measure speed against error on this machine and write report.md, report.json, report.csv and plots. "
+        "Without LIGHT: built-in scenes and two environment maps.",
+        epilog=f"{EXIT_CODES}\n\nWith --stability alone only the hard cases are run and printed (about 15 s). Plots need "
+        "matplotlib:\npip install 'shviewer[report]'.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--stability", action="store_true", required=True, help="the hard cases; exit 1 if one fails")
+    parser.add_argument("lights", metavar="LIGHT", nargs="*", help=LIGHT_HELP)
     parser.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="also write stability.md and stability.json into this folder"
+        "-o", "--output", metavar="DIR", type=Path, help="the folder to write (default shviewer-report)"
     )
-    parser.add_argument("--no-shader", action="store_true", help="only the float64 columns; needs no OpenGL")
+    parser.add_argument("--quick", action="store_true", help="two lights and few sizes, within 15 s")
+    parser.add_argument(
+        "--budget",
+        metavar="SECONDS",
+        type=finite,
+        help="of measuring (default 120); repeats, then sizes are trimmed to it",
+    )
+    parser.add_argument("--methods", metavar="M,M", help="only these ways to project, and the best way of each light")
+    parser.add_argument("--seed", metavar="S", type=int, default=0, help="of all random samples (default 0)")
+    parser.add_argument(
+        "--against",
+        metavar="OLD.json",
+        type=Path,
+        help="say what is faster, slower, better or worse than in that report",
+    )
+    parser.add_argument(
+        "--peers", action="store_true", help="also ducc0, shtns, pyshtools, sphericart and SciPy, if installed"
+    )
+    parser.add_argument("--stability", action="store_true", help="also the hard cases; exit 1 if one fails")
+    parser.add_argument("--no-shader", action="store_true", help="nothing is drawn; needs no OpenGL")
+    _add_reading_options(parser)
     return parser
 
 

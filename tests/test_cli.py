@@ -485,7 +485,7 @@ def test_a_reference_is_never_overwritten_by_the_picture(capsys: pytest.CaptureF
         (("--samples", "1.5"), "'1.5' is not a whole number"),
         (("--window", "dering:3"), "dering has no width"),
         (("screenshot",), "the following arguments are required: OUT"),
-        (("report",), "required: --stability"),
+        (("report", "--budget", "soon"), "argument --budget: 'soon' is not a finite number"),
         (("info",), "the following arguments are required: LIGHT"),
     ],
 )

@@ -118,8 +118,8 @@ def _sum_rows(weights: Array, image: NDArray[np.floating], spans: NDArray[np.int
 def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
     """Sum of value * Y over directions and their mirror images, (n_bands**2, 3).
 
-    directions: (k, 3), any length. values: (x, y, z, k, 3) with 1 or 2 along each of the first three axes; index 1 is the value in
-    the direction whose coordinate of that name is negated.
+    directions: (k, 3), any length. values: (x, y, z, k, 3) with 1 or 2 along each of the first three axes; index 1 is the
+    value in the direction whose coordinate of that name is negated.
 
     Every Y is a sum of products of {cos, sin}(m phi) and, for even m, cos(k theta), for odd m, sin(k theta)
     (theta_series.py), each even or odd in every coordinate. So the values are summed with the products alone, and each kind

@@ -18,8 +18,7 @@ from __future__ import annotations
 import os
 import sys
 import tracemalloc
-from collections.abc import Callable
-from functools import cache, partial
+from functools import partial
 from time import perf_counter
 
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = os.environ["RAYON_NUM_THREADS"] = "1"
@@ -29,99 +28,25 @@ from measure import machine, medians
 
 from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.projection import project_image, project_product, project_samples
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre, jittered
+from shviewer.harmonics.projection import project_image, project_product
+from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import degrees_and_orders, series_by_parity, theta_series
 from shviewer.lights.light import built_in_lights, find_light
+from shviewer.report.peers import IMAGE_PEERS, ImagePeer, available, sphericart_peer, texel_solid_angles
 
 WIDTHS = (512, 2048, 4096)
 BANDS = (3, 5, 9, 16, 32, 64)
 SAMPLED_BANDS = (4, 9, 16, 32, 64)
-SPHERICART_BLOCK = 2**22
-"""Basis values at a time."""
-
-Peer = Callable[[np.ndarray, int], object]
 
 
-def weights(height: int, width: int) -> np.ndarray:
-    """Solid angle of a texel of each row, (height, 1)."""
-    theta = np.pi * (np.arange(height) + 0.5) / height
-    return (2 * np.sin(theta) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width)[:, None]
-
-
-def ducc_peer(dtype: type) -> Peer:
-    import ducc0
-
-    def project(image: np.ndarray, n_bands: int) -> object:
-        height, width = image.shape[:2]
-        planes = np.empty((3, 1, height, width), dtype)
-        np.multiply(np.moveaxis(image, 2, 0)[:, None], weights(height, width).astype(dtype), out=planes)
-        return [
-            ducc0.sht.adjoint_synthesis_2d(map=plane, spin=0, lmax=n_bands - 1, geometry="F1", nthreads=1)
-            for plane in planes
-        ]
-
-    return project
-
-
-def shtns_peer() -> Peer:
-    import shtns
-
-    @cache
-    def plan(height: int, width: int, n_bands: int):
-        transform = shtns.sht(n_bands - 1, n_bands - 1, 1, shtns.sht_orthonormal)
-        transform.set_grid(height, width, flags=shtns.sht_reg_fast | shtns.SHT_PHI_CONTIGUOUS, polar_opt=0.0)
-        return transform
-
-    def project(image: np.ndarray, n_bands: int) -> object:
-        transform = plan(*image.shape[:2], n_bands)
-        planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
-        return [transform.analys(plane) for plane in planes]
-
-    return project
-
-
-def pyshtools_peer() -> Peer:
-    from pyshtools.expand import SHExpandDH
-
-    def project(image: np.ndarray, n_bands: int) -> object:
-        planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
-        return [SHExpandDH(plane, norm=4, csphase=-1, sampling=2, lmax_calc=n_bands - 1) for plane in planes]
-
-    return project
-
-
-def sphericart_peer(share: int) -> Peer:
-    """Basis by sphericart and a matrix product, block by block, over every `share`-th row."""
-    import sphericart
-
-    @cache
-    def basis(n_bands: int):
-        return sphericart.SphericalHarmonics(n_bands - 1)
-
-    def project(image: np.ndarray, n_bands: int) -> object:
-        height, width = image.shape[:2]
-        theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
-        solid_angle = weights(height, width)
-        step = max(1, SPHERICART_BLOCK // (width * n_bands**2))
-        found = np.zeros((n_bands**2, 3))
-        for row in range(0, height, step * share):
-            rows = slice(row, min(row + step, height))
-            directions = directions_from_angles(theta[rows, None], phi).reshape(-1, 3)
-            values = (image[rows] * solid_angle[rows, None]).reshape(-1, 3)
-            found += basis(n_bands).compute(directions).T @ values
-        return found
-
-    return project
-
-
-def loop_peer(texels: int) -> Peer:
+def loop_peer(texels: int) -> ImagePeer:
     """The loop of the textbooks: one texel after the other, as many as `texels`, spread over the image."""
 
     def project(image: np.ndarray, n_bands: int) -> object:
         height, width = image.shape[:2]
-        solid_angle, found = weights(height, width), np.zeros((n_bands**2, 3))
+        solid_angle, found = texel_solid_angles(height, width), np.zeros((n_bands**2, 3))
         for i in range(0, height * width, max(1, height * width // texels)):
             row, column = divmod(i, width)
             theta, phi = np.pi * (row + 0.5) / height, np.pi * (1 - 2 * (column + 0.5) / width)
@@ -132,24 +57,11 @@ def loop_peer(texels: int) -> Peer:
     return project
 
 
-def peers() -> dict[str, Callable[[], Peer]]:
-    return {
-        "ducc0 f32": partial(ducc_peer, np.float32),
-        "ducc0 f64": partial(ducc_peer, np.float64),
-        "shtns": shtns_peer,
-        "pyshtools": pyshtools_peer,
-        "sphericart": partial(sphericart_peer, 1),
-    }
+def installed() -> dict[str, ImagePeer]:
+    def missing(name: str, module: str) -> None:
+        print(f"without {name}: {module} is missing; pip install -e '.[bench]'")
 
-
-def available() -> dict[str, Peer]:
-    found = {}
-    for name, make in peers().items():
-        try:
-            found[name] = make()
-        except ImportError as error:
-            print(f"without {name}: {error.name} is missing; pip install -e '.[bench]'")
-    return found
+    return available(IMAGE_PEERS, missing)
 
 
 def photograph(width: int) -> np.ndarray:
@@ -160,14 +72,14 @@ def photograph(width: int) -> np.ndarray:
     return (texels[np.ix_(rows, columns)] * noise).astype(np.float32)
 
 
-def scaled(peer: Peer, share: float, image: np.ndarray, n_bands: int) -> float:
+def scaled(peer: ImagePeer, share: float, image: np.ndarray, n_bands: int) -> float:
     """Milliseconds of the whole when only a share of it was run."""
     start = perf_counter()
     peer(image, n_bands)
     return 1000 * (perf_counter() - start) / share
 
 
-def images(widths: tuple[int, ...], found: dict[str, Peer]) -> None:
+def images(widths: tuple[int, ...], found: dict[str, ImagePeer]) -> None:
     names = ["ducc0 f32", "ducc0 f64", "shtns", "pyshtools", "sphericart", "loop"]
     print(f"\n{'image':<12}{'n':>3}{'ms':>9}{'x reading':>10}{'error':>9}{'f64 ms':>9}", end="")
     print("".join(f"{name:>12}" for name in names), f"{'fastest / ours':>16}")
@@ -271,7 +183,7 @@ def sampled() -> None:
 def main() -> None:
     quick = "--quick" in sys.argv[1:]
     print(machine(), "- one thread")
-    images(WIDTHS[:1] if quick else WIDTHS, available())
+    images(WIDTHS[:1] if quick else WIDTHS, installed())
     tables_and_memory()
     maps()
     lobes()

@@ -1,0 +1,254 @@
+"""The ways to project a light, declared once: what each is called, where it applies, and how it is set up and run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection import project_image, project_product
+from shviewer.harmonics.quadrature import (
+    DirectionSet,
+    ProductRule,
+    fejer,
+    fibonacci,
+    gauss_legendre,
+    jittered,
+    uniform_random,
+)
+from shviewer.harmonics.scattered import project_samples, project_values
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.function import FunctionLight
+from shviewer.lights.layouts.lat_long import LatLongLayout
+from shviewer.lights.light import Light
+from shviewer.lights.lobes import LobeLight
+
+SAMPLES = (100, 1_000, 10_000, 100_000, 1_000_000)
+BANDS = (3, 5, 9, 16, 32)
+LIGHTS = ("green", "hemisphere", "sun-sky", "film_studio", "venice_sunset")
+"""An edge in the slope, an edge, a source too small for any sampling, and two photographs."""
+
+QUICK_SAMPLES, QUICK_BANDS, QUICK_LIGHTS = (100, 10_000), (3, 9), ("green", "film_studio")
+
+PAPER_SAMPLES = 10_000
+"""What the paper projects with."""
+
+BEST, PAPER = "best", "jittered"
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A projection whose samples exist: what is timed is `project`() -> (n_bands**2, 3)."""
+
+    project: Callable[[], Array]
+    evaluations: int | None
+    """How often the light is evaluated; None where that is not known."""
+
+
+@dataclass(frozen=True, eq=False)
+class Method:
+    """One way to project. `prepare` takes a light, samples asked for, seed and bands; what does not apply is ignored."""
+
+    name: str
+    """In the files and on the command line."""
+    words: str
+    """In tables."""
+    explanation: str
+    prepare: Callable[[Light, int, int, int], Prepared]
+    applies: Callable[[Light], bool] = lambda light: True
+    takes_samples: bool = True
+    random: bool = False
+    """Another seed gives another result."""
+    separable: bool = False
+    """A pass over the values does not cost more with more bands, hardly."""
+
+    def project(self, light: Light, samples: int, seed: int, n_bands: int) -> Array:
+        """Coefficients (n_bands**2, 3), prepared and run."""
+        return self.prepare(light, samples, seed, n_bands).project()
+
+    def words_for(self, light_best: str) -> str:
+        """The best way is called what the light calls it."""
+        return light_best if self.name == BEST else self.words
+
+
+def _best(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
+    """From nothing, though a light remembers what it has projected: every run gets a light that remembers nothing."""
+    if isinstance(light, EnvironmentLight):
+        return Prepared(lambda: light.layout.project(light.pixels, n_bands), texel_count(light))
+    if isinstance(light, FunctionLight):
+        return Prepared(lambda: replace(light).coefficients(n_bands), _function_evaluations(light, n_bands))
+    if isinstance(light, LobeLight):
+        return Prepared(lambda: replace(light).coefficients(n_bands), 0)
+    return Prepared(lambda: copy(light).coefficients(n_bands), None)
+
+
+def texel_count(light: EnvironmentLight) -> int:
+    """Those that show something."""
+    solid_angles = light.layout.solid_angles()
+    return int(np.count_nonzero(solid_angles) * (light.pixels.shape[1] // solid_angles.shape[1]))
+
+
+def _function_evaluations(light: FunctionLight, n_bands: int) -> int:
+    """Counted, not guessed: one projection with a function that counts."""
+    count = 0
+
+    def counting(directions: Array) -> ArrayLike:
+        nonlocal count
+        count += len(directions)
+        return light.function(directions)
+
+    FunctionLight(counting, light.name).coefficients(n_bands)
+    return count
+
+
+def _in_its_unit(light: Light) -> Callable[[Array], Array]:
+    """What is projected, over `light.unit`: there, squares stay within float64."""
+    unit, integrand = light.unit, light.integrand
+    return integrand if unit == 1 else lambda directions: integrand(directions) / unit
+
+
+def _on_product(rule: Callable[[int], ProductRule]) -> Callable[[Light, int, int, int], Prepared]:
+    def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
+        points, integrand, unit = rule(samples), _in_its_unit(light), light.unit
+        count = len(points.theta) * points.n_columns
+        return Prepared(lambda: project_product(integrand, points, n_bands)[0] * unit, count)
+
+    return prepare
+
+
+def _on_samples(choose: Callable[[int, int], DirectionSet]) -> Callable[[Light, int, int, int], Prepared]:
+    def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
+        chosen, integrand, unit = choose(samples, seed), _in_its_unit(light), light.unit
+        return Prepared(lambda: project_samples(integrand, chosen, n_bands) * unit, len(chosen.weights))
+
+    return prepare
+
+
+def _is_image(light: Light) -> bool:
+    return isinstance(light, EnvironmentLight)
+
+
+def lat_long_texels(light: Light) -> NDArray[np.float32] | None:
+    """(height, width, 3) of a light that is a lat-long image."""
+    return light.pixels if isinstance(light, EnvironmentLight) and isinstance(light.layout, LatLongLayout) else None
+
+
+def _per_texel(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
+    """What most code does: every texel is a sample at its centre, weighted by the texel's solid angle."""
+    assert isinstance(light, EnvironmentLight)
+    solid_angles = np.broadcast_to(light.layout.solid_angles(), light.pixels.shape[:2])
+    rows, columns = np.nonzero(solid_angles)
+    directions = light.layout.centres(rows, columns)
+    weights = solid_angles[rows, columns, None]
+    everything = len(rows) == solid_angles.size
+
+    def project() -> Array:
+        texels = light.pixels.reshape(-1, 3) if everything else light.pixels[rows, columns]
+        return project_values(directions, texels * weights, n_bands)
+
+    return Prepared(project, len(rows))
+
+
+def _reduced(factor: int) -> Callable[[Light, int, int, int], Prepared]:
+    """The means of factor x factor texels first, which is part of the time, then the exact integrals of those."""
+
+    def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
+        texels = lat_long_texels(light)
+        assert texels is not None
+        return Prepared(lambda: project_image(_means(texels, factor), n_bands), texels.shape[0] * texels.shape[1])
+
+    return prepare
+
+
+def _means(texels: NDArray[np.float32], factor: int) -> NDArray[np.float32]:
+    """Of factor x factor texels; the rows first, which is the faster order."""
+    height, width = texels.shape[:2]
+    rows = texels.reshape(height // factor, factor, width * 3).sum(axis=1)
+    columns = rows.reshape(height // factor, width // factor, factor, 3)
+    return np.asarray(sum(columns[:, :, i] for i in range(factor)) * np.float32(1 / factor**2))
+
+
+def _divides(factor: int) -> Callable[[Light], bool]:
+    def applies(light: Light) -> bool:
+        texels = lat_long_texels(light)
+        return texels is not None and not any(side % factor for side in texels.shape[:2])
+
+    return applies
+
+
+METHODS: tuple[Method, ...] = (
+    Method(BEST, "best way", "the light's best way, the reference of all others", _best, takes_samples=False),
+    Method(
+        "gauss-legendre",
+        "Gauss-Legendre",
+        "Gauss-Legendre rows, equidistant azimuths, summed separably",
+        _on_product(gauss_legendre),
+        separable=True,
+    ),
+    Method(
+        "fejer",
+        "Fejer lat-long",
+        "a lat-long grid with the weights that make it exact, summed separably",
+        _on_product(fejer),
+        separable=True,
+    ),
+    Method(
+        "fibonacci",
+        "Fibonacci",
+        "points on a spiral, of equal weight",
+        _on_samples(lambda n, seed: fibonacci(n)),
+    ),
+    Method(
+        PAPER,
+        "jittered (paper)",
+        "the paper's: a random point in each of equal cells",
+        _on_samples(jittered),
+        random=True,
+    ),
+    Method(
+        "random",
+        "plain random",
+        "independent random points",
+        _on_samples(uniform_random),
+        random=True,
+    ),
+    Method(
+        "per-texel",
+        "per texel",
+        "the basis at every texel's centre, weighted by its solid angle",
+        _per_texel,
+        _is_image,
+        takes_samples=False,
+    ),
+    Method(
+        "half",
+        "half resolution",
+        "means of 2 x 2 texels first",
+        _reduced(2),
+        _divides(2),
+        takes_samples=False,
+        separable=True,
+    ),
+    Method(
+        "quarter",
+        "quarter resolution",
+        "means of 4 x 4 texels first",
+        _reduced(4),
+        _divides(4),
+        takes_samples=False,
+        separable=True,
+    ),
+)
+
+
+def method(name: str) -> Method:
+    """UsageError for a name that is not in the table."""
+    found = {each.name: each for each in METHODS}
+    if name not in found:
+        raise UsageError(f"unknown method {name!r}; there is: {', '.join(found)}")
+    return found[name]

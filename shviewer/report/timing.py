@@ -1,0 +1,87 @@
+"""Wall time: medians with their quartiles, of runs that take turns, since the machine drifts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TypeVar
+
+import numpy as np
+
+MOST_REPEATS = 101
+
+Name = TypeVar("Name", bound=Hashable)
+Work = Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Milliseconds: the median and the quartiles of so many repeats."""
+
+    median: float
+    low_quartile: float
+    high_quartile: float
+    repeats: int
+
+    @property
+    def spread(self) -> float:
+        """The distance of the quartiles over the median."""
+        return (self.high_quartile - self.low_quartile) / self.median if self.median else 0.0
+
+
+def summarise(milliseconds: list[float]) -> Timing:
+    """ValueError for no times at all."""
+    if not milliseconds:
+        raise ValueError("no times")
+    low, middle, high = np.quantile(milliseconds, (0.25, 0.5, 0.75))
+    return Timing(float(middle), float(low), float(high), len(milliseconds))
+
+
+def wall_milliseconds(work: Work) -> float:
+    start = perf_counter()
+    work()
+    return 1000 * (perf_counter() - start)
+
+
+def time_it(work: Work, *, budget: float, at_least: int = 5, warm_up: int = 1) -> Timing:
+    """The time of one piece of work. `budget`: seconds, passed only to reach `at_least` repeats."""
+    return time_interleaved({"": work}, budget=budget, at_least=at_least, warm_up=warm_up)[""]
+
+
+def time_interleaved(
+    works: Mapping[Name, Work],
+    *,
+    budget: float,
+    at_least: int = 5,
+    warm_up: int = 1,
+    before: Callable[[Name, int], object] | None = None,
+) -> dict[Name, Timing]:
+    """The times of all: A B C A B C ..., so that a slow moment of the machine hits all of them.
+
+    `budget`: seconds for all together, passed only to reach `at_least` repeats; each gets an equal share, so that fast work
+    is repeated more often, up to MOST_REPEATS. `before`(name, repeat) prepares a run and is not timed; repeat counts
+    from 0, warm-ups have -1.
+    """
+    for _ in range(warm_up):
+        for name, work in works.items():
+            if before is not None:
+                before(name, -1)
+            work()
+    times: dict[Name, list[float]] = {name: [] for name in works}
+    share = 1000 * budget / max(1, len(works))
+    waiting = dict(works)
+    start = perf_counter()
+    while waiting:
+        for name, work in waiting.items():
+            if before is not None:
+                before(name, len(times[name]))
+            times[name].append(wall_milliseconds(work))
+        late = perf_counter() - start >= budget
+        waiting = {
+            name: work
+            for name, work in waiting.items()
+            if len(times[name]) < at_least
+            or not (late or sum(times[name]) >= share or len(times[name]) >= MOST_REPEATS)
+        }
+    return {name: summarise(found) for name, found in times.items()}
