@@ -26,6 +26,7 @@ class Mutant(NamedTuple):
 
 
 BASIS, PROJECTION = "shviewer/harmonics/basis.py", "shviewer/harmonics/projection.py"
+SCATTERED = "shviewer/harmonics/scattered.py"
 
 MUTANTS = (
     Mutant(
@@ -63,9 +64,9 @@ MUTANTS = (
     ),
     Mutant(
         "divide by the weight",
-        PROJECTION,
-        "radiance(directions) * samples.weights",
-        "radiance(directions) / samples.weights",
+        SCATTERED,
+        "np.multiply(values.T, weights, out=",
+        "np.divide(values.T, weights, out=",
     ),
     Mutant(
         "4 pi/N on a theta grid",
@@ -86,9 +87,25 @@ MUTANTS = (
     ),
     Mutant(
         "float32 accumulation",
-        PROJECTION,
-        "coefficients = np.zeros((n_bands**2, 3))\n    block",
-        "coefficients = np.zeros((n_bands**2, 3), np.float32)\n    block",
+        SCATTERED,
+        "self.sums = np.zeros((2 * n_bands, 3 * n_bands))",
+        "self.sums = np.zeros((2 * n_bands, 3 * n_bands), np.float32)",
+    ),
+    Mutant(
+        "samples of the south as if in the north",
+        SCATTERED,
+        "np.multiply(self.values[0], sign, out=self.values[1])",
+        "self.values[1] = self.values[0]",
+    ),
+    Mutant("last block filled up with the one before", SCATTERED, "self.values[0, :, len(directions) :] = 0", "pass"),
+    Mutant(
+        "T(k) counted once for sin(k theta)/sin(theta)", SCATTERED, "    odd[..., 0] /= 2\n", "    odd[..., 1:] /= 2\n"
+    ),
+    Mutant(
+        "Fejer's last cosine",
+        "shviewer/harmonics/quadrature.py",
+        "np.arange(1, rows // 2 + 1)",
+        "np.arange(1, rows // 2)",
     ),
     Mutant(
         "half a texel off", PROJECTION, "(np.arange((height + 1) // 2) + 0.5)", "(np.arange((height + 1) // 2) + 0.0)"

@@ -1,7 +1,14 @@
-"""Where a function on the sphere is evaluated, and with what weight."""
+"""Where a function on the sphere is evaluated, and with what weight.
+
+Sources
+    [Green]     R. Green, "Spherical Harmonic Lighting: The Gritty Details", GDC 2003: jittered samples.
+    [Hannay]    J. H. Hannay, J. F. Nye, "Fibonacci numerical integration on a sphere", J. Phys. A 37, 11591 (2004).
+    [Waldvogel] J. Waldvogel, "Fast construction of the Fejer and Clenshaw-Curtis quadrature rules", BIT 46, 195 (2006).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import isqrt
@@ -9,6 +16,9 @@ from math import isqrt
 import numpy as np
 
 from shviewer.harmonics.basis import Array
+
+Radiance = Callable[[Array], Array]
+"""Directions (k, 3) -> linear RGB (k, 3)."""
 
 MAX_SAMPLES = 16_000_000
 """The most directions a rule may have: 512 MB of directions and weights."""
@@ -25,6 +35,7 @@ class DirectionSet:
 def jittered(n_samples: int, seed: int) -> DirectionSet:
     """The paper's stratified samples: one uniformly random point in each of side x side equal-area cells.
 
+    The paper's name is `SH_setup_spherical_samples`, without the basis it stores with them: `project_samples` needs none.
     side = floor(sqrt(n_samples)), so the set may be a little smaller than asked for. With (u, v) uniform in its cell
     the direction is theta = 2 acos(sqrt(1-u)), phi = 2 pi v [Green], whose cosine 1 - 2u is uniform: every cell
     covers the same solid angle and every sample weighs 4 pi / side**2.
@@ -32,11 +43,34 @@ def jittered(n_samples: int, seed: int) -> DirectionSet:
     check_samples(n_samples)
     side = isqrt(n_samples)
     jitter = np.random.default_rng(seed).random((2, side, side))
-    u = ((np.arange(side)[:, None] + jitter[0]) / side).ravel()
-    phi = (2 * np.pi * (np.arange(side) + jitter[1]) / side).ravel()
+    u = (np.arange(side)[:, None] + jitter[0]) / side
+    v = (np.arange(side) + jitter[1]) / side
+    return _equal_weights(u.ravel(), v.ravel())
+
+
+def uniform_random(n_samples: int, seed: int) -> DirectionSet:
+    """Independent points, uniform on the sphere: cosine 1 - 2u and azimuth 2 pi v of uniform (u, v)."""
+    check_samples(n_samples)
+    return _equal_weights(*np.random.default_rng(seed).random((2, n_samples)))
+
+
+def fibonacci(n_samples: int) -> DirectionSet:
+    """The golden spiral, [Hannay] for any number of points: no randomness, and no direction is preferred.
+
+    Point i = 0, ..., N-1 has the cosine 1 - (2i+1)/N, the middle of the i-th of N zones of equal area, and the azimuth
+    2 pi i/g, g = (1 + sqrt(5))/2. Each weighs 4 pi/N.
+    """
+    check_samples(n_samples)
+    i = np.arange(n_samples)
+    return _equal_weights((i + 0.5) / n_samples, i * ((np.sqrt(5) - 1) / 2) % 1)
+
+
+def _equal_weights(u: Array, v: Array) -> DirectionSet:
+    """Points of the equal-area map of the unit square: cosine 1 - 2u, azimuth 2 pi v."""
     radius = 2 * np.sqrt(u * (1 - u))
+    phi = 2 * np.pi * v
     directions = np.stack([radius * np.cos(phi), radius * np.sin(phi), 1 - 2 * u], axis=-1)
-    return DirectionSet(directions, np.full(side * side, 4 * np.pi / side**2))
+    return DirectionSet(directions, np.full(len(u), 4 * np.pi / len(u)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +89,14 @@ class ProductRule:
         """(columns,) radians, decreasing: the columns of a lat-long image."""
         return column_azimuths(self.n_columns)
 
+    def directions(self, rows: slice = slice(None)) -> Array:
+        """The points of some rows, row by row, (k, 3)."""
+        return directions_from_angles(self.theta[rows, None], self.phi).reshape(-1, 3)
+
     def direction_set(self, rows: slice = slice(None)) -> DirectionSet:
-        """The points of some rows, row by row."""
-        directions = directions_from_angles(self.theta[rows, None], self.phi)
+        """The same with their weights."""
         weights = np.repeat(self.row_weights[rows] * (2 * np.pi / self.n_columns), self.n_columns)
-        return DirectionSet(directions.reshape(-1, 3), weights)
+        return DirectionSet(self.directions(rows), weights)
 
 
 def gauss_legendre(n_samples: int) -> ProductRule:
@@ -70,6 +107,25 @@ def gauss_legendre(n_samples: int) -> ProductRule:
     check_samples(n_samples)
     rows = max(1, isqrt(n_samples // 2))
     return ProductRule(*_gauss_legendre_rows(rows), 2 * rows)
+
+
+def fejer(n_samples: int) -> ProductRule:
+    """About n_samples points: the texel centres of a lat-long image twice as wide as high, with Fejer's weights.
+
+    Its r = floor(sqrt(n_samples / 2)) rows are spaced equally and integrate polynomials in cos(theta) of degree r - 1, and
+    so every product of two functions of (r+1)//2 bands, exactly.
+    """
+    check_samples(n_samples)
+    rows = max(1, isqrt(n_samples // 2))
+    return ProductRule(*_fejer_rows(rows), 2 * rows)
+
+
+@lru_cache(maxsize=16)
+def _fejer_rows(rows: int) -> tuple[Array, Array]:
+    """Angles (i + 1/2) pi/rows and the weights of Fejer's first rule (rows,) [Waldvogel]; all are positive."""
+    theta = np.pi * (np.arange(rows) + 0.5) / rows
+    k = np.arange(1, rows // 2 + 1)
+    return theta, 2 / rows * (1 - np.cos(np.outer(theta, 2 * k)) @ (2 / (4 * k**2 - 1)))
 
 
 @lru_cache(maxsize=16)
@@ -108,6 +164,9 @@ def column_azimuths(n_columns: int) -> Array:
 
 def directions_from_angles(theta: Array, phi: Array) -> Array:
     """Unit vectors (..., 3) from the angle to +z and the azimuth from +x towards +y, both broadcast, in radians."""
-    theta, phi = np.broadcast_arrays(theta, phi)
     sine = np.sin(theta)
-    return np.stack([sine * np.cos(phi), sine * np.sin(phi), np.cos(theta)], axis=-1)
+    directions = np.empty((*np.broadcast_shapes(np.shape(theta), np.shape(phi)), 3))
+    np.multiply(sine, np.cos(phi), out=directions[..., 0])
+    np.multiply(sine, np.sin(phi), out=directions[..., 1])
+    directions[..., 2] = np.cos(theta)
+    return directions

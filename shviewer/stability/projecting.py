@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, evaluate_basis, index
-from shviewer.harmonics.projection import Radiance, project_image, project_samples
-from shviewer.harmonics.quadrature import DirectionSet
+from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.quadrature import DirectionSet, Radiance
+from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.zonal import Disc
 from shviewer.stability import exact
 from shviewer.stability.outcome import Case, largest

@@ -14,8 +14,8 @@ from shviewer.harmonics.metrics import (
     relative,
     squared_error,
 )
-from shviewer.harmonics.projection import project_samples
 from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, orient
 from shviewer.lights.lobes import Lobe, LobeLight
 

@@ -1,4 +1,4 @@
-"""What shviewer.harmonics.projection promises: the coefficients of samples, of rules and of images, and the way back."""
+"""What shviewer.harmonics.projection promises: the coefficients of rules and of images, and the way back."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.projection import project_image, project_product, project_samples
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre, jittered
+from shviewer.harmonics.projection import project_image, project_product
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import theta_series
 
@@ -152,23 +152,6 @@ def test_blocks_of_rows_do_not_show_in_a_product_projection(monkeypatch):
     assert_allclose(norm_again, norm_squared, rtol=0, atol=1e-14)
 
 
-def test_blocks_of_samples_do_not_show_in_a_projection(monkeypatch):
-    samples = jittered(1000, seed=0)
-    whole = project_samples(green, samples, 7)
-    monkeypatch.setattr(projection, "BLOCK_VALUES", 100 * 7**2)
-    sizes = []
-    again = project_samples(lambda d: sizes.append(len(d)) or green(d), samples, 7)
-    assert sizes == [100] * 9 + [61]
-    assert_allclose(again, whole, rtol=0, atol=1e-14)
-
-
-def test_scattered_samples_are_weighted_and_summed():
-    samples = jittered(300, seed=4)
-    values = np.random.default_rng(5).standard_normal((289, 3))
-    expected = scipy_basis(samples.directions, 6).T @ (values * samples.weights[:, None])
-    assert_allclose(project_samples(lambda _: values, samples, 6), expected, rtol=0, atol=1e-13)
-
-
 @pytest.mark.parametrize("n_bands", [1, 2, 3, 8, 33, 100])
 def test_a_band_limited_function_comes_back_from_synthesis_and_projection(n_bands):
     coefficients = random_coefficients(n_bands)
@@ -244,8 +227,6 @@ def test_synthesis_needs_the_coefficients_of_whole_bands(count):
 def test_more_bands_than_the_table_holds_are_refused():
     with pytest.raises(ValueError, match="513 bands: there must be 1 to 512"):
         theta_series(513)
-    with pytest.raises(ValueError, match="1401 bands: there must be 1 to 1400"):
-        project_samples(green, jittered(4, 0), 1401)
 
 
 def test_the_exact_projection_of_greens_light_has_his_signs_and_order():
@@ -254,11 +235,3 @@ def test_the_exact_projection_of_greens_light_has_his_signs_and_order():
     for channel in range(3):
         assert_allclose(coefficients[:, channel], GREEN_EXACT, rtol=0, atol=2e-5)
     assert_allclose(np.diag(norm_squared), np.full(3, 0.3 * np.pi), rtol=0, atol=1e-4)
-
-
-@pytest.mark.parametrize(("n_samples", "measured"), [(1000, 6.0e-3), (10_000, 6.5e-4), (100_000, 6.4e-5)])
-def test_jittered_projection_of_greens_light_converges_as_measured(n_samples, measured):
-    squares = [
-        ((project_samples(green, jittered(n_samples, seed), 4)[:, 0] - GREEN_EXACT) ** 2).mean() for seed in range(5)
-    ]
-    assert measured / 3 < np.sqrt(np.mean(squares)) < 3 * measured  # peers.md 2g, 20 runs

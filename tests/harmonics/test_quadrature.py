@@ -5,13 +5,36 @@ import pytest
 from harmonics.independent import scipy_basis
 from numpy.testing import assert_allclose, assert_array_equal
 
+from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import (
     MAX_SAMPLES,
     column_azimuths,
     directions_from_angles,
+    fejer,
+    fibonacci,
     gauss_legendre,
     jittered,
+    uniform_random,
 )
+from shviewer.harmonics.scattered import project_samples
+from shviewer.lights.light import find_light
+
+SAMPLE_COUNTS = (1000, 3162, 10_000, 31_623, 100_000)
+
+
+def smooth(directions):
+    """A light with derivatives of every order, of a few bands in effect."""
+    return np.exp(directions @ np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, -1]]))
+
+
+def convergence(sampler, seeds):
+    """Slope of log error over log samples: root mean square over seeds, coefficients of 5 bands and channels."""
+    exact, _ = project_product(smooth, gauss_legendre(2 * 40**2), 5)
+    errors = [
+        np.sqrt(np.mean([(project_samples(smooth, sampler(count, seed), 5) - exact) ** 2 for seed in range(seeds)]))
+        for count in SAMPLE_COUNTS
+    ]
+    return np.polyfit(np.log(SAMPLE_COUNTS), np.log(errors), 1)[0]
 
 
 def cell_coordinates(directions, side):
@@ -54,13 +77,69 @@ def test_jittered_samples_prefer_no_direction():
     assert_allclose(directions.T @ directions / len(directions), np.eye(3) / 3, rtol=0, atol=1e-3)
 
 
-def test_a_seed_repeats_its_samples_and_another_does_not():
-    first, again, other = (jittered(400, seed).directions for seed in (5, 5, 6))
+@pytest.mark.parametrize("sampler", [jittered, uniform_random])
+def test_a_seed_repeats_its_samples_and_another_does_not(sampler):
+    first, again, other = (sampler(400, seed).directions for seed in (5, 5, 6))
     assert_array_equal(first, again)
     assert np.abs(first - other).max() > 0.01
 
 
-@pytest.mark.parametrize("rule", [lambda n: jittered(n, seed=0), gauss_legendre])
+@pytest.mark.parametrize("sampler", [lambda n: uniform_random(n, seed=0), fibonacci])
+@pytest.mark.parametrize("n_samples", [1, 2, 3, 10_007])
+def test_random_and_spiral_points_are_as_many_as_asked_for_and_weigh_alike(sampler, n_samples):
+    samples = sampler(n_samples)
+    assert samples.directions.shape == (n_samples, 3)
+    assert_array_equal(samples.weights, np.full(n_samples, 4 * np.pi / n_samples))
+    assert_allclose(np.linalg.norm(samples.directions, axis=1), np.ones(n_samples), rtol=0, atol=1e-15)
+
+
+def test_random_points_are_uniform_and_independent():
+    directions = uniform_random(40_000, seed=3).directions
+    # sigma of a mean is sqrt(1/3)/200, of a second moment less: 5 of them
+    assert_allclose(directions.mean(axis=0), np.zeros(3), rtol=0, atol=0.015)
+    assert_allclose(directions.T @ directions / 40_000, np.eye(3) / 3, rtol=0, atol=0.01)
+    assert abs(np.corrcoef(directions[1:, 2], directions[:-1, 2])[0, 1]) < 0.03  # six sigma
+
+
+def test_points_of_the_spiral_are_a_golden_angle_apart_in_zones_of_equal_area():
+    x, y, z = fibonacci(500).directions.T
+    assert_allclose(z, 1 - (2 * np.arange(500) + 1) / 500, rtol=0, atol=1e-15)
+    golden = 2 * np.pi / ((1 + np.sqrt(5)) / 2)
+    turns = np.diff(np.arctan2(y, x)) / golden % (2 * np.pi / golden)
+    assert_allclose(turns, np.ones(499), rtol=0, atol=1e-12)  # the azimuth is rounded at 300 turns
+
+
+@pytest.mark.parametrize("n_samples", [100, 1000, 10_000])
+def test_no_two_points_of_the_spiral_are_close(n_samples):
+    directions = fibonacci(n_samples).directions
+    chosen = directions[:: n_samples // 100]
+    cosines = chosen @ directions.T
+    nearest = np.sqrt(2 - 2 * np.sort(cosines, axis=1)[:, -2])
+    assert nearest.min() * np.sqrt(n_samples) > 3  # 3.09 next to the poles; of random points 0.03 to 0.6
+
+
+def test_jittered_samples_of_a_smooth_light_err_as_one_over_their_number():
+    assert -1.1 < convergence(jittered, seeds=12) < -0.9  # -1.00 to -0.985 for three sets of seeds
+
+
+def test_random_samples_err_as_one_over_the_root_of_their_number():
+    assert -0.6 < convergence(uniform_random, seeds=12) < -0.4  # -0.52 to -0.49
+
+
+@pytest.mark.parametrize("n_samples", [1000, 10_000, 100_000])
+def test_the_spiral_errs_less_on_greens_light_than_jittered_samples(n_samples):
+    light = find_light("green")
+    exact = light.coefficients(9)
+    spiral = np.abs(project_samples(light.radiance, fibonacci(n_samples), 9) - exact).max()
+    jittered_best = min(
+        np.abs(project_samples(light.radiance, jittered(n_samples, seed), 9) - exact).max() for seed in range(5)
+    )
+    assert 5 * spiral < jittered_best  # 24, 130 and 220 times less on average
+
+
+@pytest.mark.parametrize(
+    "rule", [lambda n: jittered(n, seed=0), lambda n: uniform_random(n, seed=0), fibonacci, gauss_legendre, fejer]
+)
 @pytest.mark.parametrize("n_samples", [0, -5, MAX_SAMPLES + 1])
 def test_fewer_than_one_or_more_than_sixteen_million_samples_are_refused(rule, n_samples):
     with pytest.raises(ValueError, match=f"^{n_samples} samples: there must be 1 to 16000000$"):
@@ -76,9 +155,37 @@ def test_gauss_legendre_of_r_rows_integrates_products_of_two_functions_of_r_band
     assert_allclose(values.T @ (points.weights[:, None] * values), np.eye(rows**2), rtol=0, atol=1e-13)
 
 
+@pytest.mark.parametrize("rows", [1, 2, 3, 8, 15, 16, 31])
+def test_fejer_of_2n_minus_1_rows_integrates_products_of_two_functions_of_n_bands_exactly(rows):
+    points = fejer(2 * rows**2).direction_set()
+    n_bands = (rows + 1) // 2
+    values = scipy_basis(points.directions, n_bands + 1)
+    gram = values.T @ (points.weights[:, None] * values)
+    assert_allclose(gram[: n_bands**2, : n_bands**2], np.eye(n_bands**2), rtol=0, atol=1e-13)  # SciPy's rounding
+    assert np.abs(gram - np.eye(len(gram))).max() > 1e-4  # and no more bands than stated
+
+
+@pytest.mark.parametrize("rows", [1, 2, 3, 4, 70, 1001])
+def test_fejer_rows_are_the_texel_centres_of_an_image_and_their_weights_positive(rows):
+    rule = fejer(2 * rows**2)
+    assert_allclose(rule.theta, np.pi * (np.arange(rows) + 0.5) / rows, rtol=0, atol=1e-15)
+    assert rule.row_weights.min() > 0
+    solid_angles = np.cos(rule.theta - np.pi / rows / 2) - np.cos(rule.theta + np.pi / rows / 2)
+    assert_allclose(rule.row_weights, solid_angles, rtol=0.13)  # most at the poles
+
+
+@pytest.mark.parametrize("n_bands", [2, 5, 12])
+@pytest.mark.parametrize("sampling", [lambda n: fejer(2 * (2 * n - 1) ** 2), lambda n: gauss_legendre(2 * n**2)])
+def test_a_band_limited_light_is_projected_exactly_by_the_rule_that_is_just_large_enough(n_bands, sampling):
+    coefficients = np.random.default_rng(n_bands).standard_normal((n_bands**2, 3))
+    found, _ = project_product(lambda d: scipy_basis(d, n_bands) @ coefficients, sampling(n_bands), n_bands)
+    assert_allclose(found, coefficients, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("sampling", [gauss_legendre, fejer])
 @pytest.mark.parametrize(("n_samples", "rows"), [(1, 1), (7, 1), (8, 2), (17, 2), (18, 3), (10_000, 70)])
-def test_gauss_legendre_takes_the_largest_grid_within_the_samples(n_samples, rows):
-    rule = gauss_legendre(n_samples)
+def test_a_product_rule_takes_the_largest_grid_within_the_samples(sampling, n_samples, rows):
+    rule = sampling(n_samples)
     assert (len(rule.theta), rule.n_columns) == (rows, 2 * rows)
     assert rule.row_weights.sum() == pytest.approx(2, rel=1e-14, abs=0)
     assert rule.direction_set().weights.sum() == pytest.approx(4 * np.pi, rel=1e-14, abs=0)
@@ -90,6 +197,7 @@ def test_the_rows_of_a_rule_can_be_taken_in_parts():
     whole, parts = rule.direction_set(), [rule.direction_set(slice(k, k + 4)) for k in (0, 4, 8)]
     assert_array_equal(np.concatenate([part.directions for part in parts]), whole.directions)
     assert_array_equal(np.concatenate([part.weights for part in parts]), whole.weights)
+    assert_array_equal(np.concatenate([rule.directions(slice(0, 4)), rule.directions(slice(4, 9))]), whole.directions)
     assert_array_equal(whole.directions[:18], directions_from_angles(np.full(18, rule.theta[0]), rule.phi))
 
 

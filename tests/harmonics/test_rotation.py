@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import band_power
-from shviewer.harmonics.projection import project_samples
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.rotation import rotate
+from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap

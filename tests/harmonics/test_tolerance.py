@@ -14,8 +14,8 @@ from shviewer.harmonics.metrics import (
     split_half_estimate,
     squared_error,
 )
-from shviewer.harmonics.projection import project_samples
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.function import LAST_ROWS, MOVEMENT, FunctionLight
 from shviewer.lights.light import Light, find_light
 from shviewer.lights.lobes import Lobe, LobeLight

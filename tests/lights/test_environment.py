@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from shviewer.errors import LightError
 from shviewer.harmonics.metrics import squared_error
 from shviewer.harmonics.projection import project_image
-from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.decoders.limits import Limits
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap

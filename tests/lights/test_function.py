@@ -8,8 +8,8 @@ from harmonics.independent import random_directions, scipy_basis
 from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
-from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.function import FIRST_ROWS, MAP_ROWS, FunctionLight, load_function
 
 

@@ -9,8 +9,8 @@ from hdr_files import exr_file, hdr_file, random_texels
 from numpy.testing import assert_allclose
 
 from shviewer.errors import LightError
-from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap

@@ -1,0 +1,128 @@
+"""What projecting samples costs, against sphericart and a matrix product: python tests/benchmarks/sampling.py
+
+Every figure is the CPU time of one thread, the least of interleaved runs, since other programs can only add to it. Both start
+from directions, weights and the values of three channels and end with the coefficients. sphericart is run twice: on all
+samples at once, and in blocks that fit the cache; the ratio is to the faster of the two. "ns" is per sample and function.
+
+Goals: a ratio of at most 1 to sphericart on all samples for 3 to 32 bands; at most 200 MiB beside a million samples at 16
+bands; 10 000 evaluations projected by Gauss-Legendre within 0.5 ms up to 32 bands, not counting the light itself.
+
+sphericart is one of the extra `bench` (pip install -e '.[bench]'); without it only ours is shown.
+"""
+
+from __future__ import annotations
+
+import os
+import tracemalloc
+from collections.abc import Callable
+
+os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = os.environ["RAYON_NUM_THREADS"] = "1"
+os.environ.pop("OPENBLAS_CORETYPE", None)  # may be set to slow numpy down; read when numpy is first imported
+
+import numpy as np
+from measure import cpu_milliseconds, machine
+
+from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.quadrature import DirectionSet, Radiance, gauss_legendre, jittered
+from shviewer.harmonics.scattered import project_samples
+
+BANDS = (3, 4, 5, 6, 7, 8, 9, 12, 16, 24, 32)
+SAMPLES, REPEATS = 100_000, 15
+PEER_BLOCK = 2**18
+"""Basis values of one block, 2 MiB: about the fastest."""
+
+
+def least(candidates: dict[str, Callable[[], object]], repeats: int) -> dict[str, float]:
+    """Milliseconds of each candidate: A B C A B C ..., the least of `repeats` after a warm-up."""
+    for work in candidates.values():
+        work()
+    times: dict[str, list[float]] = {name: [] for name in candidates}
+    for _ in range(repeats):
+        for name, work in candidates.items():
+            times[name].append(cpu_milliseconds(work))
+    return {name: min(values) for name, values in times.items()}
+
+
+def recorded(values: np.ndarray) -> Radiance:
+    """A light that costs nothing: it hands out values in order, once."""
+    start = 0
+
+    def radiance(directions: np.ndarray) -> np.ndarray:
+        nonlocal start
+        start += len(directions)
+        return values[start - len(directions) : start]
+
+    return radiance
+
+
+def sphericart_peer(samples: DirectionSet, values: np.ndarray, n_bands: int, block: int) -> Callable[[], object]:
+    from sphericart import SphericalHarmonics
+
+    calculator = SphericalHarmonics(n_bands - 1)
+
+    def project() -> np.ndarray:
+        coefficients = np.zeros((n_bands**2, 3))
+        for start in range(0, len(values), block):
+            rows = slice(start, start + block)
+            basis = calculator.compute(samples.directions[rows])
+            coefficients += basis.T @ (values[rows] * samples.weights[rows, None])
+        return coefficients
+
+    return project
+
+
+def against_sphericart() -> None:
+    samples = jittered(SAMPLES, 0)
+    values = np.random.default_rng(0).random((len(samples.weights), 3))
+    print(f"\n{len(values)} samples; least of {REPEATS}")
+    print("bands   ours ms     ns   sphericart ms     ns   in blocks ms     ns   ratio to: all at once, the faster")
+    for n_bands in BANDS:
+        candidates: dict[str, Callable[[], object]] = {
+            "ours": lambda n_bands=n_bands: project_samples(recorded(values), samples, n_bands)
+        }
+        try:
+            candidates["whole"] = sphericart_peer(samples, values, n_bands, len(values))
+            candidates["blocks"] = sphericart_peer(samples, values, n_bands, max(64, PEER_BLOCK // n_bands**2))
+        except ImportError:
+            if n_bands == BANDS[0]:
+                print("sphericart is missing")
+        times = least(candidates, REPEATS)
+        per_value = 1e6 / (len(values) * n_bands**2)
+        line = f"{n_bands:>5} {times['ours']:9.2f} {times['ours'] * per_value:6.2f}"
+        if "whole" in times:
+            whole, blocks = times["whole"], times["blocks"]
+            line += f" {whole:15.2f} {whole * per_value:6.2f} {blocks:14.2f} {blocks * per_value:6.2f}"
+            line += f"{times['ours'] / whole:24.2f} {times['ours'] / min(whole, blocks):12.2f}"
+        print(line)
+
+
+def memory() -> None:
+    print("\na million samples, 16 bands")
+    samples = jittered(1_000_000, 0)
+    project_samples(np.abs, jittered(100, 0), 16)
+    milliseconds = least({"ours": lambda: project_samples(np.abs, samples, 16)}, 3)["ours"]
+    tracemalloc.start()
+    project_samples(np.abs, samples, 16)
+    peak = tracemalloc.get_traced_memory()[1] / 2**20
+    tracemalloc.stop()
+    print(f"{milliseconds:.0f} ms, {peak:.1f} MiB beside the samples (goal: 200)")
+
+
+def separable() -> None:
+    rule = gauss_legendre(10_000)
+    values = np.random.default_rng(0).random((len(rule.theta) * rule.n_columns, 3))
+    print(f"\nGauss-Legendre, {len(values)} evaluations of a light that costs nothing (goal: 0.5 ms)")
+    for n_bands in (3, 9, 16, 32):
+        times = least({"ours": lambda n_bands=n_bands: project_product(recorded(values), rule, n_bands)}, 200)
+        print(f"{n_bands:>5} bands {times['ours']:6.3f} ms")
+
+
+def main() -> None:
+    print(machine(), "- one thread")
+    against_sphericart()
+    memory()
+    separable()
+
+
+if __name__ == "__main__":
+    main()
