@@ -6,9 +6,11 @@ bands, and sampled once for its error figures. A band key then costs a sum of wh
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -30,8 +32,9 @@ from shviewer.harmonics.metrics import (
     split_half_estimate,
     squared_error,
 )
-from shviewer.harmonics.projection import project_product, project_samples
+from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light, built_in_lights, find_light
 from shviewer.lights.sun import Split, Sun, split_suns
@@ -48,6 +51,9 @@ MIN_ESTIMATE = 256
 
 HALF_SEED = 2**31
 """Added to the seed for the second, independent set of samples."""
+
+MOST_MEASUREMENTS = 128
+"""Per light, quantity and bands: more than the keys reach, of at most 1 KiB each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +73,26 @@ class Projection:
     def evaluation_noun(self) -> str:
         """What its evaluations are called."""
         return "samples" if self.method == "jittered" else "points"
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What one way to project a light cost, and how good it is: a few numbers, kept longer than the projection itself."""
+
+    method: str
+    samples: int
+    seed: int
+    words: str
+    """The method as `Projection` names it."""
+    milliseconds: float
+    """The least of all repetitions."""
+    repetitions: int
+    errors: Array = field(compare=False)
+    """Relative L2 error with the first n = 1 ... N bands, (N,); it follows from the other fields and the light."""
+
+    @property
+    def sampling(self) -> tuple[str, int, int]:
+        return self.method, self.samples, self.seed
 
 
 @dataclass(frozen=True)
@@ -204,9 +230,52 @@ def estimate_from_samples(state: ViewState) -> SampleEstimate:
     return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
 
 
-@remember(most=16)
 def project(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
     """Project a light; the irradiance of a sampled light comes from the samples of the light itself."""
+    found = _measured_projection(light, method, samples, seed, n_bands)
+    _known(light, n_bands).move_to_end((method, samples, seed))
+    return found
+
+
+def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
+    """What this session knows of the cost of projecting the light to `n_bands` bands, by method, samples and seed."""
+    return tuple(found for _, found in sorted(_known(light, n_bands).items())) if light in MEMORY else ()
+
+
+def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Measurement]:
+    known: OrderedDict[Any, Measurement] = MEMORY.results(
+        light, (Measurement, isinstance(light, IrradianceLight), n_bands)
+    )
+    return known
+
+
+def _measure(light: Light, sampling: tuple[str, int, int], projection: Projection) -> None:
+    """Add to what is known of the cost of this way to project."""
+    n_bands, shown = projection.n_bands, projection.coefficients
+    exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
+    errors = errors_by_band_count(light.products(), exact / light.unit, shown / light.unit)
+    known = _known(light, n_bands)
+    if isinstance(light, IrradianceLight) and sampling != BEST:  # the only time spent was that on the light itself
+        known[sampling] = replace(_known(light.source, n_bands)[sampling], errors=errors)
+    else:
+        before = known.get(sampling)
+        least = min(projection.milliseconds, before.milliseconds if before else np.inf)
+        repetitions = 1 + (before.repetitions if before else 0)
+        known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
+    if len(known) > MOST_MEASUREMENTS:
+        known.popitem(last=False)
+
+
+@remember(most=16)
+def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+    """A projection made, timed and measured."""
+    projection = _timed_projection(light, method, samples, seed, n_bands)
+    _measure(light, (method, samples, seed), projection)
+    return projection
+
+
+def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+    """A projection made and timed."""
     start = perf_counter()
     if isinstance(light, IrradianceLight) and method != "best":
         source = project(light.source, method, samples, seed, n_bands)

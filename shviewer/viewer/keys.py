@@ -115,6 +115,13 @@ BINDINGS = (
         {"S": scale_samples(4), "Shift+S": scale_samples(0.25)},
         lambda s: f"{s.samples}",
     ),
+    Binding(
+        "B",
+        LIGHT,
+        "time against error so far",
+        {"B": lambda s: replace(s, plane_visible=not s.plane_visible)},
+        lambda s: "shown" if s.plane_visible else "hidden",
+    ),
     Binding("Ctrl+R / F5", LIGHT, "read its file again", dict.fromkeys(("Ctrl+R", "F5"), reload)),
     Binding("Shift+drag", LIGHT, "turn the light", {}),
     Binding("drop a file", LIGHT, "open it", {}),
@@ -140,7 +147,7 @@ BINDINGS = (
     Binding(
         "H / ?", PROGRAM, "this help", dict.fromkeys(("H", "?"), lambda s: replace(s, help_visible=not s.help_visible))
     ),
-    Binding("Esc", PROGRAM, "close help, then quit", {"Esc": escape}),
+    Binding("Esc", PROGRAM, "close help, plane, then quit", {"Esc": escape}),
 )
 
 ACTIONS: Mapping[str, Action] = {key: action for binding in BINDINGS for key, action in binding.actions.items()}

@@ -1,4 +1,4 @@
-"""Captions, figures, band bars and the help sheet: one RGBA image as large as the frame, drawn when something changes.
+"""Captions, figures, band bars and the sheets over them: one RGBA image as large as the frame, drawn when something changes.
 
 What does not fit is left out, least important first: the hint, then the bars, then all figures but the relative error.
 Every piece reports its box, so that a click finds its bar and a test can see that nothing overlaps.
@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,25 +15,34 @@ from PIL import Image, ImageDraw, ImageFont
 
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.help_sheet import draw_help
+from shviewer.viewer.lettering import (
+    ACCENT,
+    FAINT,
+    GREY,
+    INK,
+    MIN_TYPE,
+    NEGATIVE,
+    RULE,
+    UNUSED,
+    WARNING,
+    Ink,
+    font,
+    grouped,
+    grouped_number,
+    percent,
+    radiance,
+    shortened,
+    whole_percent,
+)
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.plane import Plane, draw_plane
 from shviewer.viewer.state import describe_exposure, describe_muted, describe_window
-
-INK, GREY, FAINT, RULE = (236, 236, 240, 255), (168, 168, 178, 255), (122, 122, 132, 255), (62, 62, 68, 255)
-ACCENT, ACCENT_MUTED = (100, 160, 255, 255), (100, 160, 255, 110)
-NEGATIVE = (35, 98, 152, 255)
-"""What shaders/display.glsl makes of a luminance about a tenth of white below zero."""
-
-Ink = tuple[int, int, int, int]
-UNUSED = (104, 104, 114, 255)
-WARNING = (255, 196, 92, 255)
 
 SLOT_COUNTS = (10, 16, 32, 64, 128)
 """Bars shown: the smallest of these that holds the bands in use, so that a bar stays where it is while keys are pressed."""
 
-MIN_TYPE = 10
-"""Pixels; smaller type of the built-in face cannot be read."""
-
 HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
+NO_PLANE = "no room for time against error: enlarge the window, or B"
 
 
 @dataclass
@@ -44,15 +52,8 @@ class Overlay:
     image: NDArray[np.uint8]
     boxes: dict[str, Box] = field(default_factory=dict)
     bars: dict[int, Box] = field(default_factory=dict)
-
-
-@lru_cache(maxsize=64)
-def font(size: float) -> ImageFont.FreeTypeFont:
-    """Pillow's built-in face; its digits all have the same width. size: pixels."""
-    face = ImageFont.load_default(size)
-    if not isinstance(face, ImageFont.FreeTypeFont):
-        raise RuntimeError("this Pillow was built without FreeType; reinstall it from a wheel")
-    return face
+    plane: Plane | None = None
+    """The time-error plane, if it is shown; what is written in it is among the boxes, too."""
 
 
 def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "") -> Overlay:
@@ -64,10 +65,13 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     painter = _Painter(ImageDraw.Draw(sheet), composition)
     painter.captions(picture, timing)
     painter.figures(picture)
-    painter.hint(picture)
+    wanted = picture.state.plane_visible and not picture.state.help_visible
+    plane = draw_plane(sheet, picture, composition, painter.boxes.values()) if wanted else None
+    painter.boxes.update(plane.boxes if plane else {})
+    painter.hint(picture, NO_PLANE if wanted and not plane else "")
     if picture.state.help_visible:
         draw_help(sheet, picture.state, composition, opengl)
-    return Overlay(np.asarray(sheet), painter.boxes, painter.bars)
+    return Overlay(np.asarray(sheet), painter.boxes, painter.bars, plane)
 
 
 class _Painter:
@@ -135,12 +139,10 @@ class _Painter:
         projection = picture.projection
         method = projection.method
         if projection.evaluations is not None:
-            method = f"{method}, {_grouped(projection.evaluations)} {projection.evaluation_noun}"
-        time = (
-            f"{projection.n_bands} bands projected in {_grouped_number(projection.milliseconds)} ms" if timing else ""
-        )
+            method = f"{method}, {grouped(projection.evaluations)} {projection.evaluation_noun}"
+        time = f"{projection.n_bands} bands projected in {grouped_number(projection.milliseconds)} ms" if timing else ""
         far, below = at.width - at.margin, y + at.px(20)
-        names = [_shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
+        names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
         if any(self.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):
             self.text("description", at.margin, below, picture.light.description, 12, FAINT, "lm")
         else:
@@ -148,7 +150,7 @@ class _Painter:
         if self.text("method", far, y, method, 13, FAINT, "rm"):
             self.text("time", far, below, time, 12, FAINT, "rm")
         else:
-            both = f"{method}, {_grouped_number(projection.milliseconds)} ms" if time else method
+            both = f"{method}, {grouped_number(projection.milliseconds)} ms" if time else method
             self.text("method", far, below, both, 12, FAINT, "rm") or self.text(
                 "method", far, below, method, 12, FAINT, "rm"
             )
@@ -162,10 +164,10 @@ class _Painter:
         extremes = figures.extremes
         of_the_rest = " of rest" if picture.subject.suns else ""
         columns = (
-            ("relative_l2", _percent(figures.relative_l2, floor=figures.floor), f"relative L2 error{of_the_rest}"),
-            ("max_error", _radiance(extremes.max_error, extremes.peak), f"largest error{of_the_rest}"),
-            ("minimum", _radiance(extremes.minimum, extremes.peak), "minimum"),
-            ("negative_area", _percent(extremes.negative_area, 2), "of the sphere negative"),
+            ("relative_l2", percent(figures.relative_l2, floor=figures.floor), f"relative L2 error{of_the_rest}"),
+            ("max_error", radiance(extremes.max_error, extremes.peak), f"largest error{of_the_rest}"),
+            ("minimum", radiance(extremes.minimum, extremes.peak), "minimum"),
+            ("negative_area", percent(extremes.negative_area, 2), "of the sphere negative"),
         )
         x = at.margin
         for name, value, label in columns:
@@ -219,7 +221,7 @@ class _Painter:
                 if factor:
                     self.draw.rectangle((edge[0], min(kept, base), edge[2], base), fill=ACCENT)
             if numbers and used:
-                self.draw.text((middle, top - at.px(9)), _whole_percent(share), GREY, face, anchor="mm")
+                self.draw.text((middle, top - at.px(9)), whole_percent(share), GREY, face, anchor="mm")
             if band % step == 0:
                 ink = UNUSED if not used else FAINT if not factor else GREY
                 self.draw.text((middle, base + at.px(13)), str(band), ink, face, anchor="mm")
@@ -229,11 +231,11 @@ class _Painter:
             self.bars[band] = Box(middle - pitch / 2, base - tallest - at.px(16), middle + pitch / 2, base + at.px(20))
         self.boxes["bars"] = Box(left, base - tallest - at.px(16), last, base + at.px(20))
 
-    def hint(self, picture: Picture) -> None:
-        """A message, what was split off, or else the most useful keys; on the right the exposure."""
+    def hint(self, picture: Picture, remark: str = "") -> None:
+        """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
         at, state = self.at, picture.state
         y = at.hairline_y + at.px(104)
-        message = state.message or picture.subject.refusal
+        message = state.message or remark or picture.subject.refusal
         if message:
             face = self.face(13)
             text = message
@@ -263,55 +265,10 @@ def _describe_suns(picture: Picture) -> list[str]:
     phi = np.degrees(np.arctan2(sun.axis[1], sun.axis[0]))
     place = f"theta {theta:.1f}, phi {phi:.1f}"
     size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide"
-    colour = " ".join(_radiance(value, 0.0) for value in sun.irradiance)
+    colour = " ".join(radiance(value, 0.0) for value in sun.irradiance)
     count = "sun" if len(suns) == 1 else f"{len(suns)} suns, the first"
     return [
         f"{count} at {place}, {size}, irradiance {colour}; {unsplit}",
         f"{count} at {place}, {size}; {unsplit}",
         f"{count} at {place}, {size}",
     ]
-
-
-def _shortened(name: str, length: int) -> str:
-    """At most `length` letters, with dots in the middle."""
-    return name if len(name) <= length else f"{name[: length // 2 - 1]}...{name[len(name) - length // 2 + 2 :]}"
-
-
-def _percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
-    """A share of 1 in percent; one below the floor of its method, or too small for the digits, only says so."""
-    percent = 100 * share
-    if not np.isfinite(percent):
-        return "infinite"
-    if share < floor:
-        return f"< {100 * floor:.5f}".rstrip("0") + " %"
-    if percent == 0:
-        return "0 %"
-    if percent < 1e-4:
-        return "< 0.0001 %"
-    decimals = min(max(0, digits - 1 - int(np.floor(np.log10(percent) + 1e-9))), 4)
-    while percent < 100 and decimals < 4 and f"{percent:.{decimals}f}".startswith("100"):
-        decimals += 1
-    return f"{percent:.{decimals}f} %"
-
-
-def _whole_percent(share: float) -> str:
-    """A share over its bar: a bar is as high as it is beside the highest, so a small one says that it is small."""
-    return f"{100 * share:.0f}" if share >= 0.005 or share == 0 else "<1"
-
-
-def _radiance(value: float, peak: float) -> str:
-    """Three digits, with a power of ten where that is shorter; 0 below a millionth of the light's peak."""
-    if abs(value) <= 1e-6 * peak:
-        return "0"
-    if 1e-3 <= abs(value) < 1e5:
-        return f"{value:.{max(0, 2 - int(np.floor(np.log10(abs(value)))))}f}"
-    mantissa, exponent = f"{value:.2e}".split("e")
-    return f"{mantissa}e{int(exponent)}"
-
-
-def _grouped(count: int) -> str:
-    return f"{count:,}".replace(",", " ")
-
-
-def _grouped_number(value: float) -> str:
-    return f"{value:.2f}" if value < 10 else _grouped(round(value))

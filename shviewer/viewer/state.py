@@ -51,6 +51,8 @@ class ViewState:
     light_rotation: Quaternion = IDENTITY
     zoom: float = 1.0
     help_visible: bool = False
+    plane_visible: bool = False
+    """Show time against error of the light's projections so far, which no two runs agree on."""
     message: str = ""
     reloads: int = 0
     """Counts the wishes to read the light's file anew: the picture before is not that of the state after."""
@@ -178,8 +180,10 @@ def reload(state: ViewState) -> ViewState:
 
 
 def escape(state: ViewState) -> ViewState:
-    """Close the help, or else the window."""
-    return replace(state, help_visible=False) if state.help_visible else replace(state, closing=True)
+    """Close the help, or else the time-error plane, or else the window."""
+    if state.help_visible:
+        return replace(state, help_visible=False)
+    return replace(state, plane_visible=False) if state.plane_visible else replace(state, closing=True)
 
 
 def orbit(state: ViewState, right: float, up: float) -> ViewState:

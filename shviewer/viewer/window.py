@@ -25,6 +25,7 @@ from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
+from shviewer.viewer.plane import measured
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState, open_light, orbit, reload, rotate_light, toggle_band, with_bands, zoom
@@ -224,12 +225,16 @@ class Window:
         return f"reloaded {notes or light.name}"
 
     def _draw_overlay(self, composition: Composition) -> None:
-        """Anew only if something written in it changed: turning and zooming write nothing unless the help shows them."""
+        """Anew only if something written in it changed: turning and zooming write nothing unless the help shows them.
+
+        The time-error plane also changes with what has been measured.
+        """
         state = self.picture.state
         if not state.help_visible:
             home = ViewState()
             state = replace(state, camera=home.camera, light_rotation=home.light_rotation, zoom=home.zoom)
-        key = (state, composition.width, composition.height, composition.scale)
+        known = measured(self.picture) if state.plane_visible else ()
+        key = (state, known, composition.width, composition.height, composition.scale)
         if key != self.overlay_key:
             self.overlay_key = key
             self.overlay = draw_overlay(self.picture, composition, timing=True, opengl=self.renderer.version)

@@ -132,6 +132,27 @@ def test_help_opens_with_h_and_question_mark_and_escape_closes_it_before_the_win
     assert viewer.process.wait(PATIENCE) == 0
 
 
+def test_b_shows_time_against_error_of_what_was_measured_until_escape(start: Start) -> None:
+    viewer = start()
+    viewer.press("m", "frame")
+    viewer.press("b", "frame")
+    two, _ = viewer.saved_picture()
+    viewer.press("s", "frame")
+    three, _ = viewer.saved_picture()
+    viewer.press("Escape", "frame")
+    clear, described = viewer.saved_picture()
+    assert json.loads(described)["samples"] == 40_000
+    rows, columns = np.nonzero((three != clear).any(axis=2))
+    assert 400 < columns.min() < columns.max() < 880  # between the spheres, above the hairline
+    assert 230 < rows.min() < rows.max() < 522
+    orange = [(np.abs(picture.astype(int) - (240, 164, 66)).max(axis=2) < 8).sum() for picture in (clear, two, three)]
+    assert orange[0] == 0
+    assert orange[1] > 50  # one disc, and the one in the legend
+    assert orange[2] > orange[1] + 25  # one more
+    viewer.xdotool("key", "Escape")
+    assert viewer.process.wait(PATIENCE) == 0
+
+
 def test_pictures_are_numbered_and_never_overwritten(start: Start, tmp_path: Path) -> None:
     (tmp_path / "shviewer-green-001.png").write_text("kept")
     viewer = start()

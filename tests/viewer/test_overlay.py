@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.composition import Box, compose
-from shviewer.viewer.overlay import ACCENT, SLOT_COUNTS, WARNING, Overlay, _percent, _radiance, draw_overlay
+from shviewer.viewer.lettering import ACCENT, WARNING, percent, radiance
+from shviewer.viewer.overlay import SLOT_COUNTS, Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
@@ -260,7 +261,7 @@ def test_the_help_shows_present_values() -> None:
     ],
 )
 def test_a_share_has_three_digits_and_never_rounds_up_to_100(share: float, text: str) -> None:
-    assert _percent(share) == text
+    assert percent(share) == text
 
 
 @pytest.mark.parametrize(
@@ -281,4 +282,4 @@ def test_a_share_has_three_digits_and_never_rounds_up_to_100(share: float, text:
     ],
 )
 def test_a_radiance_has_three_digits_or_a_power_of_ten(value: float, text: str) -> None:
-    assert _radiance(value, 1e-6) == text
+    assert radiance(value, 1e-6) == text

@@ -59,7 +59,7 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5 U"
+        "Ctrl+R F5 U B"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -188,6 +188,7 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         light_rotation=camera.towards(10, 10),
         zoom=2.0,
         help_visible=True,
+        plane_visible=True,
         message="m",
         reloads=5,
         fullscreen=True,
@@ -223,6 +224,19 @@ def test_escape_closes_the_help_first_and_then_the_window() -> None:
         closed = press(helped, "Esc")
         assert (closed.help_visible, closed.closing) == (False, False)
         assert press(closed, "Esc").closing
+
+
+def test_b_shows_the_time_error_plane_and_escape_closes_it_after_the_help_and_before_the_window() -> None:
+    shown = press(START, "B")
+    assert shown == replace(START, plane_visible=True)
+    assert press(shown, "B") == START
+    helped = press(shown, "H")
+    without_help = press(helped, "Esc")
+    assert without_help == shown
+    closed = press(without_help, "Esc")
+    assert closed == START
+    assert not closed.closing
+    assert press(closed, "Esc").closing
 
 
 def test_wishes_to_the_window_are_no_part_of_the_picture() -> None:

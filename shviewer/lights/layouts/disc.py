@@ -94,10 +94,11 @@ class DiscLayout:
         return total
 
     def _beyond_the_rim(self, pixels: NDArray[np.float32], rows: Array, columns: Array) -> Array:
-        """Texels (k, 3); for centres at radius r > 1 the ones at 2 - r on the other side."""
+        """Texels (k, 3); for centres at radius r > 1 those near 2 - r on the other side whose own centres are inside."""
         right, down = ((2 * index + 1) / self.side - 1 for index in (columns, rows))
         radius = np.hypot(right, down)
-        folded = np.where(radius < 1, 1.0, np.minimum(1 - 2 / np.maximum(radius, 1), 0.0))
+        opposite = np.clip(2 - radius, 0, max(0.0, 1 - 1.42 / self.side)) / np.maximum(radius, 1)
+        folded = np.where(radius < 1, 1.0, -opposite)
         return np.asarray(pixels[self._texel(down * folded), self._texel(right * folded)], dtype=np.float64)
 
     # A quadrant: texels by their distance from the centre, down or up and sideways, from 0 to half.
