@@ -13,6 +13,7 @@ squares would leave float64, a light gives its products in a unit of its own, by
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -154,3 +155,15 @@ def split_half_estimate(
         return int(within[0]) + 1 if len(within) else None
 
     return SampleEstimate(count(0 * deviation), count(-2 * deviation), count(2 * deviation))
+
+
+def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
+    """Indices of (time, error) to which nothing is both as fast and as accurate, and in one of them better; by time.
+
+    Of equal points the first stands for all.
+    """
+    front: list[int] = []
+    for i in sorted(range(len(points)), key=lambda i: (points[i], i)):
+        if not front or points[i][1] < points[front[-1]][1]:
+            front.append(i)
+    return front

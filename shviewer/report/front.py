@@ -4,25 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from shviewer.harmonics.metrics import PARSEVAL_FLOOR
+from shviewer.harmonics.metrics import PARSEVAL_FLOOR, pareto_front
 from shviewer.report.experiments import BEST, PAPER, PAPER_SAMPLES, method
 from shviewer.report.measurement import Measurement
 from shviewer.report.subjects import MOST_BANDS, Subject
 from shviewer.report.tables import milliseconds, percent, thousands
-
-
-def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
-    """Indices of (time, error) to which nothing is both as fast and as accurate, and in one of them better; by time.
-
-    Of equal points the first stands for all.
-    """
-    front: list[int] = []
-    lowest = float("inf")
-    for i in sorted(range(len(points)), key=lambda i: (points[i], i)):
-        if points[i][1] < lowest:
-            front.append(i)
-            lowest = points[i][1]
-    return front
 
 
 def front_of(rows: Sequence[Measurement], accuracy: float = 0.0) -> list[Measurement]:

@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shviewer.harmonics.metrics import pareto_front
 from shviewer.report import reconstruction_rows as reconstruction
 from shviewer.report.experiments import METHODS
-from shviewer.report.front import pareto_front
 from shviewer.report.measurement import Measurement
 from shviewer.report.plot_marks import (
     INCHES,

@@ -14,6 +14,7 @@ from itertools import pairwise
 
 from PIL import Image, ImageDraw, ImageFont
 
+from shviewer.harmonics.metrics import pareto_front
 from shviewer.viewer.analysis import BEST, Measurement, measurements, sampling_of
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.lettering import ACCENT, FAINT, GREY, INK, MIN_TYPE, RULE, Ink, font, grouped_number, percent
@@ -54,15 +55,6 @@ class Plane:
     places: dict[Sampling, tuple[float, float]]
     front: list[Sampling]
     boxes: dict[str, Box] = field(default_factory=dict)
-
-
-def front(points: Sequence[tuple[float, float]]) -> list[int]:
-    """Indices of the (time, error) to which no other is both as fast and as accurate, the fastest first."""
-    found: list[int] = []
-    for i in sorted(range(len(points)), key=points.__getitem__):
-        if not found or points[i][1] < points[found[-1]][1]:
-            found.append(i)
-    return found
 
 
 def measured(picture: Picture) -> tuple[Measurement, ...]:
@@ -150,7 +142,7 @@ class _Drawing:
             if math.isfinite(self.errors[key])
         }
         keys = list(places)
-        best = front([(self.times[key], self.errors[key]) for key in keys])
+        best = pareto_front([(self.times[key], self.errors[key]) for key in keys])
         present = sampling_of(picture.state)
         self.plane = Plane(box, milliseconds, error, floor, present, places, [keys[i] for i in best])
         self.obstacles = [self._around(*place, self.radius + 1) for place in places.values()]

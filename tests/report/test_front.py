@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from shviewer.harmonics.metrics import pareto_front
 from shviewer.lights.light import find_light
-from shviewer.report.front import front_of, pareto_front, sentences
+from shviewer.report.front import front_of, sentences
 from shviewer.report.measurement import Measurement
 from shviewer.report.subjects import Subject, subject_of
 

@@ -22,7 +22,7 @@ from shviewer.viewer.log_axis import Axis
 from shviewer.viewer.memory import MEMORY, MOST_LIGHTS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.plane import LOOKS, Plane, front, measured
+from shviewer.viewer.plane import LOOKS, Plane, measured
 from shviewer.viewer.state import ViewState
 
 SIZES = [
@@ -245,12 +245,6 @@ def test_the_floor_is_the_error_that_the_metrics_give_for_the_best_way(n_bands: 
     at_floor = found.error.at(found.floor)
     assert found.places[BEST][1] == at_floor
     assert all(y <= at_floor for _, y in found.places.values())
-
-
-def test_the_front_of_a_made_up_set_is_that_which_nothing_beats() -> None:
-    points = [(5.0, 0.1), (1.0, 0.5), (2.0, 0.5), (3.0, 0.2), (4.0, 0.3), (9.0, 0.1)]
-    assert front(points) == [1, 3, 0]
-    assert front([]) == []
 
 
 def test_the_front_is_drawn_as_steps_to_the_best_way(monkeypatch: pytest.MonkeyPatch) -> None:
