@@ -9,8 +9,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -28,7 +27,7 @@ from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.picture_files import metadata, write_png
 from shviewer.viewer.renderer import Renderer
-from shviewer.viewer.screenshot import render_rgb
+from shviewer.viewer.screenshot import offscreen, render_rgb
 from shviewer.viewer.state import ViewState
 
 SECTION = "end to end"
@@ -120,7 +119,8 @@ def session_rows(
         return []
     start = ViewState(lights=(text,))
     works: dict[tuple[str, int], Work] = {}
-    with _Session.on(drawing.renderer) as session, tempfile.TemporaryDirectory() as folder:
+    with offscreen(drawing.renderer, FRAME) as target, tempfile.TemporaryDirectory() as folder:
+        session = _Session(drawing.renderer, target)
         works[PICTURE, start.n_bands] = lambda: session.show(start)
         works[SAVED, start.n_bands] = lambda: session.save(start, Path(folder) / "out.png")
         for n_bands in key_bands:
@@ -161,18 +161,6 @@ class _Session:
     def __init__(self, renderer: Renderer, target: moderngl.Framebuffer) -> None:
         self.renderer = renderer
         self.target = target
-
-    @classmethod
-    @contextmanager
-    def on(cls, renderer: Renderer) -> Iterator[_Session]:
-        texture = renderer.context.texture((FRAME.width, FRAME.height), 4)
-        target = renderer.context.framebuffer([texture])
-        try:
-            yield cls(renderer, target)
-        finally:
-            renderer.rest.use()
-            target.release()
-            texture.release()
 
     def upload(self, state: ViewState) -> None:
         picture = prepare(state)

@@ -6,8 +6,7 @@ Both are relative to the norm of the light, so that they compare: where they mee
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import moderngl
@@ -25,7 +24,7 @@ from shviewer.viewer.composition import compose
 from shviewer.viewer.layout import MAX_DIRECT_BANDS
 from shviewer.viewer.picture import MAP_SIZE, Picture, prepare
 from shviewer.viewer.renderer import Renderer
-from shviewer.viewer.screenshot import render_linear
+from shviewer.viewer.screenshot import offscreen, render_linear
 from shviewer.viewer.state import CAMERA_HOME, ViewState
 
 SECTION = "reconstruction"
@@ -77,7 +76,8 @@ def reconstruction_rows(
     if isinstance(drawing, str):
         times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=0)
         return _with_times(rows, stages, times)
-    with _Frame.on(drawing.renderer) as frame:
+    with offscreen(drawing.renderer, FRAME) as target:
+        frame = _Frame(drawing.renderer, target)
         for n_bands, stage in stages.items():
             rows |= {(method, n_bands): stage.row(method, error) for method, error in frame.errors(stage).items()}
             works |= {(method, n_bands): work for method, work in frame.works(stage).items()}
@@ -218,18 +218,6 @@ class _Frame:
         facing = np.sqrt((1 - right**2 - up**2).clip(min=0))
         self.inside = facing > NEAREST_RIM
         self.normals = np.stack([right, up, facing], axis=-1)[self.inside]
-
-    @classmethod
-    @contextmanager
-    def on(cls, renderer: Renderer) -> Iterator[_Frame]:
-        texture = renderer.context.texture((FRAME.width, FRAME.height), 4)
-        target = renderer.context.framebuffer([texture])
-        try:
-            yield cls(renderer, target)
-        finally:
-            renderer.rest.use()
-            target.release()
-            texture.release()
 
     def works(self, stage: _Stage) -> dict[str, Work]:
         works: dict[str, Work] = {MAKING: lambda: self.make_map(stage), CACHED: self.draw}

@@ -101,11 +101,18 @@ def _shape(composition: Composition) -> tuple[int, int, int]:
 
 def _read(renderer: Renderer, composition: Composition, dtype: str) -> bytes:
     """RGBA, bottom row first: the picture for "f1", its linear radiance for "f4"."""
+    with offscreen(renderer, composition, dtype) as target:
+        renderer.draw(target, composition, linear=dtype == "f4")
+        return target.read(components=4, dtype=dtype)
+
+
+@contextmanager
+def offscreen(renderer: Renderer, composition: Composition, dtype: str = "f1") -> Iterator[moderngl.Framebuffer]:
+    """A framebuffer of the composition's size, RGBA of that type."""
     texture = renderer.context.texture((composition.width, composition.height), 4, dtype=dtype)
     target = renderer.context.framebuffer([texture])
     try:
-        renderer.draw(target, composition, linear=dtype == "f4")
-        return target.read(components=4, dtype=dtype)
+        yield target
     finally:
         renderer.rest.use()  # moderngl would bind a released framebuffer again when it makes the next one
         target.release()

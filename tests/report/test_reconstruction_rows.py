@@ -27,6 +27,7 @@ from shviewer.report.subjects import Subject, subject_of
 from shviewer.stability.shader import Shader
 from shviewer.viewer.analysis import BEST, errors_of
 from shviewer.viewer.renderer import Renderer
+from shviewer.viewer.screenshot import offscreen
 
 NO_OPENGL = "GraphicsError: no OpenGL here"
 SHADER, CPU = {DIRECT, CACHED}, {SCATTERED, BASIS, MAP_64, MAP_32}
@@ -83,8 +84,8 @@ def test_an_error_in_the_coefficients_drawn_is_seen(green: Subject, renderer: Re
 
     stage = module._Stage(green, 5)
     brighter = replace(stage.direct, coefficients=1.01 * stage.coefficients)
-    with module._Frame.on(renderer) as frame:
-        found = frame._error(stage, brighter)
+    with offscreen(renderer, module.FRAME) as target:
+        found = module._Frame(renderer, target)._error(stage, brighter)
     kept = np.sqrt(1 - green.truncation[4] ** 2)
     assert found == pytest.approx(0.01 * kept, rel=0.1)  # on the part of the sphere that is compared
 
