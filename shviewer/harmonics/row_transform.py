@@ -23,8 +23,8 @@ FOLD_BANDS = 24
 BLOCK_ROWS = 64
 """Rows, or pairs of folded rows, in one product: what float32 sums before float64 takes over."""
 
-NARROW, NARROW_BLOCK_PAIRS = 1024, 32
-"""Its rounding averages out over the columns; with fewer than NARROW, fewer pairs are summed."""
+NARROW = 1024
+"""Columns. Float32's rounding averages out over them; where there are fewer, float64 is as fast and is taken instead."""
 
 SMALL_PRODUCT = 900_000
 """Multiplications; below a million OpenBLAS has kernels that read their operands where they are."""
@@ -76,6 +76,8 @@ def row_sums(values: Values, functions: RowFunctions, precision: Precision) -> t
     """
     rows, columns = values.shape[:2]
     halves = 1 if columns % 2 else 2
+    if columns < NARROW:
+        precision = np.float64
     flat = values.reshape(rows, halves, columns // halves * 3)
     sums = _sum_rows(flat, functions, precision)
     if precision is np.float32:
@@ -143,15 +145,14 @@ class _Pass:
         """The products of the first and last `count` rows, each row of the north folded with its mirror in the south."""
         width, n_bands = self.sums.shape[1:]
         rows = len(self.flat)
-        block = BLOCK_ROWS if self.flat.shape[1] * width >= 3 * NARROW else NARROW_BLOCK_PAIRS
-        height = min(block, count)
+        height = min(BLOCK_ROWS, count)
         step = _step(self.n_even, height, width)
         north, south = np.empty((2, 2, height, width), self.precision)
         total, difference = np.empty((2, height, step), self.precision)
         product = np.empty((step, n_bands), self.precision)
         split = self.n_even
-        for first in range(0, count, block):
-            pairs = slice(first, min(first + block, count))
+        for first in range(0, count, BLOCK_ROWS):
+            pairs = slice(first, min(first + BLOCK_ROWS, count))
             size = pairs.stop - pairs.start
             self._fold_halves(pairs, north[:, :size])
             self._fold_halves(slice(rows - pairs.stop, rows - pairs.start), south[:, size - 1 :: -1] if size else south)
