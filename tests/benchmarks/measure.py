@@ -30,13 +30,18 @@ def medians(
     candidates: Mapping[str, Callable[[], object]],
     repeats: int,
     clock: Callable[[Callable[[], object]], float] = wall_milliseconds,
+    before: Callable[[], object] = lambda: None,
 ) -> dict[str, float]:
-    """Milliseconds of each candidate: one warm-up, then A B C A B C ..., the median of `repeats`."""
+    """Milliseconds of each candidate: one warm-up, then A B C A B C ..., the median of `repeats`.
+
+    `before` runs before each, outside the clock, and gives all of them the same cache.
+    """
     for work in candidates.values():
         work()
     times: dict[str, list[float]] = {name: [] for name in candidates}
     for _ in range(repeats):
         for name, work in candidates.items():
+            before()
             times[name].append(clock(work))
     return {name: statistics.median(values) for name, values in times.items()}
 
