@@ -1,4 +1,8 @@
-"""The command line. What a mode needs is imported in its branch: --help and --version load neither numpy nor OpenGL."""
+"""The command line. What a mode needs is imported in its branch: --help and --version load neither numpy nor OpenGL.
+
+numpy's matrix products get one thread, unless the environment says otherwise: ours are too small for more, and threads that
+wait for each other on a busy machine take ten times as long.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +24,13 @@ if TYPE_CHECKING:
     from shviewer.viewer.state import ViewState
 
 
+THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit code. argparse itself exits with 2 on arguments it cannot read."""
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         if arguments[:1] == ["screenshot"]:

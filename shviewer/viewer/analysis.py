@@ -301,12 +301,14 @@ def _timed_projection(light: Light, method: str, samples: int, seed: int, n_band
 def _split(light: Light) -> Split | str:
     """The light and its suns apart, or why it has none."""
     try:
-        return split_suns(light)
+        split = split_suns(light)
     except LightError as error:
         return str(error)
+    MEMORY.belongs(split.rest, light)
+    return split
 
 
-@remember(most=1)
+@remember(most=2)
 def _irradiance(light: Light) -> Light:
     return IrradianceLight(light)
 

@@ -1,7 +1,7 @@
 """What is known of the lights used last: a light is forgotten as a whole, with everything that was computed for it.
 
 A bound per function would keep a light, and its image, alive for as long as any result of any function is; here the bound
-is on lights. The irradiance of a light belongs to that light.
+is on lights. The irradiance of a light belongs to that light, and so does what is left of it without its suns.
 """
 
 from __future__ import annotations
@@ -38,9 +38,15 @@ class Memory:
         self.most_bytes = most_bytes
         self._known: OrderedDict[Light, dict[object, Results]] = OrderedDict()
         self._names: dict[Hashable, Light] = {}
+        self._wholes: dict[Light, Light] = {}
+        """What a light that was made of another one is a part of."""
 
     def __contains__(self, light: Light) -> bool:
-        return _source(light) in self._known
+        return self._source(light) in self._known
+
+    def belongs(self, part: Light, whole: Light) -> None:
+        """Let `part` count as `whole`: it is remembered and forgotten with it."""
+        self._wholes[part] = self._source(whole)
 
     def named(self, name: Hashable) -> Light | None:
         """The light of that name, if it is still known."""
@@ -51,7 +57,7 @@ class Memory:
 
     def name(self, name: Hashable, light: Light) -> None:
         """Let `name` mean `light` from now on; the light that it meant before is forgotten."""
-        light, before = _source(light), self._names.get(name)
+        light, before = self._source(light), self._names.get(name)
         if before is not None and before is not light:
             self.forget(before)
         self._names[name] = light
@@ -59,12 +65,13 @@ class Memory:
 
     def results(self, light: Light, function: object) -> Results:
         """What is remembered of `function` for the light; to be added to."""
-        return self._use(_source(light)).setdefault(function, OrderedDict())
+        return self._use(self._source(light)).setdefault(function, OrderedDict())
 
     def forget(self, light: Light) -> None:
         """The light, its names and all results."""
-        light = _source(light)
+        light = self._source(light)
         self._known.pop(light, None)
+        self._wholes = {part: whole for part, whole in self._wholes.items() if whole is not light}
         for name in [name for name, meant in self._names.items() if meant is light]:
             del self._names[name]
 
@@ -76,6 +83,11 @@ class Memory:
     def clear(self) -> None:
         self._known.clear()
         self._names.clear()
+        self._wholes.clear()
+
+    def _source(self, light: Light) -> Light:
+        light = light.source if isinstance(light, IrradianceLight) else light
+        return self._wholes.get(light, light)
 
     def _use(self, light: Light) -> dict[object, Results]:
         if light not in self._known:
@@ -152,7 +164,3 @@ def _parts(item: object) -> Iterable[object]:
     if type(item).__module__.startswith("shviewer."):
         return vars(item).values() if hasattr(item, "__dict__") else ()
     return ()
-
-
-def _source(light: Light) -> Light:
-    return light.source if isinstance(light, IrradianceLight) else light

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 from lights.hdr_files import hdr_file, random_texels
 
@@ -262,3 +263,22 @@ def test_only_files_of_ones_own_are_decoded_in_isolation(image: Path, monkeypatc
         load_light(ViewState(lights=(text,), reading=Reading(isolated=True)))
         load_light(ViewState(lights=(text,)))  # isolation makes no other light of it
     assert asked == [("film_studio", False), (str(image), True)]
+
+
+def test_what_is_left_without_suns_belongs_to_its_light(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(MEMORY, "most_bytes", 1)  # so that any second light would drive the first one out
+    pixels = np.ones((64, 128, 3), np.float32)
+    pixels[10, 20] = 1e5
+    path = tmp_path / "sun.exr"
+    OpenEXR.File({}, {"RGB": pixels}).write(str(path))
+    state = state_of(path, split_sun=True)
+    first = prepare(state)
+    path.unlink()
+    for n_bands in (6, 7):
+        assert prepare(replace(state, n_bands=n_bands)).subject.light is first.subject.light
+        assert prepare(replace(state, n_bands=n_bands, quantity="irradiance")).light.source is first.subject.light
+    rest = weakref.ref(first.subject.light)
+    MEMORY.forget(first.subject.whole)
+    del first
+    gc.collect()
+    assert rest() is None
