@@ -9,6 +9,9 @@ from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
 from shviewer.harmonics.theta_series import azimuth_functions, theta_series
 
+BLOCK_VALUES = 2**14
+"""Directions times bands that are evaluated at a time, so that they stay in the cache."""
+
 STEP = 768
 """Values of a row in one product of a map."""
 
@@ -35,9 +38,15 @@ class Synthesis:
 
     def at(self, theta: Array, phi: Array) -> Array:
         """At scattered angles (k,), radians: (k, 3)."""
-        angle = phi[:, None] * np.arange(self.n_bands)
-        azimuth = np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
-        return np.asarray(np.einsum("kxm,km->kx", self._along_theta(theta).reshape(len(theta), 3, -1), azimuth))
+        values = np.empty((len(theta), 3))
+        block = max(64, BLOCK_VALUES // self.n_bands)
+        for start in range(0, len(theta), block):
+            rows = slice(start, start + block)
+            angle = phi[rows, None] * np.arange(self.n_bands)
+            azimuth = np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
+            along_theta = self._along_theta(theta[rows]).reshape(len(angle), 3, -1)
+            values[rows] = (along_theta @ azimuth[:, :, None])[..., 0]
+        return values
 
     def pole_to_pole(self, n_rows: int, n_columns: int) -> NDArray[np.float32]:
         """A map for the GPU, (n_rows, n_columns, 3) float32, rows from theta = 0 to pi, both included; 2e-7 of its peak off.

@@ -47,7 +47,7 @@ class Measurement:
     total_error: float | None = None
     """||light - reconstruction|| / ||light||: total^2 = truncation^2 + error^2 (1 - truncation^2)."""
     arithmetic_error: float | None = None
-    """What rounding adds where the sum is evaluated, relative to the peak."""
+    """What rounding adds where the sum is evaluated, over the light's L2 norm, as the errors beside it."""
 
     peak_mib: float | None = None
     """The most memory held at once, samples and result included, by a run of its own."""

@@ -129,6 +129,7 @@ def _peers(run: Run, budget: float) -> None:
 
 
 def _reconstruction(run: Run, drawing: Shader | str, budget: float) -> None:
+    from shviewer.report.enough_bands import where_bands_stop_paying
     from shviewer.report.reconstruction_rows import BANDS, reconstruction_rows
 
     quick = run.options.quick
@@ -144,7 +145,10 @@ def _reconstruction(run: Run, drawing: Shader | str, budget: float) -> None:
         "bands left out hold, more bands are of no use.",
         "",
         *rows_table(rows, ("left out", "arithmetic", "note")),
+        "",
     ]
+    for subject in chosen:
+        lines += [f"- {where_bands_stop_paying([row for row in rows if row.light == subject.name])}"]
     if isinstance(drawing, str):
         lines += ["", f"Nothing was drawn: {drawing}."]
     run.page.hosted["Reconstruction"] = "\n".join(lines)
