@@ -57,7 +57,6 @@ class Caps:
     def __init__(self, layout: Layout, height: int, width: int) -> None:
         self._layout = layout
         self._height, self._width = height, width
-        self._solid_angles = layout.solid_angles()
         top, left = (grid.ravel() for grid in np.mgrid[0:height:TILE, 0:width:TILE])
         bottom, right = np.minimum(top + TILE, height) - 1, np.minimum(left + TILE, width) - 1
         self._top, self._left = top, left
@@ -68,7 +67,7 @@ class Caps:
 
     def texels(self, rows: Indices, columns: Indices) -> Texels:
         """Those of the texels (k,) that show anything."""
-        solid_angles = self._solid_angles[rows, columns if self._solid_angles.shape[1] > 1 else 0]
+        solid_angles = self._layout.solid_angles_at(rows, columns)
         seen = solid_angles > 0
         rows, columns = rows[seen], columns[seen]
         return Texels(rows, columns, self._layout.centres(rows, columns), solid_angles[seen])

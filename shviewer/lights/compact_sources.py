@@ -38,6 +38,9 @@ ENERGY = 0.05
 LEVEL = 0.9
 MOST = 8
 
+BLOCK_VALUES = 2**18
+"""Texels weighed at a time."""
+
 TRIES = 32
 """So many bright spots are looked at before those taken out are counted and the rest weighed again."""
 
@@ -119,7 +122,6 @@ class CompactSources:
         self._solid_angles = layout.solid_angles().astype(np.float32)
         self._mean: NDArray[np.float32] = self.pixels @ np.full(3, 1 / 3, dtype=np.float32)
         self._mean *= self._solid_angles > 0
-        self._alone = np.zeros_like(self.pixels)
         self._caps = Caps(layout, *self.pixels.shape[:2])
 
     def take_all(self) -> tuple[list[Found], str]:
@@ -139,8 +141,7 @@ class CompactSources:
         peak = self._mean.max()
         if not peak > 0:
             return [], "nothing in it is above 0"
-        scaled = self._mean / peak
-        flux, squares = self._over_sphere(np.abs(scaled)), self._over_sphere(scaled * scaled)
+        flux, squares = self._flux_and_squares(peak)
         dimmest = np.sqrt(ENERGY * squares / np.pi) / chord_of(CAP)
         waiting = self._brighter_than(dimmest * peak)
         found: list[Found] = []
@@ -165,11 +166,15 @@ class CompactSources:
             waiting = waiting[chord(waiting, waiting[0]) > chord_of(CAP)]
         return found, why or "no texel is bright enough to hold so much in so small a cap"
 
-    def _over_sphere(self, values: NDArray[np.float32]) -> float:
-        """The integral of values (height, width), each 1 at most, to the few digits that a share needs."""
-        if self._solid_angles.shape[1] == 1:
-            return float(values.sum(axis=1) @ self._solid_angles[:, 0])
-        return float(np.einsum("rc,rc->r", values, self._solid_angles).sum(dtype=np.float64))
+    def _flux_and_squares(self, peak: np.float32) -> tuple[float, float]:
+        """The integrals of |mean| / peak and of its square, to the few digits that a share needs."""
+        flux = squares = 0.0
+        block = max(1, BLOCK_VALUES // self._mean.shape[1])
+        for start in range(0, len(self._mean), block):
+            scaled, weights = self._mean[start : start + block] / peak, self._solid_angles[start : start + block]
+            flux += float((np.abs(scaled) * weights).sum(axis=1).sum(dtype=np.float64))
+            squares += float((scaled * scaled * weights).sum(axis=1).sum(dtype=np.float64))
+        return flux, squares
 
     def _brighter_than(self, dimmest: float) -> Array:
         """Directions of the texels that are, the brightest first, (k, 3)."""
@@ -201,9 +206,9 @@ class CompactSources:
         """The disc whose bands 0 and 1 are those of what is taken, by the layout's exact integrals over its texels."""
         rows, columns = excess.texels.rows, excess.texels.columns
         scale = np.abs(excess.taken).max()
-        self._alone[rows, columns] = (excess.taken / scale).astype(np.float32)
-        bands = self._layout.project(self._alone, 2).mean(axis=1)
-        self._alone[rows, columns] = 0
+        alone = np.zeros(self.pixels.shape, dtype=np.float32)  # pages that stay zero take no memory
+        alone[rows, columns] = (excess.taken / scale).astype(np.float32)
+        bands = self._layout.project(alone, 2).mean(axis=1)
         vector = np.array([-bands[3], -bands[1], bands[2]]) / np.sqrt(3)  # in units of band 0
         length = float(np.linalg.norm(vector))
         smallest = float(excess.texels.solid_angles[excess.mean.argmax()]) / (4 * np.pi)

@@ -16,12 +16,15 @@ from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
-from shviewer.lights.layouts.layout import Layout
+from shviewer.lights.layouts.layout import Indices, Layout
 from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading, read_radiance_image
 
 MAX_RASTER_WIDTH = 8192
-"""Of the lat-long raster that an image in another layout is drawn from."""
+"""Of the lat-long raster that an image is drawn from which is no texture itself."""
+
+MAX_TEXTURE_SIDE = 16384
+"""What every desktop GPU of the last ten years takes."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -60,10 +63,11 @@ class EnvironmentLight:
         """The image in a file, or one layer of it. LightError if it cannot be read or has not the layout asked for."""
         image = read_radiance_image(path, reading, layer)
         try:
-            layout, notes = recognise(image.pixels, image.layout, reading.layout)
+            layout, notes = recognise(image.pixels, image.layout, reading.layout, image.encoding.startswith("JPEG"))
         except LightError as error:
             raise LightError(f"{path}: {error}") from None
-        return cls(image.pixels, layout, path.stem, image.notes + notes, image.encoding)
+        name = f"{path.stem}:{layer}" if layer else path.stem
+        return cls(image.pixels, layout, name, image.notes + notes, image.encoding)
 
     @property
     def description(self) -> str:
@@ -76,14 +80,14 @@ class EnvironmentLight:
 
     @cached_property
     def map(self) -> LatLongMap:
-        """The texels themselves where they are lat-long; else sampled from them, about as fine as they are."""
-        if self._is_lat_long:
+        """The texels themselves where they are lat-long and a texture; else sampled from them, about as fine as they are."""
+        if self._is_lat_long and max(self.pixels.shape) <= MAX_TEXTURE_SIDE:
             return LatLongMap(self.pixels)
         width = max(4, min(self.layout.raster_width, MAX_RASTER_WIDTH))
-        height = width // 2
+        height = min(len(self.pixels), MAX_RASTER_WIDTH // 2) if self._is_lat_long else width // 2
         texels = np.empty((height, width, 3), dtype=np.float32)
         theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
-        block = max(1, BLOCK_VALUES // (16 * width))
+        block = max(1, BLOCK_VALUES // (64 * width))
         for start in range(0, height, block):
             directions = directions_from_angles(theta[start : start + block, None], phi).reshape(-1, 3)
             texels[start : start + block] = self.layout.sample(self.pixels, directions).reshape(-1, width, 3)
@@ -129,11 +133,19 @@ class EnvironmentLight:
 
     @cached_property
     def _landmarks(self) -> Array:
-        seen = np.abs(self.pixels).max(axis=2)
-        if not self._is_lat_long:
-            seen[self.layout.solid_angles() == 0] = 0.0
-        row, column = np.unravel_index([int(seen.argmax())], seen.shape)
+        row, column = _brightest(self.pixels)
+        if not self.layout.solid_angles_at(row, column)[0]:
+            row, column = _brightest(np.where(self.layout.solid_angles()[..., None] > 0, self.pixels, np.float32(0)))
         return self.layout.centres(row, column)
 
     def radiance_map(self) -> LatLongMap:
         return self.map
+
+
+def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:
+    """Row and column, (1,) each, of the first texel with the largest absolute value."""
+    values = pixels.reshape(-1)
+    ends = sorted((int(values.argmax()), int(values.argmin())))
+    texel = max(ends, key=lambda i: abs(values[i])) // 3
+    row, column = divmod(texel, pixels.shape[1])
+    return np.array([row]), np.array([column])

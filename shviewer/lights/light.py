@@ -113,12 +113,25 @@ def _what_it_is(text: str) -> str:
     """What a path is that cannot be a light, and what to do; "" if there is nothing of that name."""
     path = Path(text)
     if not _exists(path):
-        return ""
+        return _what_the_colon_is(text)
     if path.is_dir():
         return "a directory; name one file in it"
     if path.suffix == ".py":
         return f"a Python file; name a function in it, such as {path.name}:light"
     return f"a file must end in .toml, {', '.join(IMAGE_SUFFIXES[:-1])} or {IMAGE_SUFFIXES[-1]}: convert it"
+
+
+def _what_the_colon_is(text: str) -> str:
+    """What is wrong with the part after a file's last colon; "" if there is none, or no file of a known kind before it."""
+    file, _, part = text.rpartition(":")
+    suffix = Path(file).suffix.lower()
+    if suffix == ".exr" and not part:
+        return "no layer is named after ':'; name one or leave out the ':'"
+    if suffix == ".py" and not part:
+        return f"no function is named after ':'; name one, such as {Path(file).name}:light"
+    if suffix in (*IMAGE_SUFFIXES, ".toml"):
+        return f"only .exr files have layers; leave out :{part}"
+    return ""
 
 
 def _unknown(text: str) -> str:

@@ -97,7 +97,7 @@ class Information:
     """Radiance, weighted by solid angle."""
     mean_luminance: float
     peak: float
-    """The largest |radiance| of a channel."""
+    """The radiance that is largest in magnitude in any channel, with its sign."""
     peak_direction: Triple
     """In the light's own frame, as all directions here."""
     peak_theta_phi_degrees: tuple[float, float]
@@ -148,12 +148,14 @@ def as_text(information: Information) -> str:
         ("radiance", f"{_number(values.minimum)} to {_number(values.maximum)} in any channel ({values.source})")
     )
     if size and not information.refused:
-        rows.append(("bad values", f"no NaN, no infinity, {values.negative_values or 'none'} negative"))
+        repaired = any(note.startswith("sanitised") for note in information.notes)
+        none = f"no NaN, no infinity, {values.negative_values or 'none'} negative"
+        rows.append(("bad values", "repaired, see note" if repaired else none))
     rows.append(("mean", f"{_numbers(information.mean)}, luminance {_number(information.mean_luminance)}"))
     rows += _dynamic_range(values)
     theta, phi = information.peak_theta_phi_degrees
-    place = f"x y z {' '.join(f'{component + 0.0:.4f}' for component in peak)}"
-    rows.append(("peak", f"{_number(information.peak)} at theta {theta:.2f}, phi {phi:.2f} degrees; {place}"))
+    place = f"x y z {' '.join(f'{component:z.4f}' for component in peak)}"
+    rows.append(("peak", f"{_number(information.peak)} at theta {theta:.2f}, phi {phi:z.2f} degrees; {place}"))
     rows.append(("irradiance up", _numbers(information.irradiance_up)))
     shares = " ".join(f"{100 * share:.2f}" for share in information.energy_share)
     rows.append(("energy, %", f"{shares} in bands 0 to {len(information.energy_share) - 1}; {information.method}"))
@@ -188,7 +190,7 @@ def _describe(text: str, reading: Reading) -> Information:
         values=values,
         mean=_triple(mean),
         mean_luminance=float(mean @ LUMINANCE),
-        peak=max(-values.minimum, values.maximum),
+        peak=0.0 + (values.maximum if values.maximum >= -values.minimum else values.minimum),
         peak_direction=_triple(peak),
         peak_theta_phi_degrees=_theta_phi(peak),
         irradiance_up=_triple(irradiance.radiance(np.array([[0.0, 0.0, 1.0]]))[0]),
@@ -220,7 +222,7 @@ def _sun(sun: Sun, total: float) -> SunInformation:
 def _theta_phi(direction: Array) -> tuple[float, float]:
     """Degrees."""
     x, y, z = direction
-    return float(np.degrees(np.arctan2(np.hypot(x, y), z))), float(np.degrees(np.arctan2(y, x)))
+    return float(np.degrees(np.arctan2(np.hypot(x, y), z))), float(np.degrees(np.arctan2(y, x))) + 0.0
 
 
 def _image_values(image: EnvironmentLight) -> tuple[Values, Array]:
@@ -256,7 +258,7 @@ def _grid_values(light: Light) -> tuple[Values, Array]:
 
 def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
     """blocks: radiance (k, 3) and solid angles (k,), which are 0 for extra places."""
-    minimum, maximum, brightest = np.inf, -np.inf, -np.inf
+    minimum, maximum, smallest, brightest = np.inf, -np.inf, np.inf, -np.inf
     negative, dark, lit = 0, 0.0, np.zeros((HIGHEST_STOP - LOWEST_STOP) * BINS_PER_STOP)
     for radiance, areas in blocks:
         if not len(radiance):
@@ -266,6 +268,7 @@ def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
         luminance = radiance @ LUMINANCE
         brightest = max(brightest, float(luminance.max()))
         above = luminance > 0
+        smallest = min(smallest, float(luminance.min(where=above, initial=np.inf)))
         dark += float(areas[~above].sum())
         bins = np.floor((np.log2(luminance[above]) - LOWEST_STOP) * BINS_PER_STOP).astype(np.int64)
         lit += np.bincount(bins.clip(0, len(lit) - 1), areas[above], len(lit))
@@ -273,7 +276,8 @@ def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
     darkest = None
     if total > 0:
         place = int(np.searchsorted(np.cumsum(lit), DARK_PERCENTILE * total))
-        darkest = float(2.0 ** (LOWEST_STOP + (place + 0.5) / BINS_PER_STOP))
+        middle = float(2.0 ** (LOWEST_STOP + (place + 0.5) / BINS_PER_STOP))
+        darkest = min(max(middle, smallest), brightest)
     return Values(
         minimum=minimum,
         maximum=maximum,
@@ -304,7 +308,7 @@ def _suns(information: Information) -> list[tuple[str, str]]:
     for sun in information.suns:
         theta, phi = sun.theta_phi_degrees
         share = f"{100 * sun.share_of_flux:.3g} % of the flux"
-        place = f"at theta {theta:.2f}, phi {phi:.2f}, {sun.width_degrees:.3g} deg wide"
+        place = f"at theta {theta:.2f}, phi {phi:z.2f}, {sun.width_degrees:.3g} deg wide"
         colour = " ".join(f"{value:.3g}" for value in sun.irradiance)
         rows.append(("sun", f"{share} {place}; irradiance {colour}"))
     return rows + (_bands("rest", information.bands_needed_without_suns) if rows else [])
@@ -331,7 +335,7 @@ def _bytes(count: int) -> str:
 
 
 def _number(value: float) -> str:
-    return f"{value:.4g}"
+    return f"{value:z.4g}"
 
 
 def _numbers(values: Triple) -> str:

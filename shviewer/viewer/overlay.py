@@ -143,10 +143,13 @@ class _Painter:
         time = f"{projection.n_bands} bands projected in {grouped_number(projection.milliseconds)} ms" if timing else ""
         far, below = at.width - at.margin, y + at.px(20)
         names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
+        words, said = describe_light(picture), False
         if any(self.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):
-            self.text("description", at.margin, below, picture.light.description, 12, FAINT, "lm")
+            said = any(self.text("description", at.margin, below, text, 12, FAINT, "lm") for text in words)
         else:
             any(self.text("light", at.margin, below, name, 15, GREY, "lm") for name in names)
+        if not said and "LDR" in words:
+            any(self.text("encoding", at.margin, line, "LDR", 12, FAINT, "lm") for line in (y, below))
         if self.text("method", far, y, method, 13, FAINT, "rm"):
             self.text("time", far, below, time, 12, FAINT, "rm")
         else:
@@ -156,23 +159,31 @@ class _Painter:
             )
 
     def figures(self, picture: Picture) -> None:
-        """Four numbers in fixed places, then a bar per band."""
+        """Four numbers in fixed places, each with the longest of its labels that fits there, then a bar per band."""
         at, figures = self.at, picture.figures
         y = at.hairline_y
         if 2 * at.margin < at.width:
             self.draw.rectangle((at.margin, y, at.width - at.margin, y + max(0, round(at.scale) - 1)), fill=RULE)
         extremes = figures.extremes
-        of_the_rest = " of rest" if picture.subject.suns else ""
+        relative: tuple[str, ...] = ("relative L2 error",)
+        largest: tuple[str, ...] = ("largest error",)
+        if picture.subject.suns:
+            relative = ("relative L2 error of rest", "L2 error of rest")
+            largest = ("largest error of rest", "largest of rest", *largest)
         columns = (
-            ("relative_l2", percent(figures.relative_l2, floor=figures.floor), f"relative L2 error{of_the_rest}"),
-            ("max_error", radiance(extremes.max_error, extremes.peak), f"largest error{of_the_rest}"),
-            ("minimum", radiance(extremes.minimum, extremes.peak), "minimum"),
-            ("negative_area", percent(extremes.negative_area, 2), "of the sphere negative"),
+            ("relative_l2", percent(figures.relative_l2, floor=figures.floor), relative),
+            ("max_error", radiance(extremes.max_error, extremes.peak), largest),
+            ("minimum", radiance(extremes.minimum, extremes.peak), ("minimum",)),
+            ("negative_area", percent(extremes.negative_area, 2), ("of the sphere negative",)),
         )
+        face, room = self.face(13), at.px(150) - at.px(6) - 1
         x = at.margin
-        for name, value, label in columns:
-            lines = ((name, y + at.px(36), value, 24, INK), (f"{name}_label", y + at.px(66), label, 13, GREY))
-            if self.texts(x, lines, "lm") and name == "negative_area":
+        for name, value, labels in columns:
+            for label in [text for text in labels[:-1] if face.getlength(text) < room] + [labels[-1]]:
+                lines = ((name, y + at.px(36), value, 24, INK), (f"{name}_label", y + at.px(66), label, 13, GREY))
+                if self.texts(x, lines, "lm"):
+                    break
+            if name == "negative_area" and name in self.boxes:
                 self.swatch(self.boxes[name])
             x += at.px(150)
         self.band_bars(picture)
@@ -235,7 +246,7 @@ class _Painter:
         """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
         at, state = self.at, picture.state
         y = at.hairline_y + at.px(104)
-        message = state.message or remark or picture.subject.refusal
+        message = state.message or remark or picture.subject.refusal.partition(";")[0]
         if message:
             face = self.face(13)
             text = message
@@ -253,6 +264,15 @@ class _Painter:
             any(self.text("hint", at.margin, y, text, 12, GREY if text is not HINT else FAINT, "lm") for text in hints)
 
 
+def describe_light(picture: Picture) -> list[str]:
+    """The light in a few words, with what must not be missed; the description alone is the first thing to go."""
+    light = picture.subject.whole
+    encoding = getattr(getattr(light, "source", light), "encoding", None) or ""
+    count = len(light.notes)
+    marks = ["LDR"] * ("(LDR)" in encoding) + [f"{count} note{'s' if count > 1 else ''}"] * (count > 0)
+    return [", ".join(words) for words in ([light.description, *marks], marks, marks[:1]) if words]
+
+
 def _describe_suns(picture: Picture) -> list[str]:
     """What the suns are and what it buys to split them off, the longest form first; none if there are none."""
     suns, before = picture.subject.suns, picture.needs_unsplit
@@ -263,7 +283,7 @@ def _describe_suns(picture: Picture) -> list[str]:
     sun = suns[0]
     theta = np.degrees(np.arctan2(np.hypot(sun.axis[0], sun.axis[1]), sun.axis[2]))
     phi = np.degrees(np.arctan2(sun.axis[1], sun.axis[0]))
-    place = f"theta {theta:.1f}, phi {phi:.1f}"
+    place = f"theta {theta:.1f}, phi {phi:z.1f}"
     size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide"
     colour = " ".join(radiance(value, 0.0) for value in sun.irradiance)
     count = "sun" if len(suns) == 1 else f"{len(suns)} suns, the first"

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from shviewer.lights.layouts.recognise import LAYOUTS
 from shviewer.lights.light import Light
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading
 from shviewer.viewer.camera import IDENTITY, Quaternion, turned_by_drag
@@ -14,6 +15,7 @@ from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 METHODS = ("best", "jittered", "gauss-legendre")
 QUANTITIES = ("radiance", "irradiance")
 WINDOWS = ("none", "hann", "lanczos", "gauss", "dering")
+LAYOUT_CHOICES = ("auto", *LAYOUTS)
 MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
 CAMERA_HOME = (78.0, 22.0)
 """Azimuth and elevation of the camera, degrees: both lobes of Green's light are in sight."""
@@ -61,6 +63,8 @@ class ViewState:
     screenshots: int = field(default=0, compare=False)
     fits: int = field(default=0, compare=False)
     """Counts the wishes for as many bands as the tolerance asks for, which depends on the light."""
+    layout_tried: str = field(default="", compare=False)
+    """The layout asked for last, from which the next follows even if the image could not have it; "" for the reading's."""
 
     @property
     def light(self) -> str | Light:
@@ -116,7 +120,19 @@ def toggle_cursor(state: ViewState) -> ViewState:
 
 
 def next_light(step: int) -> Action:
-    return lambda state: replace(state, light_index=(state.light_index + step) % len(state.lights))
+    return lambda state: replace(state, light_index=(state.light_index + step) % len(state.lights), layout_tried="")
+
+
+def next_layout(state: ViewState) -> ViewState:
+    """Through all layouts, for this image and those opened afterwards."""
+    last = state.layout_tried or state.reading.layout
+    layout = LAYOUT_CHOICES[(LAYOUT_CHOICES.index(last) + 1) % len(LAYOUT_CHOICES)]
+    return replace(state, reading=replace(state.reading, layout=layout), layout_tried=layout)
+
+
+def toggle_sanitizing(state: ViewState) -> ViewState:
+    """Of this image and those opened afterwards."""
+    return replace(state, reading=replace(state.reading, sanitize=not state.reading.sanitize))
 
 
 def next_window(state: ViewState) -> ViewState:
@@ -170,6 +186,7 @@ def reset(state: ViewState) -> ViewState:
         fullscreen=state.fullscreen,
         screenshots=state.screenshots,
         fits=state.fits,
+        layout_tried=state.layout_tried,
         tolerance=state.tolerance,
     )
 
@@ -207,7 +224,7 @@ def zoom(state: ViewState, steps: float) -> ViewState:
 def open_light(state: ViewState, light: str | Light) -> ViewState:
     """Show `light`, adding it to those that Left and Right go through."""
     lights = state.lights if light in state.lights else (*state.lights, light)
-    return replace(state, lights=lights, light_index=lights.index(light), message="")
+    return replace(state, lights=lights, light_index=lights.index(light), layout_tried="", message="")
 
 
 def describe_muted(state: ViewState) -> str:
@@ -232,6 +249,10 @@ def describe_window(state: ViewState) -> str:
         return "deringed" if state.window == "dering" else ""
     width = f" of {state.window_width:g}" if state.window_width else ""
     return f"{state.window.capitalize()} window{width}"
+
+
+def describe_sanitizing(state: ViewState) -> str:
+    return "repaired" if state.reading.sanitize else "as they are"
 
 
 def light_name(light: str | Light) -> str:

@@ -16,7 +16,8 @@ import glfw
 import moderngl
 
 from shviewer.errors import ShviewerError
-from shviewer.lights.light import Light
+from shviewer.lights.light import Light, split_light
+from shviewer.lights.radiance_files import Reading
 from shviewer.viewer.analysis import keep_light, needs, read_again, stamp_read
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.glfw_window import key_name, open_window
@@ -28,7 +29,17 @@ from shviewer.viewer.picture_files import metadata, write_numbered
 from shviewer.viewer.plane import measured
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import ViewState, open_light, orbit, reload, rotate_light, toggle_band, with_bands, zoom
+from shviewer.viewer.state import (
+    ViewState,
+    describe_sanitizing,
+    open_light,
+    orbit,
+    reload,
+    rotate_light,
+    toggle_band,
+    with_bands,
+    zoom,
+)
 from shviewer.viewer.watching import Watch
 
 IDLE_SECONDS = 0.25
@@ -63,6 +74,8 @@ class Window:
         self.handle = handle
         first = prepare(state)
         self.state = replace(state, reading=replace(state.reading, isolated=True))
+        message = self.state.message or _notes(first.light)
+        self.state = replace(self.state, message=message)
         self.picture: Picture = replace(first, state=self.state)
         self.watch = Watch() if watch else None
         self.looked_at = perf_counter()
@@ -169,8 +182,10 @@ class Window:
     def _keep(self, error: ShviewerError) -> None:
         """Stay with the picture there is, and say why."""
         keep_light(self.picture.state, self.picture.subject.whole)
-        wishes = {name: getattr(self.state, name) for name in ("fullscreen", "closing", "screenshots", "fits")}
-        self.state = replace(self.picture.state, message=str(error), **wishes)
+        names = ("fullscreen", "closing", "screenshots", "fits", "layout_tried")
+        wishes = {name: getattr(self.state, name) for name in names}
+        message = with_keys(str(error), self.state.light, self.picture.state.reading)
+        self.state = replace(self.picture.state, message=message, **wishes)
         self.picture = replace(self.picture, state=self.state)
         if self.verbose:
             print(f"kept {self.picture.light.name}: {error}", file=sys.stderr, flush=True)
@@ -179,8 +194,9 @@ class Window:
         """Before a projection that takes long, say so over the last picture."""
         state = self.state
         last = self.picture.state
-        new = (state.light, state.method, state.samples, state.reloads) != (
+        new = (state.light, state.reading, state.method, state.samples, state.reloads) != (
             last.light,
+            last.reading,
             last.method,
             last.samples,
             last.reloads,
@@ -210,6 +226,7 @@ class Window:
         if picture.light is not last.light:
             glfw.set_window_title(self.handle, f"shviewer - {picture.light.name}")
             message = self._news(picture.light, again=anew and self.state.light == last.state.light)
+            message = "; ".join(filter(None, (_reading_news(last.state, self.state), message)))
             if message and not self.state.message:
                 self.state = replace(self.state, message=message)
                 picture = replace(picture, state=self.state)
@@ -217,7 +234,7 @@ class Window:
 
     def _news(self, light: Light, *, again: bool) -> str:
         """What is worth saying of a light that was not shown before."""
-        notes = f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
+        notes = _notes(light)
         if not again:
             return notes
         if self.verbose:
@@ -324,6 +341,38 @@ class Window:
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
             self.change(reload(open_light(self.state, paths[0])))  # it may have been edited since it was last opened
+
+
+def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
+    """A refusal of `light`, and the keys that do what it recommends as an option of the command line.
+
+    With keys it names the file without its folder, so that they are not cut off.
+    """
+    keys = []
+    if "--sanitize" in refusal and not reading.sanitize:
+        keys.append("Z repairs")
+    if "--layout" in refusal:
+        keys.append("L changes the layout")
+    if not keys:
+        return refusal
+    path = split_light(light)[0] if isinstance(light, str) else None
+    if path is not None and refusal.startswith(f"{path}: "):
+        refusal = path.name + refusal.removeprefix(str(path))
+    return f"{refusal}; {', '.join(keys)}"
+
+
+def _notes(light: Light) -> str:
+    """All notes in a line; "" if there are none."""
+    return f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
+
+
+def _reading_news(before: ViewState, after: ViewState) -> str:
+    """How files are read from now on, if that changed."""
+    if before.reading.layout != after.reading.layout:
+        return f"layout {after.reading.layout}"
+    if before.reading.sanitize != after.reading.sanitize:
+        return f"bad values {describe_sanitizing(after)}"
+    return ""
 
 
 def file_stem(name: str) -> str:

@@ -3,9 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
+import OpenEXR
 import pytest
 from hdr_files import FORMAT, hdr_file, random_texels
 from numpy.testing import assert_allclose, assert_array_equal
+from PIL import Image
 
 from shviewer.errors import LightError
 from shviewer.harmonics.metrics import squared_error
@@ -13,7 +15,7 @@ from shviewer.harmonics.projection import project_image
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.decoders.limits import Limits
-from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.environment import MAX_TEXTURE_SIDE, EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.angular import AngularLayout
 from shviewer.lights.layouts.cube import HORIZONTAL_CROSS, OPENEXR, CubeLayout
@@ -191,6 +193,65 @@ def test_the_landmark_is_the_brightest_texel_that_shows_something(layout):
     row, column = np.argwhere(shown)[len(shown)]
     light.pixels[row, column] = 100
     assert light.integrand(light.landmarks()).tolist() == [[100.0] * 3]
+
+
+@pytest.mark.parametrize("layout", [CubeLayout(HORIZONTAL_CROSS, 5), AngularLayout(17)], ids=["cross", "disc"])
+def test_only_when_what_is_hidden_is_brightest_is_it_masked(layout, monkeypatch):
+    monkeypatch.setattr(type(layout), "solid_angles", lambda self: pytest.fail("the texels were masked"))
+    pixels = np.zeros((15, 20, 3) if layout.name == "cube" else (17, 17, 3), np.float32)
+    pixels[7, 8, 2] = -3
+    light = EnvironmentLight(pixels, layout)
+    assert light.integrand(light.landmarks()).tolist() == [[0, 0, -3]]
+
+
+@pytest.mark.parametrize(("height", "width"), [(4, 38400), (38400, 4), (60, 20000)])
+def test_a_lat_long_image_too_wide_or_high_for_a_texture_is_drawn_from_a_coarser_one(height, width):
+    columns = np.linspace(0, 2 * np.pi, width, endpoint=False)
+    rows = np.linspace(0, 1, height)[:, None, None]
+    pixels = (rows + np.sin(columns)[None, :, None] + np.arange(3)).astype(np.float32)
+    light = EnvironmentLight(LatLongMap(pixels))
+    assert light.map.texels.shape == (min(height, 4096), min(width, 8192), 3)
+    assert light.radiance_map() is light.map
+    directions = random_directions(2000)
+    assert_allclose(light.radiance(directions), LatLongMap(pixels).sample(directions), rtol=0, atol=2e-3)
+    assert_array_equal(light.coefficients(3), project_image(pixels, 3))
+    assert light.description == f"environment map, {width} x {height}"
+
+
+def test_a_map_of_38400_by_4_in_a_file_is_read_shown_and_measured(tmp_path):
+    path = tmp_path / "ring.hdr"
+    texels = random_texels(4, 38400)
+    path.write_bytes(hdr_file(texels))
+    light = EnvironmentLight.read(path, Reading(limits=Limits(side=40000)))
+    assert max(light.map.texels.shape) <= MAX_TEXTURE_SIDE
+    assert_array_equal(light.coefficients(4), project_image(light.pixels, 4))
+    row, column = np.argwhere(light.pixels == light.pixels.max())[0][:2]
+    assert_array_equal(light.landmarks(), light.layout.centres(np.array([row]), np.array([column])))
+    assert light.pixels.min() <= light.map.texels.min() <= light.map.texels.max() <= light.pixels.max()
+
+
+def test_a_map_with_a_side_that_fits_is_its_own_raster():
+    pixels = np.zeros((2, MAX_TEXTURE_SIDE, 3), np.float32)
+    assert EnvironmentLight(pixels).map.texels is pixels
+
+
+def test_a_layer_is_part_of_the_name(tmp_path):
+    path = tmp_path / "passes.exr"
+    values = np.full((4, 8), 2.0, np.float32)
+    channels = {**{f"spec.{c}": values for c in "RGB"}, **dict.fromkeys("RGB", values / 2)}
+    OpenEXR.File({"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}, channels).write(str(path))
+    assert EnvironmentLight.read(path).name == "passes"
+    spec = EnvironmentLight.read(path, layer="spec")
+    assert (spec.name, spec.pixels.max()) == ("passes:spec", 2)
+
+
+def test_a_jpeg_of_a_probe_is_an_angular_map(tmp_path):
+    path = tmp_path / "probe.jpg"
+    x = (2 * np.arange(256) + 1) / 256 - 1
+    shade = 0.5 + 0.4 * np.sin(9 * x)[:, None, None] * np.cos(7 * x)[None, :, None] * np.float32([1, 0.5, -1])
+    shade[np.hypot(x, x[:, None]) > 1] = 0.3
+    Image.fromarray((255 * shade).astype(np.uint8)).save(path, quality=85)
+    assert EnvironmentLight.read(path).layout == AngularLayout(256)
 
 
 def test_the_description_names_the_layout_unless_it_is_lat_long():

@@ -248,7 +248,17 @@ def test_centres_are_those_of_the_definition_and_lie_in_their_texels(layout):
 # --- how large they are
 
 
-@named([*EVERY, *all_layouts(64), LatLongLayout(4, 38400), AngularLayout(1000), MirrorBallLayout(1001)])
+@named(
+    [
+        *EVERY,
+        *all_layouts(64),
+        LatLongLayout(4, 38400),
+        AngularLayout(511),
+        AngularLayout(512),
+        AngularLayout(1000),
+        MirrorBallLayout(1001),
+    ]
+)
 def test_solid_angles_add_up_to_the_sphere(layout):
     angles = layout.solid_angles()
     total = angles.sum() * (layout.width if isinstance(layout, LatLongLayout) else 1)
@@ -264,6 +274,13 @@ def test_the_solid_angle_of_every_texel_is_what_small_cells_say(layout):
     for row, column in np.random.default_rng(1).integers([0, 0], angles.shape, (12, 2)):
         _, area = cells(layout, row, column, fine)
         assert_allclose(area.sum(), angles[row, column], rtol=2e-3, atol=2e-3 * 4 * np.pi / angles.size)
+
+
+@named([*EVERY, CubeLayout(VERTICAL_CROSS, 33), AngularLayout(600), MirrorBallLayout(601)])
+def test_the_solid_angles_of_some_texels_are_those_of_all(layout):
+    angles = solid_angles(layout)
+    rows, columns = (a.ravel()[:: 1 + angles.size // 5000] for a in np.indices(angles.shape))
+    assert_array_equal(layout.solid_angles_at(rows, columns), angles[rows, columns])
 
 
 # --- what they add up to
@@ -328,6 +345,13 @@ def test_no_band_count_changes_the_lower_bands(layout):
     pixels = np.random.default_rng(5).random((*shape(layout), 3)).astype(np.float32)
     tolerance = 1e-8 if layout.name == "mirror-ball" else 1e-13
     assert_allclose(layout.project(pixels, 9), layout.project(pixels, 40)[:81], rtol=0, atol=tolerance)
+
+
+def test_a_mirror_ball_is_right_at_many_bands():
+    """To 1e-8 of the largest coefficient, where one of its tiles is as wide as many periods of the highest band."""
+    pixels = np.random.default_rng(5).random((300, 300, 3)).astype(np.float32)
+    coefficients, finer = (MirrorBallLayout(300).project(pixels, n)[: 64**2] for n in (64, 80))
+    assert np.abs(coefficients - finer).max() < 1e-8 * np.abs(finer).max()
 
 
 def test_texels_outside_the_disc_do_not_count():
@@ -411,11 +435,33 @@ def cross(rows, columns, empty, size=3, colour=0.0):
     return pixels
 
 
-def disc(side, colour=0.0):
-    """What a converter makes: texels whose centres are outside are empty."""
+def disc(side, colour=0.0, blur=0.0, noise=0.0):
+    """What a converter makes: texels whose centres are outside are empty, or mixed up to `blur` texels on."""
     pixels = image(side, side)
     x = (2 * np.arange(side) + 1) / side - 1
-    pixels[np.hypot(x, x[:, None]) > 1] = colour
+    beyond = (np.hypot(x, x[:, None])[..., None] - 1) * side / 2
+    share = np.clip(1 - beyond / blur, 0, 1) if blur else beyond <= 0
+    empty = colour + noise * np.random.default_rng(13).uniform(-1, 1, pixels.shape)
+    return (pixels * share + empty * (1 - share)).astype(np.float32)
+
+
+def bleeding(pixels, texels, rows, columns, empty):
+    """A cross whose empty cells take colour from their neighbours, `texels` deep."""
+    size = len(pixels) // rows
+    pixels = pixels.copy()
+    for row, column in empty:
+        cell = pixels[row * size : (row + 1) * size, column * size : (column + 1) * size]
+        border = np.ones(cell.shape[:2], dtype=bool)
+        border[texels : size - texels, texels : size - texels] = False
+        cell[border] = 0.4
+    return pixels
+
+
+def night(height, width, noise, lamps):
+    """Dark, noisy, with some lamps."""
+    random = np.random.default_rng(14)
+    pixels = (noise * random.random((height, width, 3))).astype(np.float32)
+    pixels[random.integers(height // 3, height * 2 // 3, lamps), random.integers(0, width, lamps)] = 100
     return pixels
 
 
@@ -459,6 +505,49 @@ def test_layouts_are_recognised(pixels, stated, wanted, expected, note):
     assert layout.name in LAYOUTS
     assert (note in " ".join(notes)) if note else notes == ()
     assert all("\n" not in line for line in notes)
+
+
+@pytest.mark.parametrize(
+    ("pixels", "lossy", "layout"),
+    [
+        (disc(64, blur=1), False, AngularLayout),
+        (disc(64, 0.5, blur=2), False, AngularLayout),
+        (disc(64, blur=6), False, LatLongLayout),
+        (disc(64, 0.5, noise=0.003), False, AngularLayout),
+        (disc(64, 0.5, noise=0.05), False, LatLongLayout),
+        (disc(256, 0.2, blur=20, noise=0.003), True, AngularLayout),
+        (disc(256, 0.2, blur=20, noise=0.003), False, LatLongLayout),
+        (bleeding(cross(4, 3, VERTICAL_EMPTY, 32), 2, 4, 3, VERTICAL_EMPTY), False, CubeLayout),
+        (bleeding(cross(4, 3, VERTICAL_EMPTY, 32), 3, 4, 3, VERTICAL_EMPTY), False, LatLongLayout),
+        (bleeding(cross(3, 4, HORIZONTAL_EMPTY, 64), 16, 3, 4, HORIZONTAL_EMPTY), True, CubeLayout),
+        (bleeding(cross(3, 4, HORIZONTAL_EMPTY, 64), 17, 3, 4, HORIZONTAL_EMPTY), True, LatLongLayout),
+    ],
+)
+def test_what_shows_nothing_may_be_blurred_at_its_border_and_a_little_noisy(pixels, lossy, layout):
+    assert isinstance(recognise(pixels, None, "auto", lossy)[0], layout)
+
+
+@pytest.mark.parametrize("lossy", [False, True])
+@pytest.mark.parametrize(
+    "pixels",
+    [
+        *(image(side, side) for side in (2, 3, 16, 100)),
+        image(96, 128),
+        night(64, 64, 1e-3, 300),
+        night(256, 256, 1e-3, 5000),
+        night(256, 256, 1e-3, 20000),
+        night(256, 256, 0, 300),
+        night(96, 128, 1e-3, 300),
+        night(128, 96, 0, 300),
+        np.zeros((64, 64, 3), np.float32),
+        np.zeros((96, 128, 3), np.float32),
+    ],
+)
+def test_a_full_image_is_neither_disc_nor_cross_however_dark_and_noisy(pixels, lossy):
+    layout, (note,) = recognise(pixels, None, "auto", lossy)
+    assert layout == LatLongLayout(*pixels.shape[:2])
+    if len(pixels) == pixels.shape[1]:
+        assert "--layout angular or mirror-ball" in note
 
 
 @pytest.mark.parametrize(

@@ -131,6 +131,23 @@ def test_a_file_of_another_kind_is_told_the_kinds(tmp_path, name, said):
     assert refusal(str(path)) == f"unknown light {str(path)!r}: {said}"
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("ldr.png:x", "only .exr files have layers; leave out :x"),
+        ("sky.HDR:diffuse", "only .exr files have layers; leave out :diffuse"),
+        ("scene.toml:", "only .exr files have layers; leave out :"),
+        ("parts.exr:", "no layer is named after ':'; name one or leave out the ':'"),
+        ("sky.py:", "no function is named after ':'; name one, such as sky.py:light"),
+    ],
+)
+def test_a_colon_that_names_nothing_is_told_what_it_could_name(tmp_path, text, said):
+    path = tmp_path / text
+    assert refusal(text) == f"unknown light {text!r}: {said}"
+    (tmp_path / text.rpartition(":")[0]).write_bytes(b"")
+    assert refusal(str(path)) == f"unknown light {str(path)!r}: {said}"
+
+
 @pytest.mark.parametrize("text", ["a" * 300, "a" * 300 + ".py:dusk"], ids=["name", "function"])
 def test_a_name_longer_than_any_file_may_have_is_one_line(text):
     refusal(text)

@@ -154,6 +154,16 @@ def test_an_image_with_nan_is_described_as_it_would_be_repaired_and_the_refusal_
     assert describe(text, Reading(sanitize=True)).refused is None
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -1.0])
+def test_what_was_repaired_is_not_said_never_to_have_been(tmp_path: Path, pixels: Pixels, bad: float) -> None:
+    clean, mended = write_exr(tmp_path / "clean.exr", pixels), tmp_path / "mended.exr"
+    pixels[2, 3, 0] = bad
+    said = as_text(describe(write_exr(mended, pixels), Reading(sanitize=True)))
+    assert re.search(r"bad values +repaired, see note\n", said)
+    assert re.search(r"note +sanitised: ", said)
+    assert re.search(r"bad values +no NaN, ", as_text(describe(clean, Reading(sanitize=True))))
+
+
 def test_what_no_repair_can_help_is_refused_with_the_first_reason(tmp_path: Path) -> None:
     (tmp_path / "text.hdr").write_text("no image")
     with pytest.raises(LightError, match=r"text\.hdr"):
@@ -168,7 +178,39 @@ def test_a_black_light_has_neither_range_nor_bands(tmp_path: Path) -> None:
     assert found.values.dynamic_range_stops is found.values.darkest is None
     assert set(found.energy_share) == {0.0}
     assert "black             100 %" in as_text(found)
+    assert re.search(r"peak +0 at", as_text(found))
+    assert not re.search(r"-0(\.0*)?(?![.\d])", as_text(found))
     json.dumps(as_json_object(found), allow_nan=False)
+
+
+@pytest.mark.parametrize("level", [0.7, 991.0, 1000.0, 1023.0])
+def test_the_darkest_is_never_outside_of_what_there_is(tmp_path: Path, level: float) -> None:
+    """Of one luminance, whatever its place in the bin of a thirty-second of a stop."""
+    values = describe(write_exr(tmp_path / "even.exr", np.full((4, 8, 3), level, np.float32)), DEFAULT_READING).values
+    assert values.darkest == values.brightest_luminance == pytest.approx(level, rel=1e-7)  # float32
+    assert values.dynamic_range_stops == 0
+
+
+def test_the_range_of_a_sun_in_a_sky_begins_at_the_sky() -> None:
+    values = describe("sun-sky", DEFAULT_READING).values
+    assert values.darkest == pytest.approx(1000, rel=1e-9)
+
+
+def test_a_negative_peak_keeps_its_sign(tmp_path: Path, pixels: Pixels) -> None:
+    pixels[5, 6, 2] = -2000
+    found = describe(write_exr(tmp_path / "sky.exr", pixels), DEFAULT_READING)
+    assert found.peak == -2000
+    assert re.search(r"peak +-2000 at", as_text(found))
+
+
+def test_no_angle_is_minus_zero(tmp_path: Path) -> None:
+    path = tmp_path / "ahead.toml"
+    lobe = '[[lobe]]\nprofile = "disc"\nradiance = 5e4\nhalf_angle_degrees = 0.3\naxis = [1, -1e-9, 0]\n'
+    path.write_text(lobe + '[[lobe]]\nprofile = "constant"\nradiance = 1\n')
+    text = str(path)
+    said = as_text(describe(text, DEFAULT_READING))
+    assert len(re.findall(r"phi 0\.00", said)) == 2  # of the peak and of the sun
+    assert "-0.00" not in said
 
 
 @pytest.mark.parametrize("light", list(built_in_lights()))

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.composition import Box, compose
 from shviewer.viewer.lettering import ACCENT, WARNING, percent, radiance
-from shviewer.viewer.overlay import SLOT_COUNTS, Overlay, draw_overlay
+from shviewer.viewer.overlay import SLOT_COUNTS, Overlay, describe_light, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
@@ -25,10 +26,18 @@ def picture(**changes: object) -> Picture:
     return prepare(ViewState(**changes))  # type: ignore[arg-type]
 
 
+LOW_RANGE = EnvironmentLight(
+    np.random.default_rng(1).random((8, 16, 3), np.float32),
+    name="photo",
+    notes=("a",),
+    encoding="PNG, 8 bit sRGB (LDR)",
+)
 PICTURES = {
     "green": picture(),
     "muted": picture(n_bands=12, muted=frozenset({0, 2, 4, 6, 8, 10}), cursor=3, cursor_visible=True),
     "sampled": picture(lights=("sun-sky",), n_bands=32, method="jittered", samples=1_000_000),
+    "low range": picture(lights=(LOW_RANGE,), n_bands=9),
+    "split": picture(lights=("sun-sky",), split_sun=True),
     "long name": picture(lights=(FunctionLight(lambda d: 1 + d[:, 2], LONG),), n_bands=128),
     "message": picture(
         message="a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); fetch or export it again"
@@ -134,6 +143,66 @@ def test_the_time_is_said_only_when_asked_for() -> None:
     composition = compose(1280, 640)
     assert "time" not in draw_overlay(PICTURES["green"], composition).boxes
     assert "time" in draw_overlay(PICTURES["green"], composition, timing=True).boxes
+
+
+TEN_SIZES = [*SIZES, (800, 400), (1920, 1080)]
+
+
+@pytest.mark.parametrize("size", TEN_SIZES, ids=str)
+@pytest.mark.parametrize("content_scale", [1.0, 2.0])
+def test_splitting_a_sun_off_takes_no_figure_and_no_label_away(size: tuple[int, int], content_scale: float) -> None:
+    composition = compose(*size, 1.0, content_scale)
+    whole, split = (
+        set(draw_overlay(picture(lights=("sun-sky",), split_sun=wanted), composition).boxes) for wanted in (False, True)
+    )
+    figures = {
+        f"{name}{end}" for name in ("relative_l2", "max_error", "minimum", "negative_area") for end in ("", "_label")
+    }
+    assert whole & figures <= split
+
+
+# --- what must not be missed of a light
+
+
+def written(drawn: Overlay, name: str) -> float:
+    """The width of a piece."""
+    return drawn.boxes[name].right - drawn.boxes[name].left
+
+
+@pytest.mark.parametrize("quantity", ["radiance", "irradiance"])
+@pytest.mark.parametrize(
+    ("encoding", "notes", "end"),
+    [
+        ("OpenEXR", (), ""),
+        ("PNG, 8 bit sRGB (LDR)", (), ", LDR"),
+        ("OpenEXR", ("a",), ", 1 note"),
+        (None, ("a", "b"), ", 2 notes"),
+        ("JPEG, 8 bit sRGB (LDR)", ("a", "b"), ", LDR, 2 notes"),
+    ],
+)
+def test_the_description_ends_in_what_must_not_be_missed(
+    quantity: str, encoding: str | None, notes: tuple[str, ...], end: str
+) -> None:
+    light = EnvironmentLight(np.ones((4, 8, 3), np.float32), name="mine", notes=notes, encoding=encoding)
+    shown = picture(lights=(light,), quantity=quantity)
+    assert describe_light(shown)[0] == light.description + end
+    width = written(draw_overlay(shown, compose(1280, 640)), "description")
+    bare = picture(lights=(EnvironmentLight(light.pixels, name="mine"),), quantity=quantity)
+    assert (width > written(draw_overlay(bare, compose(1280, 640)), "description")) == bool(end)
+
+
+def test_where_the_description_has_no_room_it_goes_before_what_must_not_be_missed() -> None:
+    light = EnvironmentLight(np.ones((4, 8, 3), np.float32), name="mine", notes=("a",), encoding="PNG (LDR)")
+    assert describe_light(picture(lights=(light,)))[1:] == ["LDR, 1 note", "LDR"]
+
+
+@pytest.mark.parametrize("size", TEN_SIZES[1:], ids=str)
+@pytest.mark.parametrize("name", ["p", "ldr_photo", LONG])
+def test_low_range_is_said_at_every_size_but_the_smallest(size: tuple[int, int], name: str) -> None:
+    shown = picture(lights=(replace(LOW_RANGE, name=name),))
+    for content_scale in (1.0, 2.0):
+        boxes = draw_overlay(shown, compose(*size, 1.0, content_scale)).boxes
+        assert {"description", "encoding"} & set(boxes), content_scale
 
 
 # --- bars

@@ -1,6 +1,7 @@
 """What --split-sun and U promise: the sun drawn as a disc of its own, and every figure that of the rest."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -80,6 +81,19 @@ def test_a_light_without_a_sun_is_shown_whole_with_the_reason():
     assert picture.light is prepare(ViewState(lights=("green",))).light
     assert "green has no sun" in picture.subject.refusal
     assert "message" in draw_overlay(picture, compose(1280, 640)).boxes
+
+
+def test_the_picture_gives_the_reason_without_the_rule_and_so_uncut():
+    picture = prepare(ViewState(lights=("venice_sunset",), split_sun=True))
+    refusal = picture.subject.refusal
+    if not refusal:
+        picture = prepare(ViewState(lights=("green",), split_sun=True))
+        refusal = picture.subject.refusal
+    assert ";" in refusal
+    reason = replace(picture, state=replace(picture.state, message=refusal.partition(";")[0]))
+    drawn, wanted = (draw_overlay(each, compose(1280, 640)).boxes["message"] for each in (picture, reason))
+    assert drawn == wanted
+    assert drawn.right < 1280 / 2 + 400
 
 
 def test_the_text_of_a_picture_describes_the_sun():

@@ -59,7 +59,7 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5 U B"
+        "Ctrl+R F5 U B L Z"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -143,6 +143,32 @@ def test_lights_and_methods_go_round() -> None:
     assert [pressed(START, *["M"] * count).method for count in range(4)] == [*METHODS, METHODS[0]]
 
 
+def test_l_goes_round_the_layouts_and_another_layout_is_another_picture() -> None:
+    states = [pressed(START, *["L"] * count) for count in range(6)]
+    names = [state.reading.layout for state in states]
+    assert names == ["auto", "lat-long", "cube", "angular", "mirror-ball", "auto"]
+    assert states[1] != START
+    assert states[5] == START
+
+
+def test_l_goes_on_from_a_layout_that_the_image_could_not_have() -> None:
+    """The window then takes the reading back."""
+    cube = pressed(START, "L", "L")
+    kept = replace(cube, reading=press(START, "L").reading)
+    assert press(kept, "L").reading.layout == "angular"
+    assert press(press(kept, "Left"), "L").reading.layout == "cube"
+    assert press(open_light(kept, "studio"), "L").reading.layout == "cube"
+
+
+def test_z_repairs_and_again_leaves_as_it_is_for_every_light() -> None:
+    repairing = press(START, "Z")
+    assert repairing == replace(START, reading=Reading(sanitize=True))
+    assert press(repairing, "Z") == START
+    assert open_light(repairing, "mine.hdr").reading.sanitize
+    isolated = replace(START, reading=Reading(isolated=True))
+    assert pressed(isolated, "Z", "L").reading.isolated
+
+
 def test_samples_go_by_four_and_stop_at_16_and_a_million() -> None:
     sampled = replace(START, method="jittered")
     assert press(sampled, "S").samples == 40_000
@@ -194,12 +220,14 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         fullscreen=True,
         screenshots=3,
         fits=2,
+        layout_tried="cube",
     )
     assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
     after = press(changed, "R")
     assert after == ViewState(lights=LIGHTS, light_index=2, reading=Reading(sanitize=True), tolerance=0.1, reloads=5)
     assert after.fullscreen
     assert after.screenshots == 3
+    assert after.layout_tried == "cube"
 
 
 @pytest.mark.parametrize("key", ["Ctrl+R", "F5"])

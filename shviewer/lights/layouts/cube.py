@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.patches import project_mirrored, quadrant_weights
+from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import Indices
 
 _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}
@@ -129,6 +130,10 @@ class CubeLayout:
             angles[self._cell(face)] = self._face_solid_angles
         return angles
 
+    def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
+        shown = self._faces_by_cell[rows // self.face, columns // self.face] >= 0
+        return np.where(shown, self._face_solid_angles[rows % self.face, columns % self.face], 0.0)
+
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         face, u, v = self._on_faces(directions)
         column = np.minimum((self.face * (u + 1) / 2).astype(np.int64), self.face - 1)
@@ -137,24 +142,32 @@ class CubeLayout:
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
         """Of a texel in an empty cell: the middle of the front."""
-        cells = np.full((self.arrangement.rows, self.arrangement.columns), -1)
-        for i, part in enumerate(self.arrangement.faces):
-            cells[part.row, part.column] = i
-        face = cells[rows // self.face, columns // self.face]
+        face = self._faces_by_cell[rows // self.face, columns // self.face]
         u, v = ((2 * (index % self.face) + 1) / self.face - 1 for index in (columns, rows))
         directions = self._directions(np.maximum(face, 0), u, v)
         directions[face < 0] = [1.0, 0.0, 0.0]
         return np.asarray(directions / np.linalg.norm(directions, axis=-1, keepdims=True))
 
-    def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
+    def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
         """Continuous across the edges: beyond one comes the next face. At a corner of the cube three texels meet."""
         face, u, v = self._on_faces(directions)
         column, row = self.face * (u + 1) / 2 - 0.5, self.face * (v + 1) / 2 - 0.5
         left, top = np.floor(column).astype(np.int64), np.floor(row).astype(np.int64)
         right, down = column - left, row - top
+        first_row, first_column = self._corners.T
+        result = between_texels(pixels, top + first_row[face], left + first_column[face], down, right)
+        last = self.face - 1
+        edge = np.flatnonzero((np.minimum(left, top) < 0) | (np.maximum(left, top) >= last))
+        result[edge] = self._across_edges(pixels, face[edge], top[edge], left[edge], down[edge], right[edge])
+        return result
+
+    def _across_edges(
+        self, pixels: NDArray[np.float32], face: Indices, top: Indices, left: Indices, down: Array, right: Array
+    ) -> Array:
+        """(k, 3), where some of the four texels are on the next face or nowhere."""
         weights = np.stack([(1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down])
-        taps = np.empty((4, len(directions), 3))
-        absent = np.zeros((4, len(directions)), dtype=bool)
+        taps = np.empty((4, len(face), 3))
+        absent = np.zeros((4, len(face)), dtype=bool)
         for i in range(4):
             at_column, at_row = left + i % 2, top + i // 2
             beyond_column = (at_column < 0) | (at_column >= self.face)
@@ -198,6 +211,14 @@ class CubeLayout:
         return slice(row, row + self.face), slice(column, column + self.face)
 
     @cached_property
+    def _faces_by_cell(self) -> NDArray[np.int64]:
+        """Which face lies in each cell, (rows, columns); -1 for none."""
+        cells = np.full((self.arrangement.rows, self.arrangement.columns), -1)
+        for i, face in enumerate(self.arrangement.faces):
+            cells[face.row, face.column] = i
+        return cells
+
+    @cached_property
     def _corners(self) -> NDArray[np.int64]:
         """Row and column of each face's first texel, (6, 2)."""
         return np.array([(face.row * self.face, face.column * self.face) for face in self.arrangement.faces])
@@ -214,15 +235,18 @@ class CubeLayout:
 
     def _on_faces(self, directions: Array) -> tuple[Indices, Array, Array]:
         """The face that each direction of any length meets, and where, u and v in [-1, 1]."""
-        axis = np.abs(directions).argmax(axis=1)
-        depth = np.take_along_axis(directions, axis[:, None], axis=1)[:, 0]
-        centre = self._frames[:, 0]
-        by_axis = np.array(
-            [[int(np.argmax(centre @ (sign * _AXES["+" + name]))) for sign in (1, -1)] for name in "xyz"]
+        components = np.ascontiguousarray(directions.T)
+        size, place = np.abs(components), np.arange(len(directions))
+        depth = size.max(axis=0)
+        axis = np.where(size[0] == depth, 0, np.where(size[1] == depth, 1, 2)) * len(place)
+        backward = components.take(axis + place) < 0
+        by_axis = (self._frames[:, 0] @ np.concatenate([np.eye(3), -np.eye(3)]).T).argmax(axis=0)
+        face = by_axis[axis // max(1, len(place)) + 3 * backward]
+        u, v = (
+            components.take(np.abs(edge).argmax(axis=1)[face] * len(place) + place) * (edge.sum(axis=1)[face] / depth)
+            for edge in (self._frames[:, 1], self._frames[:, 2])
         )
-        face = by_axis[axis, (depth < 0).astype(np.int64)]
-        along = np.einsum("kij,kj->ki", self._frames[face, 1:], directions) / np.abs(depth)[:, None]
-        return face, along[:, 0], along[:, 1]
+        return face, u, v
 
     @cached_property
     def _face_solid_angles(self) -> Array:

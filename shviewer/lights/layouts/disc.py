@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
+from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import Indices
 from shviewer.lights.layouts.rim import RimPoints, rim_points
 
@@ -78,19 +79,41 @@ class DiscLayout:
         scale = np.divide(across, radius, where=radius > 0, out=np.zeros_like(radius))
         return np.stack([np.cos(theta), -right * scale, -down * scale], axis=-1)
 
-    def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
+    def solid_angles(self) -> Array:
+        return self.whole_sphere(self.quadrant_solid_angles)
+
+    def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
+        inside, edge = self.side // 2, self.half - 1
+        row, column = (np.where(index < inside, edge - index, index - inside) for index in (rows, columns))
+        halves = self.side % 2 * ((row == 0).astype(np.int64) + (column == 0))
+        return np.asarray(self.quadrant_solid_angles[row, column] * 2**halves)
+
+    @cached_property
+    def quadrant_solid_angles(self) -> Array:
+        """Of the lower right quadrant (half, half); middle texels of an odd number count with their halves."""
+        raise NotImplementedError
+
+    def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
         """Texels whose centres are outside the disc do not count: beyond the rim comes the side opposite."""
-        x, y, z = directions.T
+        x, y, z = np.ascontiguousarray(directions.T)
         across = np.hypot(y, z)
         radius = self.radius(np.arctan2(across, x))
         scale = np.divide(radius, across, where=across > 0, out=np.zeros_like(across))
         column = (1 + np.where((across == 0) & (x < 0), 1.0, -y * scale)) / 2 * self.side - 0.5
         row = (1 - z * scale) / 2 * self.side - 0.5
         left, top = np.floor(column), np.floor(row)
-        total = np.zeros((len(directions), 3))
-        for down, right in np.ndindex(2, 2):
-            weight = np.abs(1 - right - (column - left)) * np.abs(1 - down - (row - top))
-            total += weight[:, None] * self._beyond_the_rim(pixels, top + down, left + right)
+        down, right = row - top, column - left
+        result = between_texels(pixels, top.astype(np.int64), left.astype(np.int64), down, right)
+        rim = np.flatnonzero(radius >= 1 - 3 / self.side)  # a texel's diagonal is 2.83 / side
+        result[rim] = self._across_the_rim(pixels, top[rim], left[rim], down[rim], right[rim])
+        return result
+
+    def _across_the_rim(self, pixels: NDArray[np.float32], top: Array, left: Array, down: Array, right: Array) -> Array:
+        """(k, 3), where some of the four texels may have their centres outside."""
+        total = np.zeros((len(top), 3))
+        for below, beside in np.ndindex(2, 2):
+            weight = np.abs(1 - beside - right) * np.abs(1 - below - down)
+            total += weight[:, None] * self._beyond_the_rim(pixels, top + below, left + beside)
         return total
 
     def _beyond_the_rim(self, pixels: NDArray[np.float32], rows: Array, columns: Array) -> Array:

@@ -36,6 +36,9 @@ class LatLongLayout:
         rows = 2 * np.sin(theta) * np.sin(np.pi / (2 * self.height)) * (2 * np.pi / self.width)
         return np.asarray(rows[:, None])
 
+    def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
+        return np.asarray(self.solid_angles()[rows, 0])
+
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         x, y, z = directions.T
         row = (np.arctan2(np.hypot(x, y), z) * (self.height / np.pi)).astype(np.int64)

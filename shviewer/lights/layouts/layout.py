@@ -38,13 +38,16 @@ class Layout(Protocol):
         0 for texels that show nothing: the empty cells of a cross, the corners around a disc.
         """
 
+    def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
+        """Those of texels (k,), without the others: (k,)."""
+
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         """Row and column, (k,) each, of the texel in whose area each unit direction (k, 3) lies."""
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
         """Unit directions (k, 3) of the centres of texels (k,); anywhere for texels that show nothing."""
 
-    def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
+    def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.floating]:
         """Bilinear radiance (k, 3) in unit directions (k, 3), from pixels (height, width, 3)."""
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:

@@ -10,6 +10,7 @@ points of the rim's rule. All but solid angles and band 0, which are exact, are 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,14 +37,15 @@ class MirrorBallLayout(DiscLayout):
     def theta(self, radius: Array) -> Array:
         return np.asarray(2 * np.arcsin(radius))
 
-    def solid_angles(self) -> Array:
+    @cached_property
+    def quadrant_solid_angles(self) -> Array:
         size = np.diff(self.edges)
         quadrant = 4 * size * size[:, None]
         quadrant[np.arange(self.half) >= self.whole[:, None]] = 0.0
         for rows, columns in self.rim_blocks(*self.cut, 14):
             points = self.rim(rows, columns, 14)
             quadrant[rows, columns] = np.bincount(points.texels, 4 * points.weights.sum(axis=1), minlength=len(rows))
-        return self.whole_sphere(quadrant)
+        return np.asarray(quadrant)
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         if self.side % 2:
@@ -85,7 +87,7 @@ class _Tiles:
             return coefficients
         n_points = self._point_count(rows, columns, size, n_bands)
         if size == 1:
-            points, weights = np.polynomial.legendre.leggauss(max(6, n_points - 4))
+            points, weights = np.polynomial.legendre.leggauss(max(5, n_points - 4))
             points, row_weights = (1 + points) / 2, weights[:, None] / 2
         else:
             points, row_weights = texel_weights(np.arange(size + 1) / size, n_points)
@@ -119,11 +121,11 @@ class _Tiles:
         widest = max(
             float(np.linalg.norm(corners[first] - corners[second], axis=1).max()) for first, second in ((0, 1), (2, 3))
         )
-        return 10 + int(np.ceil(0.45 * n_bands * widest))
+        return 8 + int(np.ceil(0.55 * n_bands * widest))
 
     def _project_rim(self, rows: Indices, columns: Indices, n_bands: int) -> Array:
         coefficients = np.zeros((n_bands**2, 3))
-        n_points = (6 if self.ball.side > 16 else 14) + int(np.ceil(n_bands * np.sqrt(2 / self.ball.half)))
+        n_points = (6 if self.ball.side > 16 else 14) + int(np.ceil(0.8 * n_bands * np.sqrt(2 / self.ball.half)))
         for at_rows, at_columns in self.ball.rim_blocks(rows, columns, n_points):
             rim = self.ball.rim(at_rows, at_columns, n_points)
             texels = self._mirrored(at_rows, at_columns)[:, :, rim.texels, None] * rim.weights[..., None]

@@ -22,14 +22,27 @@ from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 
 LAYOUTS = ("lat-long", "cube", "angular", "mirror-ball")
 
+TOLERANCE = 0.02
+"""How far texels that show nothing may be from one colour, as a share of how far those that show something are."""
+
+MARGIN = 2
+LOSSY_MARGIN = 16
+"""Texels along a border that may be a mixture of both sides: antialiased, or in a JPEG's blocks, 16 wide for colours."""
+
+SAMPLES = 2**18
+"""Of the texels that show something so many are looked at, about."""
+
 _Notes = tuple[str, ...]
 
 
-def recognise(pixels: NDArray[np.float32], stated: str | None, wanted: str) -> tuple[Layout, _Notes]:
+def recognise(
+    pixels: NDArray[np.float32], stated: str | None, wanted: str, lossy: bool = False
+) -> tuple[Layout, _Notes]:
     """The layout of an image (height, width, 3) and a line about each guess.
 
     stated: what its file says, one of LAYOUTS; None for nothing. A file that says cube means OpenEXR's.
     wanted: "auto" or one of LAYOUTS, which overrules both. LightError if the image's shape cannot be so.
+    lossy: whether it comes from a JPEG, which blurs what lies next to an edge.
     """
     height, width = pixels.shape[:2]
     if wanted != "auto":
@@ -38,9 +51,9 @@ def recognise(pixels: NDArray[np.float32], stated: str | None, wanted: str) -> t
         try:
             return _fitting(stated, height, width, stated), ()
         except LightError as misfit:
-            layout, notes = _by_shape(pixels)
+            layout, notes = _by_shape(pixels, lossy)
             return layout, (f"the file states another layout, but {misfit}", *notes)
-    return _by_shape(pixels)
+    return _by_shape(pixels, lossy)
 
 
 def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
@@ -65,20 +78,24 @@ def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
     raise LightError(f"unknown layout {name!r}; choose auto, {', '.join(LAYOUTS)}")
 
 
-def _by_shape(pixels: NDArray[np.float32]) -> tuple[Layout, _Notes]:
+def _by_shape(pixels: NDArray[np.float32], lossy: bool) -> tuple[Layout, _Notes]:
     height, width = pixels.shape[:2]
     shown = f"{width} x {height}"
     arrangement = _arrangement(height, width)
     if arrangement is not None:
-        if _has_empty_cells(pixels, arrangement):
+        if _has_empty_cells(pixels, arrangement, lossy):
             layout = CubeLayout(arrangement, arrangement.face_size(height, width))
             return layout, (f"{shown} is taken as a cube, {arrangement.name}: --layout lat-long if it is not",)
         return LatLongLayout(height, width), (
             f"{shown} is not 2:1 and no cube cross, whose corners are empty; taken as lat-long: --layout cube if it is one",
         )
-    if width == height and _is_disc(pixels):
+    if width == height and _is_disc(pixels, lossy):
         return AngularLayout(height), (
             f"{shown} with a disc is taken as an angular map: --layout mirror-ball for a ball",
+        )
+    if width == height:
+        return LatLongLayout(height, width), (
+            f"{shown} is not 2:1 and no disc on one colour; taken as lat-long: --layout angular or mirror-ball if it is one",
         )
     if width != 2 * height:
         return LatLongLayout(height, width), (
@@ -95,24 +112,46 @@ def _arrangement(height: int, width: int) -> Arrangement | None:
     return None
 
 
-def _has_empty_cells(pixels: NDArray[np.float32], arrangement: Arrangement) -> bool:
-    """Whether the cells without a face, if there are any, are all of one colour."""
+def _has_empty_cells(pixels: NDArray[np.float32], arrangement: Arrangement, lossy: bool) -> bool:
+    """Whether the cells without a face, if there are any, are all of one colour but for a margin."""
     size = arrangement.face_size(*pixels.shape[:2])
-    faces = {(face.row, face.column) for face in arrangement.faces}
-    cells = [
-        pixels[row * size : (row + 1) * size, column * size : (column + 1) * size]
-        for row, column in np.ndindex(arrangement.rows, arrangement.columns)
-        if (row, column) not in faces
-    ]
-    return all(bool((cell == cells[0][0, 0]).all()) for cell in cells)
+    margin = min(LOSSY_MARGIN if lossy else MARGIN, size // 4)
+    places = {(face.row, face.column) for face in arrangement.faces}
+    faces, empty = [], []
+    for row, column in np.ndindex(arrangement.rows, arrangement.columns):
+        cell = pixels[row * size : (row + 1) * size, column * size : (column + 1) * size]
+        if (row, column) in places:
+            step = _step(6 * cell.shape[0] * cell.shape[1])
+            faces.append(cell[::step, ::step].reshape(-1, 3))
+        else:
+            empty.append(cell[margin : size - margin, margin : size - margin].reshape(-1, 3))
+    return not empty or _stands_out(np.concatenate(faces), np.concatenate(empty))
 
 
-def _is_disc(pixels: NDArray[np.float32]) -> bool:
-    """Whether all that lies wholly outside the inscribed circle is of one colour, and what lies inside is not."""
+def _is_disc(pixels: NDArray[np.float32], lossy: bool) -> bool:
+    """Whether all that lies outside the inscribed circle is of one colour but for a margin, and what lies inside is not."""
     side = len(pixels)
-    inner = np.maximum(np.abs(2 * np.arange(side) + 1 - side) - 1, 0) / side
-    outside = inner**2 + inner[:, None] ** 2 >= 1
-    if not outside.any():
-        return False
-    differs = (pixels != pixels[0, 0]).any(axis=2)
-    return bool(differs[~outside].any()) and not bool(differs[outside].any())
+    margin = min(3 * LOSSY_MARGIN // 2 if lossy else MARGIN, side // 12)  # blocks may be cut across
+    distance = np.maximum(np.abs(2 * np.arange(side) + 1 - side) - 1, 0) / side
+    outside = distance**2 + distance[:, None] ** 2 >= (1 + 2 * margin / side) ** 2
+    step = _step(side * side)
+    inside = distance[::step] ** 2 + distance[::step, None] ** 2 < 1
+    return bool(outside.any()) and _stands_out(pixels[::step, ::step][inside], pixels[outside])
+
+
+def _step(texels: int) -> int:
+    """Every so many rows and columns of an image are about SAMPLES."""
+    return max(1, int(np.sqrt(texels / SAMPLES)))
+
+
+def _stands_out(shown: NDArray[np.float32], empty: NDArray[np.float32]) -> bool:
+    """Whether `empty` (k, 3) is of one colour from which more than half of `shown` (j, 3) differs by more than any of it does.
+
+    One colour: within TOLERANCE of what is large in `shown`, its ninth decile, which a sun does not reach. The dark parts of a
+    night are close to one colour as well; but then, so is most of the rest.
+    """
+    colour = np.median(empty, axis=0)
+    spread = float(np.abs(empty - colour).max())
+    distances = np.abs(shown - colour).max(axis=1)
+    half, large = np.quantile(distances, (0.5, 0.9))
+    return bool(spread < half and spread <= TOLERANCE * large)
