@@ -181,7 +181,7 @@ def main(names: list[str]) -> int:
                 continue
             test = killer(mutant, Path(folder))
             survivors += not test
-            print(f"{mutant.name:<40}{test or 'SURVIVED'}", flush=True)
+            print(f"{mutant.name:<48}{test or 'SURVIVED'}", flush=True)
     return 1 if survivors else 0
 
 
