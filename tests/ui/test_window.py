@@ -147,8 +147,8 @@ def test_b_shows_time_against_error_of_what_was_measured_until_escape(start: Sta
     assert 230 < rows.min() < rows.max() < 522
     orange = [(np.abs(picture.astype(int) - (240, 164, 66)).max(axis=2) < 8).sum() for picture in (clear, two, three)]
     assert orange[0] == 0
-    assert orange[1] > 50  # one disc, and the one in the legend
-    assert orange[2] > orange[1] + 25  # one more
+    assert min(orange[1:]) > 50  # a disc or two, which may cover each other, and the one in the legend
+    assert (two != three)[230:522, 400:880].any()  # another measurement
     viewer.xdotool("key", "Escape")
     assert viewer.process.wait(PATIENCE) == 0
 
