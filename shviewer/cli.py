@@ -216,9 +216,10 @@ class _StatusLine:
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
     from shviewer.lights.light import built_in_lights
+    from shviewer.viewer.actions import open_light
     from shviewer.viewer.camera import IDENTITY, towards
     from shviewer.viewer.picture import check
-    from shviewer.viewer.state import ViewState, open_light
+    from shviewer.viewer.state import ViewState
 
     elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
     if any(abs(elevation) > 90 for elevation in elevations):

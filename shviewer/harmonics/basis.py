@@ -41,6 +41,12 @@ def index(l: int, m: int) -> int:
     return l * (l + 1) + m
 
 
+def degree_order(i: int) -> tuple[int, int]:
+    """Degree l and order m of the coefficient at index i: the inverse of `index`."""
+    l = isqrt(i)
+    return l, i - l * (l + 1)
+
+
 def check_bands(n_bands: int, most: int = MAX_BANDS) -> None:
     """Raise ValueError unless 1 <= n_bands <= most."""
     if not 1 <= n_bands <= most:

@@ -26,6 +26,8 @@ SPECIAL_KEYS = {
     glfw.KEY_ENTER: "Enter",
     glfw.KEY_KP_ENTER: "Enter",
     glfw.KEY_ESCAPE: "Esc",
+    glfw.KEY_TAB: "Tab",
+    glfw.KEY_SPACE: "Space",
     glfw.KEY_F5: "F5",
     glfw.KEY_F11: "F11",
     **{getattr(glfw, f"KEY_{digit}"): str(digit) for digit in range(10)},

@@ -9,35 +9,44 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from shviewer.viewer.layout import MAX_DIRECT_BANDS
-from shviewer.viewer.state import (
-    CAMERA_HOME,
-    EXPOSURE_STEP,
+from shviewer.viewer.actions import (
     Action,
-    ViewState,
     auto_exposure,
-    describe_exposure,
-    describe_muted,
-    describe_sanitizing,
     escape,
     expose,
-    light_name,
     more_bands,
     move_cursor,
+    next_error,
     next_layout,
     next_light,
     next_method,
     next_quantity,
+    next_tone,
     next_window,
     reload,
     reset,
     scale_samples,
     solo_band,
+    step_basis,
     toggle_band,
     toggle_cursor,
+    toggle_lobe_view,
     toggle_sanitizing,
+    toggle_sheet,
     toggle_split,
+    toggle_sweep,
     with_bands,
+)
+from shviewer.viewer.layout import MAX_DIRECT_BANDS
+from shviewer.viewer.state import (
+    CAMERA_HOME,
+    EXPOSURE_STEP,
+    ViewState,
+    describe_basis,
+    describe_exposure,
+    describe_muted,
+    describe_sanitizing,
+    light_name,
 )
 
 
@@ -52,7 +61,7 @@ class Binding(NamedTuple):
 
 
 DIGITS = tuple("0123456789")
-BANDS, LIGHT, PICTURE, PROGRAM = "Bands", "Light", "Picture", "Program"
+BANDS, LIGHT, ERROR, PICTURE, PROGRAM = "Bands", "Light", "Error", "Picture", "Program"
 
 BINDINGS = (
     Binding(
@@ -102,6 +111,13 @@ BINDINGS = (
     Binding("W", BANDS, "window against ringing", {"W": next_window}, lambda s: s.window),
     Binding("A", BANDS, "all bands on", {"A": lambda s: replace(s, muted=frozenset())}),
     Binding(
+        "Space",
+        BANDS,
+        "sweep from 1 band, stop",
+        {"Space": toggle_sweep},
+        lambda s: "" if s.sweep_to is None else f"to {s.sweep_to}",
+    ),
+    Binding(
         "Left / Right",
         LIGHT,
         "light before, after",
@@ -118,18 +134,34 @@ BINDINGS = (
         {"S": scale_samples(4), "Shift+S": scale_samples(0.25)},
         lambda s: f"{s.samples}",
     ),
-    Binding(
-        "B",
-        LIGHT,
-        "time against error so far",
-        {"B": lambda s: replace(s, plane_visible=not s.plane_visible)},
-        lambda s: "shown" if s.plane_visible else "hidden",
-    ),
     Binding("Ctrl+R / F5", LIGHT, "read its file again", dict.fromkeys(("Ctrl+R", "F5"), reload)),
     Binding("L", LIGHT, "next layout of an image", {"L": next_layout}, lambda s: s.reading.layout),
     Binding("Z", LIGHT, "repair bad values or not", {"Z": toggle_sanitizing}, describe_sanitizing),
     Binding("Shift+drag", LIGHT, "turn the light", {}),
     Binding("drop a file", LIGHT, "open it", {}),
+    Binding("D", ERROR, "third sphere: the error", {"D": next_error}, lambda s: s.error),
+    Binding(
+        "X",
+        ERROR,
+        "mark minimum, largest error",
+        {"X": lambda s: replace(s, marks=not s.marks)},
+        lambda s: "marked" if s.marks else "not marked",
+    ),
+    Binding(
+        "G",
+        ERROR,
+        "error against bands",
+        {"G": toggle_sheet("convergence")},
+        lambda s: "shown" if s.sheet == "convergence" else "hidden",
+    ),
+    Binding(
+        "B",
+        ERROR,
+        "time against error so far",
+        {"B": toggle_sheet("plane")},
+        lambda s: "shown" if s.sheet == "plane" else "hidden",
+    ),
+    Binding("mouse over", ERROR, "values in that direction", {}),
     Binding(
         "E / Shift+E",
         PICTURE,
@@ -138,6 +170,21 @@ BINDINGS = (
         describe_exposure,
     ),
     Binding("N", PICTURE, "exposure from the light", {"N": auto_exposure}),
+    Binding("O", PICTURE, "tone curve", {"O": next_tone}, lambda s: s.tone),
+    Binding(
+        "V",
+        PICTURE,
+        "surfaces: radius is magnitude",
+        {"V": toggle_lobe_view},
+        lambda s: "surfaces" if s.lobe_view else "spheres",
+    ),
+    Binding(
+        "Tab / Shift+Tab",
+        PICTURE,
+        "basis function after, before",
+        {"Tab": step_basis(1), "Shift+Tab": step_basis(-1)},
+        lambda s: describe_basis(s) or "none",
+    ),
     Binding("drag", PICTURE, "turn both spheres", {}, lambda s: f"{s.camera[0]:z.0f}, {s.camera[1]:z.0f} deg"),
     Binding("scroll", PICTURE, "zoom", {}, lambda s: f"{s.zoom:.2f} x"),
     Binding("F", PICTURE, "camera back", {"F": lambda s: replace(s, camera=CAMERA_HOME, zoom=1.0)}),
@@ -152,7 +199,7 @@ BINDINGS = (
     Binding(
         "H / ?", PROGRAM, "this help", dict.fromkeys(("H", "?"), lambda s: replace(s, help_visible=not s.help_visible))
     ),
-    Binding("Esc", PROGRAM, "close help, plane, then quit", {"Esc": escape}),
+    Binding("Esc", PROGRAM, "close what is open, then quit", {"Esc": escape}),
 )
 
 ACTIONS: Mapping[str, Action] = {key: action for binding in BINDINGS for key, action in binding.actions.items()}

@@ -65,7 +65,7 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     painter = _Painter(ImageDraw.Draw(sheet), composition)
     painter.captions(picture, timing)
     painter.figures(picture)
-    wanted = picture.state.plane_visible and not picture.state.help_visible
+    wanted = picture.state.sheet == "plane" and not picture.state.help_visible
     plane = draw_plane(sheet, picture, composition, painter.boxes.values()) if wanted else None
     painter.boxes.update(plane.boxes if plane else {})
     painter.hint(picture, NO_PLANE if wanted and not plane else "")

@@ -18,6 +18,7 @@ import moderngl
 from shviewer.errors import ShviewerError
 from shviewer.lights.light import Light, split_light
 from shviewer.lights.radiance_files import Reading
+from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, toggle_band, with_bands, zoom
 from shviewer.viewer.analysis import keep_light, needs, read_again, stamp_read
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.glfw_window import key_name, open_window
@@ -29,17 +30,7 @@ from shviewer.viewer.picture_files import metadata, write_numbered
 from shviewer.viewer.plane import measured
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import (
-    ViewState,
-    describe_sanitizing,
-    open_light,
-    orbit,
-    reload,
-    rotate_light,
-    toggle_band,
-    with_bands,
-    zoom,
-)
+from shviewer.viewer.state import ViewState, describe_sanitizing
 from shviewer.viewer.watching import Watch
 
 IDLE_SECONDS = 0.25
@@ -250,7 +241,7 @@ class Window:
         if not state.help_visible:
             home = ViewState()
             state = replace(state, camera=home.camera, light_rotation=home.light_rotation, zoom=home.zoom)
-        known = measured(self.picture) if state.plane_visible else ()
+        known = measured(self.picture) if state.sheet == "plane" else ()
         key = (state, known, composition.width, composition.height, composition.scale)
         if key != self.overlay_key:
             self.overlay_key = key

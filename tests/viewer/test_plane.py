@@ -54,7 +54,7 @@ def steady(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def shown(**changes: object) -> Picture:
-    return prepare(ViewState(**{"n_bands": 15, "plane_visible": True, **changes}))  # type: ignore[arg-type]
+    return prepare(ViewState(**{"n_bands": 15, "sheet": "plane", **changes}))  # type: ignore[arg-type]
 
 
 def session(counts: tuple[int, ...] = COUNTS, **changes: object) -> Picture:
@@ -333,7 +333,7 @@ def test_at_the_usual_sizes_axes_legend_floor_and_most_points_are_labelled(size:
 def test_what_is_outside_the_sheet_is_as_it_is_without_it() -> None:
     picture = session()
     drawn, found = plane_of(picture)
-    without = draw_overlay(replace(picture, state=replace(picture.state, plane_visible=False)), compose(1280, 640))
+    without = draw_overlay(replace(picture, state=replace(picture.state, sheet="")), compose(1280, 640))
     assert without.plane is None
     differs = np.argwhere((drawn.image != without.image).any(axis=-1))
     assert found.box.top <= differs[:, 0].min()

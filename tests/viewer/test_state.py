@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.radiance_files import Reading
 from shviewer.viewer import camera
+from shviewer.viewer.actions import open_light, orbit, rotate_light, step_sweep, zoom
 from shviewer.viewer.keys import ACTIONS, BINDINGS, key_table, press
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.picture import check
@@ -22,10 +23,6 @@ from shviewer.viewer.state import (
     ViewState,
     describe_exposure,
     describe_muted,
-    open_light,
-    orbit,
-    rotate_light,
-    zoom,
 )
 
 LIGHTS = ("green", "studio", "sun-sky")
@@ -52,14 +49,14 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
         assert f"  {binding.label:<20}{binding.help}\n" in text + "\n"
         assert isinstance(binding.value(START), str)
     titles = [line for line in text.splitlines() if line and not line.startswith(" ")]
-    assert titles == ["Bands", "Light", "Picture", "Program"]
+    assert titles == ["Bands", "Light", "Error", "Picture", "Program"]
     assert max(map(len, text.splitlines())) <= 80
 
 
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5 U B L Z"
+        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -213,8 +210,16 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         camera=(1.0, 2.0),
         light_rotation=camera.towards(10, 10),
         zoom=2.0,
+        error="signed",
+        error_range=0.5,
+        tone="aces",
+        marks=False,
+        lobe_view=True,
+        basis=(1, -1),
+        evaluate="map",
+        sweep_to=12,
         help_visible=True,
-        plane_visible=True,
+        sheet="plane",
         message="m",
         reloads=5,
         fullscreen=True,
@@ -224,7 +229,8 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
     )
     assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
     after = press(changed, "R")
-    assert after == ViewState(lights=LIGHTS, light_index=2, reading=Reading(sanitize=True), tolerance=0.1, reloads=5)
+    kept = {"light_index": 2, "reading": Reading(sanitize=True), "tolerance": 0.1, "evaluate": "map", "reloads": 5}
+    assert after == ViewState(lights=LIGHTS, **kept)  # type: ignore[arg-type]
     assert after.fullscreen
     assert after.screenshots == 3
     assert after.layout_tried == "cube"
@@ -256,7 +262,7 @@ def test_escape_closes_the_help_first_and_then_the_window() -> None:
 
 def test_b_shows_the_time_error_plane_and_escape_closes_it_after_the_help_and_before_the_window() -> None:
     shown = press(START, "B")
-    assert shown == replace(START, plane_visible=True)
+    assert shown == replace(START, sheet="plane")
     assert press(shown, "B") == START
     helped = press(shown, "H")
     without_help = press(helped, "Esc")
@@ -265,6 +271,56 @@ def test_b_shows_the_time_error_plane_and_escape_closes_it_after_the_help_and_be
     assert closed == START
     assert not closed.closing
     assert press(closed, "Esc").closing
+
+
+def test_one_sheet_is_shown_at_a_time() -> None:
+    assert press(START, "G").sheet == "convergence"
+    assert pressed(START, "G", "B").sheet == "plane"
+    assert pressed(START, "G", "G") == START
+    assert pressed(START, "B", "G", "Esc") == START
+
+
+@pytest.mark.parametrize(
+    ("key", "name", "values"),
+    [
+        ("D", "error", ["signed", "absolute", "relative", "off"]),
+        ("O", "tone", ["reinhard", "aces", "log", "none"]),
+        ("X", "marks", [False, True]),
+        ("V", "lobe_view", [True, False]),
+    ],
+)
+def test_a_key_goes_through_its_choices_and_back(key: str, name: str, values: list[object]) -> None:
+    state = START
+    for value in values:
+        state = press(state, key)
+        assert state == replace(START, **{name: value})
+    assert state == START
+
+
+def test_tab_steps_through_the_basis_functions_in_use_and_none_of_them() -> None:
+    state, seen = replace(START, n_bands=2), []
+    for _ in range(5):
+        state = press(state, "Tab")
+        seen.append(state.basis)
+    assert seen == [(0, 0), (1, -1), (1, 0), (1, 1), None]
+    assert state.lobe_view  # Tab opened it
+    assert press(state, "Shift+Tab").basis == (1, 1)
+    assert pressed(state, "Shift+Tab", "Down").basis is None  # that band is no longer in use
+    assert press(press(state, "Tab"), "V") == replace(START, n_bands=2)
+
+
+def test_space_sweeps_from_one_band_to_those_in_use_and_any_band_key_ends_it() -> None:
+    state, seen = press(replace(START, n_bands=4), "Space"), []
+    while state.sweep_to is not None:
+        seen.append(state.n_bands)
+        state = step_sweep(state)
+    assert seen == [1, 2, 3]
+    assert state == replace(START, n_bands=4)
+    begun = press(state, "Space")
+    assert press(begun, "Space") == replace(begun, sweep_to=None)
+    assert press(begun, "Up") == replace(START, n_bands=2)
+    assert press(begun, "Esc") == replace(begun, sweep_to=None)
+    assert press(replace(START, n_bands=1), "Space").sweep_to == 10
 
 
 def test_wishes_to_the_window_are_no_part_of_the_picture() -> None:
