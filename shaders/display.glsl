@@ -1,13 +1,26 @@
-// The only place where radiance becomes colour: exposure, a hue for what is negative, then sRGB.
+// The only place where radiance becomes colour: exposure, a hue for what is negative, a tone curve, then sRGB.
 
 uniform float exposure;         // 2^stops
+
+// The tone curves of shviewer/viewer/tone.py, from exposed radiance >= 0 to [0, 1] or, without one, beyond.
+vec3 toned(vec3 x) {
+#if TONE == TONE_REINHARD
+    return x / (1.0 + x);
+#elif TONE == TONE_ACES
+    return x * (ACES[0] * x + ACES[1]) / (x * (ACES[2] * x + ACES[3]) + ACES[4]);
+#elif TONE == TONE_LOG
+    return log2(1.0 + LOG_RANGE * x) / log2(1.0 + LOG_RANGE);
+#else
+    return x;
+#endif
+}
 
 // What the eye gets of a radiance, linear in [0, 1]. A negative luminance has a hue of its own, which grows from black with
 // the magnitude, fast at first so that faint ringing shows, and never saturates.
 vec3 visible(vec3 radiance) {
     vec3 exposed = exposure * radiance;
     float luminance = dot(exposed, vec3(0.2126, 0.7152, 0.0722));
-    vec3 shown = luminance < 0.0 ? luminance / (luminance - NEGATIVE_KNEE) * NEGATIVE_HUE : exposed;
+    vec3 shown = luminance < 0.0 ? luminance / (luminance - NEGATIVE_KNEE) * NEGATIVE_HUE : toned(max(exposed, 0.0));
     return clamp(shown, 0.0, 1.0);
 }
 

@@ -1,11 +1,7 @@
-// Radiance from a lat-long map: the look-up of shviewer/lights/lat_long.py, continuous across seam and poles.
+// Radiance from lat-long maps: the look-ups of shviewer/lights/lat_long.py, continuous across seam and poles.
 //
 // Texels are fetched and weighted here, not by the sampler: its weights have eight bits, and its derivatives jump at
 // the seam. Angles are computed here, too, because OpenGL promises no accuracy of atan.
-
-uniform sampler2D radiance_map;
-uniform vec2 row_scale_offset;  // row = x theta + y
-uniform bool rows_on_poles;     // rows from pole to pole, else at texel centres
 
 const float PI = 3.14159265358979;
 
@@ -27,57 +23,58 @@ float angle_of(float x, float y) {
     return y < 0.0 ? -angle : angle;
 }
 
-// Row and column of a direction, at texel centres where they are whole.
-vec2 map_position(vec3 direction) {
-    float theta = angle_of(direction.z, length(direction.xy));
-    float phi = angle_of(direction.x, direction.y);
-    float width = float(textureSize(radiance_map, 0).x);
-    return vec2(theta * row_scale_offset.x + row_scale_offset.y, (0.5 - phi / (2.0 * PI)) * width - 0.5);
+// Row and column of a direction, at texel centres where they are whole. Rows lie from pole to pole, or at texel centres.
+vec2 map_position(vec3 direction, vec2 size, bool rows_on_poles) {
+    float v = angle_of(direction.z, length(direction.xy)) / PI, u = 0.5 - angle_of(direction.x, direction.y) / (2.0 * PI);
+    return vec2(rows_on_poles ? v * (size.y - 1.0) : v * size.y - 0.5, u * size.x - 0.5);
 }
 
-// Columns go round; beyond a pole comes the same row half way round. Returns the row and column to read.
-int wrapped_row(int row, inout float column) {
-    ivec2 size = textureSize(radiance_map, 0);
-    if (row >= 0 && row < size.y) return row;
-    column += 0.5 * float(size.x);
-    int pole_row = rows_on_poles ? 0 : 1;
-    return clamp(row < 0 ? -row - pole_row : 2 * (size.y - 1) - row + pole_row, 0, size.y - 1);
+// A row that may lie beyond a pole, where the same row comes half way round, becomes one of the map's.
+float wrapped_row(float row, inout float column, vec2 size, bool rows_on_poles) {
+    if (row >= 0.0 && row < size.y) return row;
+    float pole_row = rows_on_poles ? 0.0 : 1.0;
+    column += 0.5 * size.x;
+    return clamp(row < 0.0 ? -row - pole_row : 2.0 * (size.y - 1.0) - row + pole_row, 0.0, size.y - 1.0);
 }
 
-vec3 texel_at(int row, int column) {
-    int width = textureSize(radiance_map, 0).x;
-    return texelFetch(radiance_map, ivec2((column + 2 * width) % width, row), 0).rgb;  // % of a negative is undefined
+// Columns go round. In floats: whole numbers are exact, and % of a negative is undefined.
+vec3 texel_at(sampler2D map, float row, float column, float width) {
+    return texelFetch(map, ivec2(column - width * floor((column + 0.5) / width), row), 0).rgb;
 }
 
-vec3 row_radiance(int row, float column) {
-    row = wrapped_row(row, column);
-    int left = int(floor(column));
-    return mix(texel_at(row, left), texel_at(row, left + 1), column - floor(column));
+vec3 linear_row(sampler2D map, float row, float column, vec2 size, bool rows_on_poles) {
+    row = wrapped_row(row, column, size, rows_on_poles);
+    float left = floor(column);
+    return mix(texel_at(map, row, left, size.x), texel_at(map, row, left + 1.0, size.x), column - left);
 }
 
-vec3 map_radiance(vec3 direction) {
-    vec2 position = map_position(direction);
-    int top = int(floor(position.x));
-    return mix(row_radiance(top, position.y), row_radiance(top + 1, position.y), position.x - floor(position.x));
+vec3 linear_map_radiance(sampler2D map, vec3 direction, bool rows_on_poles) {
+    vec2 size = vec2(textureSize(map, 0));
+    vec2 position = map_position(direction, size, rows_on_poles);
+    float top = floor(position.x);
+    return mix(linear_row(map, top, position.y, size, rows_on_poles),
+               linear_row(map, top + 1.0, position.y, size, rows_on_poles), position.x - top);
 }
 
-// Catmull-Rom weights of the texels at -1, 0, 1, 2 for a position t in [0, 1] between the middle two.
-vec4 cubic_weights(float t) {
-    return 0.5 * vec4(t * (t * (2.0 - t) - 1.0), t * t * (3.0 * t - 5.0) + 2.0, t * (t * (4.0 - 3.0 * t) + 1.0), t * t * (t - 1.0));
+// The quadratic B-splines of the nodes at -1, 0 and 1, at t in [-1/2, 1/2].
+vec3 spline_weights(float t) {
+    return vec3(0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t));
 }
 
-vec3 smooth_row_radiance(int row, float column) {
-    row = wrapped_row(row, column);
-    int left = int(floor(column));
-    vec4 weight = cubic_weights(column - floor(column));
-    return weight.x * texel_at(row, left - 1) + weight.y * texel_at(row, left) + weight.z * texel_at(row, left + 1)
-         + weight.w * texel_at(row, left + 2);
+vec3 spline_row(sampler2D map, float row, float column, vec2 size) {
+    row = wrapped_row(row, column, size, true);
+    float middle = floor(column + 0.5);
+    vec3 weight = spline_weights(column - middle);
+    return weight.x * texel_at(map, row, middle - 1.0, size.x) + weight.y * texel_at(map, row, middle, size.x)
+         + weight.z * texel_at(map, row, middle + 1.0, size.x);
 }
 
-vec3 smooth_map_radiance(vec3 direction) {
-    vec2 position = map_position(direction);
-    int top = int(floor(position.x));
-    vec4 weight = cubic_weights(position.x - floor(position.x));
-    return weight.x * smooth_row_radiance(top - 1, position.y) + weight.y * smooth_row_radiance(top, position.y)
-         + weight.z * smooth_row_radiance(top + 1, position.y) + weight.w * smooth_row_radiance(top + 2, position.y);
+// A smooth function from its spline coefficients (Synthesis.spline_map), rows from pole to pole.
+vec3 spline_map_radiance(sampler2D map, vec3 direction) {
+    vec2 size = vec2(textureSize(map, 0));
+    vec2 position = map_position(direction, size, true);
+    float middle = floor(position.x + 0.5);
+    vec3 weight = spline_weights(position.x - middle);
+    return weight.x * spline_row(map, middle - 1.0, position.y, size) + weight.y * spline_row(map, middle, position.y, size)
+         + weight.z * spline_row(map, middle + 1.0, position.y, size);
 }

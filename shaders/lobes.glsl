@@ -3,9 +3,10 @@
 // Each profile is a function of |direction - axis|^2, which keeps its digits in float32 where the cosine is close to 1.
 
 layout(std140) uniform LobeBlock {
-    vec4 lobes[3 * MAX_LOBES];  // axis and kind; radiance; parameters
+    vec4 lobes[3 * LOBE_SLOTS]; // axis and kind; radiance; parameters
 };
-uniform int n_lobes;
+uniform ivec2 original_lobes;   // the first, and one beyond the last
+uniform ivec2 sun_lobes;        // split off the light, to be added to the reconstruction
 uniform bool soft_edges;        // spread the edge of a disc over one pixel, for the eye; off where numbers are compared
 
 float profile_value(int kind, vec2 parameters, float squared_chord) {
@@ -20,9 +21,9 @@ float profile_value(int kind, vec2 parameters, float squared_chord) {
     return 1.0;
 }
 
-vec3 lobe_radiance(vec3 direction) {
+vec3 lobe_radiance(vec3 direction, ivec2 part) {
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < n_lobes; ++i) {
+    for (int i = part.x; i < part.y; ++i) {
         vec4 axis_kind = lobes[3 * i];
         vec3 chord = direction - axis_kind.xyz;
         sum += profile_value(int(axis_kind.w), lobes[3 * i + 2].xy, dot(chord, chord)) * lobes[3 * i + 1].rgb;

@@ -1,28 +1,41 @@
 #version 330 core
 // One sphere, seen from afar (orthographically) and drawn per pixel: a light looked up in the direction of its normal.
 //
-// Linear until the last line; display.glsl alone turns radiance into colour.
+// There is a program for every SHOWN, ORIGINAL, RECONSTRUCTION and TONE: software OpenGL runs both sides of a branch, and a
+// sphere should not pay for what it does not show. Linear until the last line; display.glsl alone turns radiance into colour.
 
 #include "constants.glsl"
 #include "sh.glsl"
 #include "lobes.glsl"
 #include "lat_long.glsl"
 #include "display.glsl"
+#include "error.glsl"
 
 uniform vec2 centre;            // pixels from the bottom left
 uniform float radius;           // pixels
 uniform mat3 light_from_view;   // turns a normal into the frame of the light
-uniform int source;             // one of SOURCE_...
 uniform bool linear_output;     // radiance as it is, zero outside, for comparing numbers
+uniform sampler2D original_map;
+uniform bool original_rows_on_poles;
+uniform sampler2D reconstruction_map;
 
 out vec4 colour;
 
-vec3 radiance_from(vec3 direction) {
-    vec3 lobes = lobe_radiance(direction);  // all there is, or suns that were split off the reconstruction
-    if (source == SOURCE_LOBES) return lobes;
-    if (source == SOURCE_MAP) return lobes + map_radiance(direction);
-    if (source == SOURCE_SMOOTH_MAP) return lobes + smooth_map_radiance(direction);
-    return lobes + sh_radiance(direction);
+vec3 original_radiance(vec3 direction) {
+#if ORIGINAL == ORIGINAL_LOBES
+    return lobe_radiance(direction, original_lobes);
+#else
+    return linear_map_radiance(original_map, direction, original_rows_on_poles);
+#endif
+}
+
+vec3 reconstruction_radiance(vec3 direction) {
+    vec3 suns = lobe_radiance(direction, sun_lobes);
+#if RECONSTRUCTION == RECONSTRUCTION_SUM
+    return suns + sh_radiance(direction);
+#else
+    return suns + spline_map_radiance(reconstruction_map, direction);
+#endif
 }
 
 void main() {
@@ -31,11 +44,20 @@ void main() {
     float distance_ = sqrt(distance_squared);
     bool inside = distance_squared < 1.0;
     vec3 normal = inside ? vec3(p, sqrt(1.0 - distance_squared)) : vec3(p / distance_, 0.0);
-    vec3 radiance = radiance_from(normalize(light_from_view * normal));
+    vec3 direction = normalize(light_from_view * normal);
+#if SHOWN == SHOWN_ORIGINAL
+    vec3 radiance = original_radiance(direction), shown = visible(radiance);
+#elif SHOWN == SHOWN_RECONSTRUCTION
+    vec3 radiance = reconstruction_radiance(direction), shown = visible(radiance);
+#else
+    vec3 original = original_radiance(direction);
+    vec3 radiance = reconstruction_radiance(direction) - original;
+    vec3 shown = error_colour(error_value(original, radiance));
+#endif
     if (linear_output) {
         colour = inside ? vec4(radiance, 1.0) : vec4(0.0);
         return;
     }
     float coverage = clamp((1.0 - distance_) * radius + 0.5, 0.0, 1.0);
-    colour = vec4(encode(mix(BACKGROUND, visible(radiance), coverage)), 1.0);
+    colour = vec4(encode(mix(BACKGROUND, shown, coverage)), 1.0);
 }

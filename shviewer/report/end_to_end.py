@@ -22,6 +22,7 @@ from shviewer.report.timing import Timing, summarise, time_interleaved
 from shviewer.stability.shader import Shader
 from shviewer.viewer.composition import compose
 from shviewer.viewer.keys import press
+from shviewer.viewer.layers import Layer
 from shviewer.viewer.memory import MEMORY
 from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
@@ -161,14 +162,16 @@ class _Session:
     def __init__(self, renderer: Renderer, target: moderngl.Framebuffer) -> None:
         self.renderer = renderer
         self.target = target
+        self.layers: tuple[Layer, ...] = ()
 
     def upload(self, state: ViewState) -> None:
         picture = prepare(state)
-        self.renderer.show(picture, draw_overlay(picture, FRAME, timing=True).image)
+        self.renderer.show(picture)
+        self.layers = draw_overlay(picture, FRAME, timing=True).layers
 
     def show(self, state: ViewState) -> None:
         self.upload(state)
-        self.renderer.draw(self.target, FRAME)
+        self.renderer.draw(self.target, FRAME, self.layers)
         self.renderer.context.finish()
 
     def press_up(self, start: ViewState, n_bands: int) -> None:

@@ -11,18 +11,18 @@ from dataclasses import replace
 
 import moderngl
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.lat_long import LatLongMap
 from shviewer.report.measurement import Measurement, timed
 from shviewer.report.subjects import Subject
 from shviewer.report.timing import Timing, time_interleaved
 from shviewer.stability.shader import Shader
 from shviewer.viewer import camera
 from shviewer.viewer.composition import compose
-from shviewer.viewer.layout import MAX_DIRECT_BANDS
-from shviewer.viewer.picture import MAP_SIZE, Picture, prepare
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, map_size
+from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import offscreen, render_linear
 from shviewer.viewer.state import CAMERA_HOME, ViewState
@@ -30,6 +30,9 @@ from shviewer.viewer.state import CAMERA_HOME, ViewState
 SECTION = "reconstruction"
 BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
 FRAME = compose(1280, 640)
+MAP_SIZE = (1025, 2048)
+"""Of the maps that the CPU makes."""
+
 
 DIRECT, CACHED = "shader, direct sum", "shader, cached map"
 SCATTERED, BASIS = "CPU, scattered", "CPU, basis matrix"
@@ -127,12 +130,13 @@ class _Stage:
         vectors = np.random.default_rng(SEED).normal(size=(count, 3))
         self.directions = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
-    def map(self) -> LatLongMap:
-        return LatLongMap(self.synthesis.pole_to_pole(*MAP_SIZE), rows_on_poles=True)
+    def map(self) -> NDArray[np.float32]:
+        return self.synthesis.pole_to_pole(*MAP_SIZE)
 
     def on_a_map(self) -> Picture:
         """Drawn from a map, however few bands; the copy tells the renderer that its block of coefficients is not this one's."""
-        return replace(self.direct, coefficients=self.coefficients.copy(), reconstruction_map=self.map())
+        splines = self.synthesis.spline_map(*map_size(self.n_bands))
+        return replace(self.direct, coefficients=self.coefficients.copy(), reconstruction_map=splines)
 
     def rows_of_map(self) -> Array:
         return self.synthesis.on_rows(np.linspace(0, np.pi, MAP_SIZE[0]), MAP_SIZE[1])
@@ -160,7 +164,7 @@ class _Stage:
         some = self.directions[:CHECKED]
         scattered = ((self.sum_at(some) - self.sum_by_basis(some)) ** 2).sum(axis=1).mean()
         theta, exact = np.linspace(0, np.pi, MAP_SIZE[0]), self.rows_of_map().transpose(0, 2, 1)
-        difference = ((self.map().texels - exact) ** 2).sum(axis=2).mean(axis=1)
+        difference = ((self.map() - exact) ** 2).sum(axis=2).mean(axis=1)
         on_map = float(np.sin(theta) @ difference / np.sin(theta).sum())
         return {
             SCATTERED: self.relative(scattered),

@@ -9,20 +9,20 @@ from dataclasses import replace
 from shviewer.harmonics.basis import degree_order, index
 from shviewer.lights.light import Light
 from shviewer.viewer.camera import turned_by_drag
+from shviewer.viewer.error_view import ERRORS
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.state import (
-    ERRORS,
     LAYOUT_CHOICES,
     MAX_EXPOSURE,
     MAX_KEY_SAMPLES,
     METHODS,
     MIN_SAMPLES,
     QUANTITIES,
-    TONES,
     WINDOWS,
     ZOOM_RANGE,
     ViewState,
 )
+from shviewer.viewer.tone import TONES
 
 Action = Callable[[ViewState], ViewState]
 

@@ -24,12 +24,13 @@ class Box(NamedTuple):
 
 
 class Sphere(NamedTuple):
-    """Centre and radius, and the box it is cut to when zoomed in."""
+    """Centre and radius, the box it is cut to when zoomed in, and how high its caption stands."""
 
     x: float
     y: float
     radius: float
     clip: Box
+    caption_y: float = 0.0
 
     def touches(self, box: Box) -> bool:
         """Whether any of the sphere that is seen lies in the box."""
@@ -41,18 +42,26 @@ class Sphere(NamedTuple):
         down = self.y - min(max(self.y, top), bottom)
         return across * across + down * down < self.radius * self.radius
 
+    def position(self, x: float, y: float) -> tuple[float, float] | None:
+        """Where a pixel lies in radii right and up from the centre; None outside the sphere or where it is cut."""
+        right, up = (x - self.x) / self.radius, (self.y - y) / self.radius
+        return (right, up) if self.clip.contains(x, y) and right * right + up * up < 1 else None
+
 
 @dataclass(frozen=True)
 class Composition:
-    """The original on the left, the reconstruction on the right, captions above, figures under a hairline."""
+    """The original, the reconstruction and perhaps their difference, captions above, figures under a hairline."""
 
     width: int
     height: int
     scale: float
     """Size of type and gaps; 1 at 1280 x 640."""
-    spheres: tuple[Sphere, Sphere]
+    spheres: tuple[Sphere, ...]
     caption_y: float
+    """Of the corners, and of the captions of the first row."""
     hairline_y: float
+    colour_bar: Box | None = None
+    """Room for the colours of the error and their numbers, under its sphere."""
 
     def px(self, length: float) -> float:
         """A length of the 1280 x 640 design in pixels of this frame."""
@@ -63,19 +72,41 @@ class Composition:
         return self.px(24)
 
 
-def compose(width: int, height: int, zoom: float = 1.0, content_scale: float = 1.0) -> Composition:
-    """Lay out a frame. Type does not shrink below 0.7 of the design (times the monitor's content scale)."""
+TOP, STRIP, GAP, BAR, ROW_CAPTION = 48, 118, 30, 34, 40
+"""Heights of the captions, the figures, the space before them, the colour bar, and the captions of a second row."""
+
+
+def compose(width: int, height: int, zoom: float = 1.0, content_scale: float = 1.0, n_spheres: int = 2) -> Composition:
+    """Lay out a frame: spheres side by side, or the third below the others where that makes them larger.
+
+    Type does not shrink below 0.7 of the design (times the monitor's content scale).
+    """
     scale = max(min(height / DESIGN_HEIGHT, width / DESIGN_WIDTH), 0.7 * content_scale)
-    top, strip, gap = 48 * scale, 118 * scale, 30 * scale
-    free = height - top - strip - gap
-    radius = max(min(free / 2, width / 4 - 18 * scale), 4.0)
-    block = top + 2 * radius + gap + strip
-    first = max((height - block) / 2, 0.0)  # a tall window centres the whole
-    centre_y = first + top + radius
-    hairline = min(centre_y + radius + gap, max(height - strip, centre_y + radius))
-    half, ceiling = width / 2, first + top + (10 * scale if zoom > 1 else -2)  # under the captions
-    spheres = (
-        Sphere(width / 4, centre_y, radius * zoom, Box(0, ceiling, half - scale, hairline)),
-        Sphere(3 * width / 4, centre_y, radius * zoom, Box(half + scale, ceiling, width, hairline)),
-    )
-    return Composition(width, height, scale, spheres, first + 28 * scale, hairline)
+    arrangements = [(n_spheres,)] if n_spheres < 3 else [(3,), (2, 1)]
+    bar = BAR * scale if n_spheres > 2 else 0.0
+    fixed = (TOP + STRIP + GAP) * scale + bar
+
+    def radius_in(rows: tuple[int, ...]) -> float:
+        free = height - fixed - (len(rows) - 1) * ROW_CAPTION * scale
+        return max(min(free / len(rows) / 2, width / (2 * max(rows)) - 18 * scale), 4.0)
+
+    rows = max(arrangements, key=radius_in)
+    radius = radius_in(rows)
+    pitch = 2 * radius + ROW_CAPTION * scale
+    above, below = TOP * scale, len(rows) * pitch - ROW_CAPTION * scale
+    top = max((height - fixed - below) / 2, 0.0)  # a tall window centres the whole
+    bottom = top + above + below
+    hairline = min(bottom + bar + GAP * scale, max(height - STRIP * scale, bottom + bar))
+    spheres: list[Sphere] = []
+    for number, count in enumerate(rows):
+        centre_y = top + above + number * pitch + radius
+        caption_y = centre_y - radius - 20 * scale
+        ceiling = centre_y - radius + (10 * scale if zoom > 1 else -2)  # under the captions
+        floor = hairline if number == len(rows) - 1 and not bar else centre_y + radius + 4 * scale
+        for column in range(count):
+            left, right = column * width / count, (column + 1) * width / count
+            clip = Box(left + (scale if column else 0), ceiling, right - (scale if column < count - 1 else 0), floor)
+            spheres.append(Sphere((left + right) / 2, centre_y, radius * zoom, clip, caption_y))
+    x = spheres[-1].x
+    colour_bar = Box(x - radius, bottom + 8 * scale, x + radius, bottom + 8 * scale + bar) if bar else None
+    return Composition(width, height, scale, tuple(spheres), top + above - 20 * scale, hairline, colour_bar)

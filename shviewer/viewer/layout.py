@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, index, normalisation
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
+from shviewer.lights.compact_sources import MOST as MAX_SUNS
 from shviewer.lights.lobes import MAX_LOBES, Lobe
+from shviewer.viewer.error_view import ERRORS
+from shviewer.viewer.tone import ACES, LOG_RANGE, TONES
 
 MAX_DIRECT_BANDS = 32
 """The most bands the fragment shader sums: 32**2 vec4 fill the 16 KiB that every driver grants a uniform block."""
@@ -17,8 +22,17 @@ MAX_DIRECT_BANDS = 32
 MAX_SHOWN_BANDS = 128
 """Beyond MAX_DIRECT_BANDS the reconstruction is drawn from a map, up to here."""
 
-SOURCE_LOBES, SOURCE_MAP, SOURCE_HARMONICS, SOURCE_SMOOTH_MAP = range(4)
-"""What a sphere shows: lobes, a map interpolated linearly, a sum of harmonics, a map interpolated by cubics."""
+MAP_COLUMNS, COLUMNS_PER_BAND = (512, 1024, 2048), 64
+"""Columns of the map: the first that are COLUMNS_PER_BAND for each band, or the last. So fine, its splines are good to 5e-6
+of the peak up to 32 bands, and to 4e-4 at 128."""
+
+CHOICES: dict[str, tuple[str, ...]] = {
+    "SHOWN": ("ORIGINAL", "RECONSTRUCTION", "ERROR"),
+    "ORIGINAL": ("LOBES", "MAP"),
+    "RECONSTRUCTION": ("SUM", "MAP"),
+    "TONE": tuple(tone.upper() for tone in TONES),
+}
+"""What a program of shaders/sphere.frag is made for: one of each."""
 
 BACKGROUND = (0.0203, 0.0203, 0.0232)
 """Linear RGB around the spheres: a little above black, so that an unlit sphere is still seen."""
@@ -30,26 +44,29 @@ NEGATIVE_KNEE = 0.3
 """The magnitude, in units of white, that gets half of it."""
 
 SH_TERMS = MAX_DIRECT_BANDS**2
+LOBE_SLOTS = 2 * MAX_LOBES + MAX_SUNS
+ERROR_KINDS = tuple(kind.upper() for kind in ERRORS[1:])
+FLOATS = {"NEGATIVE_KNEE": NEGATIVE_KNEE, "LOG_RANGE": LOG_RANGE}
+VECTORS = {"BACKGROUND": BACKGROUND, "NEGATIVE_HUE": NEGATIVE_HUE}
 
 
-def glsl_constants() -> str:
-    """constants.glsl, which every shader that needs a number from here includes."""
+def glsl_constants(chosen: Mapping[str, str] = MappingProxyType({})) -> str:
+    """constants.glsl, which every shader that needs a number from here includes; with the choices of one program."""
     integers = {
         "SH_TERMS": SH_TERMS,
-        "MAX_LOBES": MAX_LOBES,
-        "SOURCE_LOBES": SOURCE_LOBES,
-        "SOURCE_MAP": SOURCE_MAP,
-        "SOURCE_HARMONICS": SOURCE_HARMONICS,
-        "SOURCE_SMOOTH_MAP": SOURCE_SMOOTH_MAP,
+        "LOBE_SLOTS": LOBE_SLOTS,
         "PROFILE_CONSTANT": Constant.kind,
         "PROFILE_CLAMPED_LINEAR": ClampedLinear.kind,
         "PROFILE_DISC": Disc.kind,
         "PROFILE_GAUSSIAN": Gaussian.kind,
     }
-    vectors = {"BACKGROUND": BACKGROUND, "NEGATIVE_HUE": NEGATIVE_HUE}
+    for name, values in (*CHOICES.items(), ("ERROR", ERROR_KINDS)):
+        integers |= {f"{name}_{value}": number for number, value in enumerate(values)}
     lines = [f"#define {name} {value}" for name, value in integers.items()]
-    lines.append(f"const float NEGATIVE_KNEE = {NEGATIVE_KNEE!r};")
-    lines += [f"const vec3 {name} = vec3({', '.join(map(repr, value))});" for name, value in vectors.items()]
+    lines += [f"#define {name} {name}_{value}" for name, value in chosen.items()]
+    lines += [f"const float {name} = {value!r};" for name, value in FLOATS.items()]
+    lines += [f"const vec3 {name} = vec3({', '.join(map(repr, value))});" for name, value in VECTORS.items()]
+    lines.append(f"const float ACES[5] = float[5]({', '.join(map(repr, ACES))});")
     return "\n".join(lines) + "\n"
 
 
@@ -80,11 +97,17 @@ def _term_order(n_bands: int) -> tuple[NDArray[np.int64], Array, Array]:
     return np.array(rows), np.array(factors), np.array(steps)
 
 
-def pack_lobes(lobes: tuple[Lobe, ...]) -> NDArray[np.float32]:
-    """The block LobeBlock of shaders/lobes.glsl, (MAX_LOBES, 3, 4): axis and kind, radiance, parameters."""
-    packed = np.zeros((MAX_LOBES, 3, 4), dtype=np.float32)
+def pack_lobes(lobes: Sequence[Lobe]) -> NDArray[np.float32]:
+    """The block LobeBlock of shaders/lobes.glsl, (LOBE_SLOTS, 3, 4): axis and kind, radiance, parameters."""
+    packed = np.zeros((LOBE_SLOTS, 3, 4), dtype=np.float32)
     for row, lobe in zip(packed, lobes, strict=False):
         row[0] = *lobe.axis, lobe.profile.kind
         row[1, :3] = lobe.radiance
         row[2, :2] = lobe.profile.parameters
     return packed
+
+
+def map_size(n_bands: int) -> tuple[int, int]:
+    """Rows and columns of the map of a reconstruction."""
+    columns = next((columns for columns in MAP_COLUMNS if columns >= COLUMNS_PER_BAND * n_bands), MAP_COLUMNS[-1])
+    return columns // 2 + 1, columns

@@ -15,6 +15,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.help_sheet import draw_help
+from shviewer.viewer.layers import Layer, strips
 from shviewer.viewer.lettering import (
     ACCENT,
     FAINT,
@@ -50,6 +51,8 @@ class Overlay:
     """image: (height, width, 4) uint8, straight alpha. boxes: name -> where it was drawn. bars: band -> where to click."""
 
     image: NDArray[np.uint8]
+    layers: tuple[Layer, ...]
+    """What of the image is not empty."""
     boxes: dict[str, Box] = field(default_factory=dict)
     bars: dict[int, Box] = field(default_factory=dict)
     plane: Plane | None = None
@@ -71,7 +74,8 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     painter.hint(picture, NO_PLANE if wanted and not plane else "")
     if picture.state.help_visible:
         draw_help(sheet, picture.state, composition, opengl)
-    return Overlay(np.asarray(sheet), painter.boxes, painter.bars, plane)
+    image = np.asarray(sheet)
+    return Overlay(image, strips(image), painter.boxes, painter.bars, plane)
 
 
 class _Painter:
@@ -125,7 +129,7 @@ class _Painter:
         """What each sphere is; in the corners what light it is and how it was projected."""
         at, state = self.at, picture.state
         y = at.caption_y
-        left, right = (sphere.x for sphere in at.spheres)
+        left, right = (sphere.x for sphere in at.spheres[:2])
         muted = describe_muted(state)
         plural = "s" if state.n_bands > 1 else ""
         bands = f"{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"

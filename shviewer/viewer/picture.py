@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array
@@ -28,9 +30,11 @@ from shviewer.viewer.analysis import (
     subject,
 )
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.error_view import ERRORS, automatic_range, error_values
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS, map_size
 from shviewer.viewer.memory import remember
-from shviewer.viewer.state import MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
+from shviewer.viewer.state import EVALUATIONS, MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
+from shviewer.viewer.tone import TONES, exposed_for
 
 DIMMEST, BRIGHTEST = 1e-30, 1e30
 """The largest radiance of a light that can be drawn: beyond, sums and products would leave float32."""
@@ -39,10 +43,17 @@ WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
 
 WHITE_LEVEL = 0.8
-"""Linear; the brightest hundredth still stands out above it."""
+"""What is shown of it, linear: the brightest hundredth still stands out above it."""
 
-MAP_SIZE = (1025, 2048)
-"""Rows and columns of the reconstruction's map: interpolated by cubics it is good to 1.5e-10 n^3 of the peak."""
+LEAST_ERROR_RANGE = 1e-30
+"""So that float32 can divide by it."""
+
+
+class Source(NamedTuple):
+    """What the shader evaluates a light by: its lobes, or a map."""
+
+    lobes: tuple[Lobe, ...]
+    map: LatLongMap | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,18 +63,22 @@ class Picture:
     state: ViewState
     subject: Subject
     """What is shown on the left, what is projected, and the suns that were split off."""
-    lobes: tuple[Lobe, ...]
-    """Of the original."""
-    added_lobes: tuple[Lobe, ...]
-    """The suns, drawn on top of the reconstruction."""
-    original_map: LatLongMap | None
+    original: Source
+    compared: Source
+    """What the error is of: the original, or what is left of it without its suns."""
+    suns: tuple[Lobe, ...]
+    """Drawn on top of the reconstruction."""
     coefficients: Array
     """Shown, (n_bands**2, 3): muted ones are zero."""
-    reconstruction_map: LatLongMap | None
-    """In place of the direct sum above MAX_DIRECT_BANDS."""
+    reconstruction_map: NDArray[np.float32] | None
+    """Spline coefficients (rows, columns, 4) of the reconstruction, drawn in place of the direct sum."""
     world_from_view: Array
     light_from_world: Array
     exposure_stops: float
+    error_floor: float
+    """The radiance that a darker original counts as in the relative error: the light's mean."""
+    error_range: float
+    """Where the colours of the error end."""
     projection: Projection
     figures: Figures
     needs: Needs
@@ -76,8 +91,11 @@ class Picture:
         return self.subject.light
 
 
-def prepare(state: ViewState) -> Picture:
-    """Everything to be drawn and said. LightError if the light cannot be read, UsageError for a state out of range."""
+def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
+    """Everything to be drawn and said. LightError if the light cannot be read, UsageError for a state out of range.
+
+    by_map: draw the reconstruction from a map of it, although it could be summed per pixel.
+    """
     check(state)
     shown = subject(state)
     light, whole = shown.light, shown.whole
@@ -90,24 +108,32 @@ def prepare(state: ViewState) -> Picture:
         )
     shape = state.n_bands, state.muted_shown, state.window, state.window_width
     coefficients, figures = reconstruct(light, projection, *shape)
+    floor = float(np.abs(projection.coefficients[0]).mean()) / (2 * np.sqrt(np.pi))
+    by_map = by_map or state.n_bands > MAX_DIRECT_BANDS or state.evaluate == "map"
     return Picture(
         state=state,
         subject=shown,
-        lobes=whole.lobes if isinstance(whole, LobeLight) else (),
-        added_lobes=_sun_lobes(shown, state.quantity),
-        original_map=whole.radiance_map(),
+        original=_source(whole),
+        compared=_source(light),
+        suns=_sun_lobes(shown, state.quantity),
         coefficients=coefficients,
-        reconstruction_map=None
-        if state.n_bands <= MAX_DIRECT_BANDS
-        else _reconstruction_map(light, projection, *shape),
+        reconstruction_map=_reconstruction_map(light, projection, *shape) if by_map else None,
         world_from_view=camera.world_from_view(*state.camera),
         light_from_world=camera.light_from_world(state.light_rotation),
         exposure_stops=exposure_stops(state, whole),
+        error_floor=max(floor, LEAST_ERROR_RANGE),
+        error_range=1.0
+        if state.error == "off"
+        else state.error_range or _error_range(light, projection, *shape, state.error, floor),
         projection=projection,
         figures=figures,
         needs=needs(state),
         needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
     )
+
+
+def _source(light: Light) -> Source:
+    return Source(light.lobes if isinstance(light, LobeLight) else (), light.radiance_map())
 
 
 def _sun_lobes(shown: Subject, quantity: str) -> tuple[Lobe, ...]:
@@ -137,6 +163,20 @@ def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> Non
         raise UsageError(f"seed {state.seed}: it must not be negative")
     if state.exposure_stops is not None and abs(state.exposure_stops) > MAX_EXPOSURE:
         raise UsageError(f"exposure {state.exposure_stops:g}: it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops")
+    if state.tone not in TONES:
+        raise UsageError(f"tone {state.tone!r}: it must be one of {', '.join(TONES)}")
+    if state.error not in ERRORS:
+        raise UsageError(f"error {state.error!r}: it must be one of {', '.join(ERRORS)}")
+    if state.error_range is not None and not LEAST_ERROR_RANGE <= state.error_range <= BRIGHTEST:
+        raise UsageError(f"error range {state.error_range:g}: it must be {LEAST_ERROR_RANGE:g} to {BRIGHTEST:g}")
+    if state.evaluate not in EVALUATIONS:
+        raise UsageError(f"evaluate {state.evaluate!r}: it must be one of {', '.join(EVALUATIONS)}")
+    if state.evaluate == "direct" and state.n_bands > MAX_DIRECT_BANDS:
+        raise UsageError(
+            f"{state.n_bands} bands: at most {MAX_DIRECT_BANDS} are summed directly; map or auto take more"
+        )
+    if state.basis is not None and not abs(state.basis[1]) <= state.basis[0] < state.n_bands:
+        raise UsageError(f"basis function {state.basis}: l must be 0 to {state.n_bands - 1}, m -l to l")
     if not ZOOM_RANGE[0] <= state.zoom <= ZOOM_RANGE[1]:
         raise UsageError(f"zoom {state.zoom:g}: it must be {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g}")
     if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
@@ -145,21 +185,42 @@ def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> Non
 
 def exposure_stops(state: ViewState, light: Light) -> float:
     """The exposure in use: fixed by the state, or such that 99 % of the original stays just below white."""
-    base = _automatic_exposure(light) if state.exposure_stops is None else state.exposure_stops
+    base = _automatic_exposure(light, state.tone) if state.exposure_stops is None else state.exposure_stops
     return base + state.exposure_offset
 
 
 @remember(most=2)
 def _reconstruction_map(
     light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
-) -> LatLongMap:
+) -> NDArray[np.float32]:
     shown, _ = reconstruct(light, projection, n_bands, muted, window_name, width)
-    rows, columns = MAP_SIZE
-    return LatLongMap(Synthesis(shown).pole_to_pole(rows, columns), rows_on_poles=True)
+    return Synthesis(shown).spline_map(*map_size(n_bands))
 
 
-@remember(most=2)
-def _automatic_exposure(light: Light) -> float:
+@remember(most=16)
+def _error_range(
+    light: Light,
+    projection: Projection,
+    n_bands: int,
+    muted: tuple[int, ...],
+    window_name: str,
+    width: float | None,
+    kind: str,
+    floor: float,
+) -> float:
+    """From the grid on which the figures are found; relative errors have no figure, and end at their own largest."""
+    shown, figures = reconstruct(light, projection, n_bands, muted, window_name, width)
+    grid = error_grid(light, grid_rows(n_bands))
+    values = Synthesis(shown).on_rows(grid.theta, len(grid.phi))
+    original, reconstruction = (part.transpose(0, 2, 1).reshape(-1, 3) for part in (grid.original, values))
+    errors = error_values(kind, original, reconstruction, floor)
+    shares = np.repeat(grid.row_share, len(grid.phi))
+    largest = figures.extremes.max_error if kind != "relative" else float(errors.max())
+    return max(automatic_range(kind, errors, shares, largest), LEAST_ERROR_RANGE)
+
+
+@remember(most=len(TONES))
+def _automatic_exposure(light: Light, tone: str) -> float:
     grid = error_grid(light, grid_rows(1))
     brightest = grid.original.max(axis=1)
     order = np.argsort(brightest, axis=None)
@@ -168,4 +229,4 @@ def _automatic_exposure(light: Light) -> float:
     level = float(brightest.ravel()[order[position]])
     if level <= 0:
         level = grid.peak
-    return float(np.log2(WHITE_LEVEL / level)) if level > 0 else 0.0
+    return float(np.log2(exposed_for(WHITE_LEVEL, tone) / level)) if level > 0 else 0.0

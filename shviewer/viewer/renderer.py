@@ -2,34 +2,28 @@
 
 from __future__ import annotations
 
-import re
-from typing import Any
+from collections.abc import Sequence
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.errors import GraphicsError, ShaderError
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.lights.lat_long import LatLongMap
-from shviewer.resources import ShaderSource, load_shader
+from shviewer.lights.lobes import Lobe
+from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Composition, Sphere
-from shviewer.viewer.layout import (
-    BACKGROUND,
-    SOURCE_HARMONICS,
-    SOURCE_LOBES,
-    SOURCE_MAP,
-    SOURCE_SMOOTH_MAP,
-    glsl_constants,
-    pack_coefficients,
-    pack_lobes,
-)
+from shviewer.viewer.error_view import ERRORS
+from shviewer.viewer.layers import Layer
+from shviewer.viewer.layout import BACKGROUND, CHOICES, LOBE_SLOTS, SH_TERMS, pack_coefficients, pack_lobes
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.programs import BLOCKS, SAMPLERS, Program
+from shviewer.viewer.textures import ArrayTexture
 
 GL_VERSIONS = (450, 410, 330)
 """Asked for in this order; every shader is written for the last."""
 
-SH_BINDING, LOBE_BINDING = 0, 1
+VEC4 = 16
+"""Bytes."""
 
 
 class Renderer:
@@ -37,20 +31,21 @@ class Renderer:
 
     def __init__(self, context: moderngl.Context) -> None:
         self.context = context
-        self.sphere_program = _compile(context, "screen.vert", "sphere.frag")
-        self.overlay_program = _compile(context, "screen.vert", "overlay.frag")
-        self.sphere_quad = context.vertex_array(self.sphere_program, [])
-        self.overlay_quad = context.vertex_array(self.overlay_program, [])
-        self.sh_buffer = _block_buffer(self.sphere_program, "ShBlock", SH_BINDING)
-        self.lobe_buffers = [_block_buffer(self.sphere_program, "LobeBlock", LOBE_BINDING) for _ in range(2)]
-        """Of the original, and of what is added to the reconstruction."""
-        self.textures: dict[int, tuple[LatLongMap, moderngl.Texture]] = {}
-        self.no_map = context.texture((1, 1), 4, dtype="f4")
-        self.overlay: moderngl.Texture | None = None
-        self.overlay_image: NDArray[np.uint8] | None = None
+        self.programs: dict[tuple[str, ...], Program] = {}
+        """Of sphere.frag, by the choices they were made for."""
+        self.layer_program = Program(context, "layer.frag")
+        self.sh_buffer = context.buffer(reserve=SH_TERMS * VEC4)
+        self.lobe_buffer = context.buffer(reserve=LOBE_SLOTS * 3 * VEC4)
+        self.original_map, self.compared_map, self.reconstruction_map, self.colour_map = (
+            ArrayTexture(context) for _ in range(4)
+        )
+        self.layers: dict[int, tuple[Layer, ArrayTexture]] = {}
+        """By the identity of their image; those of the last frame."""
+        self.colours: dict[str, NDArray[np.float32]] = {}
         self.picture: Picture | None = None
         self.coefficients: Array | None = None
-        """Those in the buffer."""
+        self.lobes: tuple[Lobe, ...] | None = None
+        """Those in the buffers."""
         self.rest = context.simple_framebuffer((1, 1))
         """Bound while no other framebuffer is in use."""
 
@@ -60,22 +55,33 @@ class Renderer:
         code = self.context.version_code
         return f"OpenGL {code // 100}.{code % 100 // 10}, {self.context.info['GL_RENDERER']}"
 
-    def show(self, picture: Picture, overlay: NDArray[np.uint8] | None = None) -> None:
-        """Upload what differs from the last picture. overlay: (height, width, 4) RGBA, or None for none."""
-        last = self.picture
-        for side, lobes in enumerate((picture.lobes, picture.added_lobes)):
-            if last is None or lobes is not (last.lobes, last.added_lobes)[side]:
-                self.lobe_buffers[side].write(pack_lobes(lobes))
+    def show(self, picture: Picture) -> None:
+        """Upload what differs from the last picture."""
+        lobes = *picture.original.lobes, *picture.compared.lobes, *picture.suns
+        if lobes != self.lobes:
+            self.lobe_buffer.write(pack_lobes(lobes))
+            self.lobes = lobes
         if picture.reconstruction_map is None and picture.coefficients is not self.coefficients:
             self.sh_buffer.write(pack_coefficients(picture.coefficients))
             self.coefficients = picture.coefficients
-        for side, wanted in enumerate((picture.original_map, picture.reconstruction_map)):
-            self._upload_map(side, wanted)
-        self._upload_overlay(overlay)
+        original = picture.original.map
+        compared = picture.compared.map if picture.state.error != "off" else None
+        self.original_map.follow(None if original is None else original.texels)
+        self.compared_map.follow(None if compared is None or compared is original else compared.texels)
+        self.reconstruction_map.follow(picture.reconstruction_map)
+        if picture.state.error != "off":
+            self.colour_map.follow(self._colours(colour_maps.map_of(picture.state.error)))
         self.picture = picture
 
-    def draw(self, target: moderngl.Framebuffer, composition: Composition, *, linear: bool = False) -> None:
-        """Both spheres and the overlay, or with `linear` their radiance alone, of the picture last shown."""
+    def draw(
+        self,
+        target: moderngl.Framebuffer,
+        composition: Composition,
+        layers: Sequence[Layer] = (),
+        *,
+        linear: bool = False,
+    ) -> None:
+        """The spheres of the picture last shown, and layers over them; with `linear` the spheres' radiance alone."""
         picture = self.picture
         if picture is None:
             raise ValueError("nothing to draw: show a picture first")
@@ -83,95 +89,111 @@ class Renderer:
         target.viewport = (0, 0, composition.width, composition.height)
         self.context.disable(moderngl.BLEND)
         target.clear(color=(0.0, 0.0, 0.0, 0.0) if linear else (*_encode(BACKGROUND), 1.0))
-        program = self.sphere_program
-        _uniform(program, "light_from_view").write(
-            (picture.light_from_world @ picture.world_from_view).T.astype("f4").tobytes()
-        )
-        _set(program, "linear_output", linear)
-        _set(program, "soft_edges", not linear)
-        _set(program, "exposure", 2.0**picture.exposure_stops)
-        _set(program, "n_bands", count_bands(picture.coefficients))
-        self.sh_buffer.bind_to_uniform_block(SH_BINDING)
-        original = SOURCE_LOBES if picture.original_map is None else SOURCE_MAP
-        reconstruction = SOURCE_HARMONICS if picture.reconstruction_map is None else SOURCE_SMOOTH_MAP
-        for side, source in enumerate((original, reconstruction)):
-            self.lobe_buffers[side].bind_to_uniform_block(LOBE_BINDING)
-            _set(program, "n_lobes", len((picture.lobes, picture.added_lobes)[side]))
-            self._draw_sphere(target, composition, side, source)
+        self.sh_buffer.bind_to_uniform_block(BLOCKS["ShBlock"])
+        self.lobe_buffer.bind_to_uniform_block(BLOCKS["LobeBlock"])
+        self.reconstruction_map.use(SAMPLERS["reconstruction_map"])
+        self.colour_map.use(SAMPLERS["colour_map"])
+        for shown, sphere in zip(CHOICES["SHOWN"], composition.spheres, strict=False):
+            self._draw_sphere(target, composition, picture, shown, sphere, linear)
         target.viewport = (0, 0, composition.width, composition.height)
-        if not linear and self.overlay is not None:
-            self.context.enable(moderngl.BLEND)
-            self.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-            self.overlay.use(0)
-            self.overlay_quad.render(moderngl.TRIANGLES, vertices=3)
-            self.context.disable(moderngl.BLEND)
+        if not linear:
+            self._draw_layers(target, composition, layers)
 
     def release(self) -> None:
         """Free everything this object made."""
-        for _, texture in self.textures.values():
-            texture.release()
-        for resource in (
-            self.overlay,
-            self.no_map,
+        resources: tuple[Program | moderngl.Buffer | ArrayTexture, ...] = (
+            *self.programs.values(),
+            self.layer_program,
             self.sh_buffer,
-            *self.lobe_buffers,
-            self.sphere_quad,
-            self.overlay_quad,
-        ):
-            if resource is not None:
-                resource.release()
+            self.lobe_buffer,
+            self.original_map,
+            self.compared_map,
+            self.reconstruction_map,
+            self.colour_map,
+            *(texture for _, texture in self.layers.values()),
+        )
+        for resource in resources:
+            resource.release()
         for attachment in (*self.rest.color_attachments, self.rest.depth_attachment):
             if attachment is not None:
                 attachment.release()
         self.rest.release()
-        self.sphere_program.release()
-        self.overlay_program.release()
 
-    def _draw_sphere(self, target: moderngl.Framebuffer, composition: Composition, side: int, source: int) -> None:
-        sphere = composition.spheres[side]
+    def _draw_sphere(
+        self,
+        target: moderngl.Framebuffer,
+        composition: Composition,
+        picture: Picture,
+        shown: str,
+        sphere: Sphere,
+        linear: bool,
+    ) -> None:
         box = _pixel_box(sphere, composition.height)
         if box[2] <= 0 or box[3] <= 0:
             return
-        held = self.textures.get(side)
-        texture = self.no_map if held is None else held[1]
-        texture.use(0)
-        if held is not None:
-            _set(self.sphere_program, "row_scale_offset", held[0].row_scale_offset)
-            _set(self.sphere_program, "rows_on_poles", held[0].rows_on_poles)
-        _set(self.sphere_program, "centre", (sphere.x, composition.height - sphere.y))
-        _set(self.sphere_program, "radius", sphere.radius)
-        _set(self.sphere_program, "source", source)
+        program = self._program(picture, shown)
+        ends = np.cumsum([0, len(picture.original.lobes), len(picture.compared.lobes), len(picture.suns)]).tolist()
+        source, lobes, suns = picture.original, tuple(ends[0:2]), tuple(ends[2:4])
+        map_texture = self.original_map
+        if shown == "ERROR":  # of what is left without the suns, if there are any
+            source, lobes, suns = picture.compared, tuple(ends[1:3]), (0, 0)
+            map_texture = self.original_map if source.map is picture.original.map else self.compared_map
+        map_texture.use(SAMPLERS["original_map"])
+        program.set(
+            centre=(sphere.x, composition.height - sphere.y),
+            radius=sphere.radius,
+            light_from_view=tuple((picture.light_from_world @ picture.world_from_view).T.ravel()),
+            linear_output=linear,
+            soft_edges=not linear,
+            exposure=2.0**picture.exposure_stops,
+            n_bands=count_bands(picture.coefficients),
+            original_lobes=lobes,
+            sun_lobes=suns,
+            original_rows_on_poles=source.map is not None and source.map.rows_on_poles,
+            error_kind=max(ERRORS.index(picture.state.error) - 1, 0),
+            error_range=picture.error_range,
+            error_floor=picture.error_floor,
+        )
         target.viewport = box
-        self.sphere_quad.render(moderngl.TRIANGLES, vertices=3)
+        program.draw()
 
-    def _upload_map(self, side: int, wanted: LatLongMap | None) -> None:
-        held = self.textures.get(side)
-        if held is not None and held[0] is wanted:
-            return
-        limit = self.context.info["GL_MAX_TEXTURE_SIZE"]
-        if wanted is not None and max(wanted.texels.shape) > limit:
-            height, width = wanted.texels.shape[:2]
-            raise GraphicsError(f"a map of {width} x {height} texels: this OpenGL takes at most {limit} a side")
-        if held is not None:
-            held[1].release()
-            del self.textures[side]
-        if wanted is not None:
-            height, width = wanted.texels.shape[:2]
-            texels = np.ones((height, width, 4), dtype=np.float32)
-            texels[..., :3] = wanted.texels
-            self.textures[side] = (wanted, self.context.texture((width, height), 4, texels, dtype="f4"))
+    def _program(self, picture: Picture, shown: str) -> Program:
+        """The program that draws this of a picture, compiled when it is first wanted; what it does not read is all one."""
+        original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
+        reconstruction = "SUM" if picture.reconstruction_map is None or shown == "ORIGINAL" else "MAP"
+        tone = "NONE" if shown == "ERROR" else picture.state.tone.upper()
+        key = shown, original, reconstruction, tone
+        if key not in self.programs:
+            self.programs[key] = Program(self.context, "sphere.frag", dict(zip(CHOICES, key, strict=True)))
+        return self.programs[key]
 
-    def _upload_overlay(self, image: NDArray[np.uint8] | None) -> None:
-        if image is self.overlay_image:
-            return
-        if self.overlay is not None and (image is None or self.overlay.size != image.shape[1::-1]):
-            self.overlay.release()
-            self.overlay = None
-        if image is not None:
-            if self.overlay is None:
-                self.overlay = self.context.texture((image.shape[1], image.shape[0]), 4)
-            self.overlay.write(np.ascontiguousarray(image))
-        self.overlay_image = image
+    def _draw_layers(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
+        """In their order; the texture of an image lives as long as it is drawn in every frame."""
+        wanted = {id(layer.image) for layer in layers}
+        spare = [self.layers.pop(key)[1] for key in list(self.layers) if key not in wanted]
+        self.context.enable(moderngl.BLEND)
+        self.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        for layer in layers:
+            if id(layer.image) not in self.layers:
+                texture = spare.pop() if spare else ArrayTexture(self.context)
+                texture.follow(layer.image)
+                self.layers[id(layer.image)] = layer, texture
+            self.layers[id(layer.image)][1].use(SAMPLERS["layer"])
+            height, width = layer.image.shape[:2]
+            corner = layer.left, composition.height - layer.top
+            self.layer_program.set(corner=corner)
+            target.viewport = (corner[0], corner[1] - height, width, height)
+            self.layer_program.draw()
+        self.context.disable(moderngl.BLEND)
+        target.viewport = (0, 0, composition.width, composition.height)
+        for texture in spare:
+            texture.release()
+
+    def _colours(self, name: str) -> NDArray[np.float32]:
+        """A colour map as a texture: one row of linear RGB."""
+        if name not in self.colours:
+            self.colours[name] = colour_maps.linear(colour_maps.table(name))[None].astype(np.float32)
+        return self.colours[name]
 
 
 def _pixel_box(sphere: Sphere, height: int) -> tuple[int, int, int, int]:
@@ -183,42 +205,7 @@ def _pixel_box(sphere: Sphere, height: int) -> tuple[int, int, int, int]:
     return x, y, int(np.ceil(right)) - x, int(np.ceil(height - top)) - y
 
 
-def _uniform(program: moderngl.Program, name: str) -> moderngl.Uniform:
-    member = program[name]
-    assert isinstance(member, moderngl.Uniform)
-    return member
-
-
-def _set(program: moderngl.Program, name: str, value: Any) -> None:
-    _uniform(program, name).value = value
-
-
-def _block_buffer(program: moderngl.Program, name: str, binding: int) -> moderngl.Buffer:
-    """A buffer of the size of a uniform block, which is tied to `binding`."""
-    block = program[name]
-    assert isinstance(block, moderngl.UniformBlock)
-    block.binding = binding
-    return program.ctx.buffer(reserve=block.size)
-
-
 def _encode(colour: tuple[float, float, float]) -> tuple[float, float, float]:
     """sRGB of a linear colour, as in shaders/display.glsl."""
     red, green, blue = (12.92 * c if c < 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055 for c in colour)
     return red, green, blue
-
-
-def _compile(context: moderngl.Context, vertex: str, fragment: str) -> moderngl.Program:
-    generated = {"constants.glsl": glsl_constants()}
-    sources = {"vertex": load_shader(vertex, generated), "fragment": load_shader(fragment, generated)}
-    try:
-        return context.program(vertex_shader=sources["vertex"].text, fragment_shader=sources["fragment"].text)
-    except moderngl.Error as error:
-        raise ShaderError(_explain(str(error), sources, f"shaders/{vertex} + shaders/{fragment}")) from error
-
-
-def _explain(report: str, sources: dict[str, ShaderSource], pair: str) -> str:
-    """moderngl's report names the stage in a heading ("fragment_shader"); a link error has none."""
-    stage = re.search(r"(vertex|fragment)_shader\s*=*\s*", report)
-    if stage is None:
-        return f"{pair} do not link: {' '.join(report.split())}"
-    return f"shader does not compile: {sources[stage[1]].explain(report[stage.end() :])}"

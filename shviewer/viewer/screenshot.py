@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes.util
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composition import Composition
+from shviewer.viewer.layers import Layer
 from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.picture_files import metadata, write_exr, write_png
@@ -74,18 +75,15 @@ def render_rgb(
     renderer: Renderer, picture: Picture, composition: Composition, *, overlay: bool = True, timing: bool = False
 ) -> NDArray[np.uint8]:
     """The picture as seen: (height, width, 3) uint8, top row first."""
-    sheet = draw_overlay(picture, composition, timing=timing, opengl=renderer.version).image if overlay else None
-    renderer.show(picture, sheet)
-    return read_rgb(renderer, composition)
+    layers = draw_overlay(picture, composition, timing=timing, opengl=renderer.version).layers if overlay else ()
+    renderer.show(picture)
+    return read_rgb(renderer, composition, layers)
 
 
-def read_rgb(renderer: Renderer, composition: Composition) -> NDArray[np.uint8]:
+def read_rgb(renderer: Renderer, composition: Composition, layers: Sequence[Layer] = ()) -> NDArray[np.uint8]:
     """What the renderer shows, drawn into a framebuffer of its own and read back: (height, width, 3), top row first."""
-    return (
-        np.frombuffer(_read(renderer, composition, "f1"), dtype=np.uint8)
-        .reshape(_shape(composition))[::-1, :, :3]
-        .copy()
-    )
+    data = np.frombuffer(_read(renderer, composition, "f1", layers), dtype=np.uint8)
+    return data.reshape(_shape(composition))[::-1, :, :3].copy()
 
 
 def render_linear(renderer: Renderer, picture: Picture, composition: Composition) -> NDArray[np.float32]:
@@ -99,10 +97,10 @@ def _shape(composition: Composition) -> tuple[int, int, int]:
     return composition.height, composition.width, 4
 
 
-def _read(renderer: Renderer, composition: Composition, dtype: str) -> bytes:
+def _read(renderer: Renderer, composition: Composition, dtype: str, layers: Sequence[Layer] = ()) -> bytes:
     """RGBA, bottom row first: the picture for "f1", its linear radiance for "f4"."""
     with offscreen(renderer, composition, dtype) as target:
-        renderer.draw(target, composition, linear=dtype == "f4")
+        renderer.draw(target, composition, layers, linear=dtype == "f4")
         return target.read(components=4, dtype=dtype)
 
 

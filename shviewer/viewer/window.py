@@ -136,7 +136,7 @@ class Window:
             glfw.set_window_title(self.handle, f"shviewer - {last.light.name}")
             self._keep(error)
             self._show(composition)
-        self.renderer.draw(self.renderer.context.screen, composition)
+        self.renderer.draw(self.renderer.context.screen, composition, self.overlay.layers if self.overlay else ())
         glfw.swap_buffers(self.handle)
         self.frame_count += 1
         if self.verbose:
@@ -158,8 +158,7 @@ class Window:
 
     def _show(self, composition: Composition) -> None:
         self._draw_overlay(composition)
-        assert self.overlay is not None
-        self.renderer.show(self.picture, self.overlay.image)
+        self.renderer.show(self.picture)
 
     def _look(self, watch: Watch) -> None:
         """Read the light's file again if it has changed."""
@@ -197,8 +196,10 @@ class Window:
             return
         message = f"projecting {state.samples} samples to {bands} bands ..."
         waiting = replace(self.picture, state=replace(self.picture.state, message=message))
-        self.renderer.show(self.picture, draw_overlay(waiting, composition, timing=True).image)
-        self.renderer.draw(self.renderer.context.screen, composition)
+        self.renderer.show(self.picture)
+        self.renderer.draw(
+            self.renderer.context.screen, composition, draw_overlay(waiting, composition, timing=True).layers
+        )
         glfw.swap_buffers(self.handle)
         self.overlay_key = None
 

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composition import Box, Composition, Sphere
-from shviewer.viewer.picture import MAP_SIZE, Picture, prepare
+from shviewer.viewer.layout import map_size
+from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
 SIDE = 128
@@ -85,9 +85,8 @@ def reconstructing(picture: Picture, coefficients: Array) -> Picture:
     """The same picture with other coefficients on the right, and above 32 bands with the map that viewer/ makes of them."""
     if count_bands(coefficients) <= 32:
         return replace(picture, coefficients=coefficients, reconstruction_map=None)
-    rows, columns = MAP_SIZE
-    texels = Synthesis(coefficients).pole_to_pole(rows, columns)
-    return replace(picture, coefficients=coefficients, reconstruction_map=LatLongMap(texels, rows_on_poles=True))
+    splines = Synthesis(coefficients).spline_map(*map_size(count_bands(coefficients)))
+    return replace(picture, coefficients=coefficients, reconstruction_map=splines)
 
 
 def sum_of_harmonics(directions: Array, coefficients: Array) -> Array:

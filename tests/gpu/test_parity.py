@@ -35,6 +35,7 @@ from shviewer.viewer.camera import towards
 from shviewer.viewer.composition import Box, Composition, Sphere, compose
 from shviewer.viewer.layout import (
     BACKGROUND,
+    LOBE_SLOTS,
     NEGATIVE_HUE,
     NEGATIVE_KNEE,
     SH_TERMS,
@@ -198,7 +199,7 @@ def assert_map_is_right(
     and float32 up to pi), times texels per radian.
     """
     picture = picture_of(light, **view)
-    raster = picture.original_map
+    raster = picture.original.map
     assert raster is not None
     seen = picture_view(frame, ORIGINAL, picture)
     x, y, z = seen.directions.T
@@ -423,18 +424,19 @@ def test_zoomed_spheres_do_not_cross_the_middle_or_the_captions(renderer: Render
 
 
 def test_the_uniform_blocks_are_as_large_as_the_arrays_that_fill_them(renderer: Renderer) -> None:
-    program = renderer.sphere_program
+    linear(renderer, picture_of("green"))
+    program = renderer.programs["RECONSTRUCTION", "LOBES", "SUM", "NONE"].program
     assert program["ShBlock"].size == pack_coefficients(noise(5)).nbytes == renderer.sh_buffer.size  # type: ignore[union-attr]
     block = pack_lobes((Lobe(Constant(), OFF_AXIS, np.ones(3)),))
-    assert program["LobeBlock"].size == block.nbytes == renderer.lobe_buffers[0].size  # type: ignore[union-attr]
-    assert SH_TERMS * 16 <= 16384  # what every OpenGL 3.3 grants a block
+    assert program["LobeBlock"].size == block.nbytes == renderer.lobe_buffer.size  # type: ignore[union-attr]
+    assert max(SH_TERMS * 16, LOBE_SLOTS * 48) <= 16384  # what every OpenGL 3.3 grants a block
 
 
 def test_the_generated_constants_carry_every_digit() -> None:
     text = glsl_constants()
     for value in (*BACKGROUND, *NEGATIVE_HUE, NEGATIVE_KNEE):
         assert repr(value) in text
-    assert f"#define MAX_LOBES {MAX_LOBES}\n" in text
+    assert f"#define LOBE_SLOTS {2 * MAX_LOBES + 8}\n" in text  # of an original, of it without suns, and the suns
     kinds = [profile.kind for profile in (Constant(), ClampedLinear(), Disc(1.0), Gaussian(1.0))]
     names = ("CONSTANT", "CLAMPED_LINEAR", "DISC", "GAUSSIAN")
     assert all(f"#define PROFILE_{name} {kind}\n" in text for name, kind in zip(names, kinds, strict=True))
@@ -534,7 +536,7 @@ def test_reconstructing_replaces_only_what_the_right_sphere_shows() -> None:
     """The ruler of this file: its helper must not change the original."""
     picture = picture_of("green")
     other = reconstructing(picture, noise(5))
-    assert replace(other, coefficients=picture.coefficients, reconstruction_map=None).lobes is picture.lobes
+    assert replace(other, coefficients=picture.coefficients, reconstruction_map=None).original is picture.original
     assert other.light is picture.light
 
 
@@ -542,7 +544,7 @@ def test_the_sum_is_right_after_a_map_of_the_same_coefficients(renderer: Rendere
     picture = picture_of("green", n_bands=3)
     linear(renderer, picture)
     other = replace(picture, coefficients=noise(3))
-    linear(renderer, replace(other, reconstruction_map=LatLongMap(np.zeros((3, 4, 3), np.float32), rows_on_poles=True)))
+    linear(renderer, replace(other, reconstruction_map=np.zeros((3, 4, 4), np.float32)))
     assert_sum_is_right(renderer, other)
 
 

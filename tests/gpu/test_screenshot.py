@@ -328,6 +328,16 @@ def broken_line(path: Path, old: str, new: str) -> int:
     return text[: text.index(old)].count("\n") + 1
 
 
+def draw_anew(renderer: Renderer) -> None:
+    """With programs of its own, which are compiled when they are first wanted."""
+    fresh = Renderer(renderer.context)
+    try:
+        render_rgb(fresh, picture_of("green"), square_frame(65))
+    finally:
+        renderer.rest.use()
+        fresh.release()
+
+
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [
@@ -335,7 +345,8 @@ def broken_line(path: Path, old: str, new: str) -> int:
         ("display.glsl", "return clamp(shown", "return shown +"),
         ("sphere.frag", "colour = vec4(encode", "color = vec4(encode"),
         ("screen.vert", "gl_Position = ", "gl_Place = "),
-        ("overlay.frag", "texelFetch(", "texelFish("),
+        ("layer.frag", "texelFetch(", "texelFish("),
+        ("lobes.glsl", "return 1.0;", "return one;"),
     ],
 )
 def test_a_broken_shader_is_named_by_file_and_line(
@@ -343,7 +354,7 @@ def test_a_broken_shader_is_named_by_file_and_line(
 ) -> None:
     line = broken_line(shaders / file, old, new)
     with pytest.raises(ShaderError) as caught:
-        Renderer(renderer.context)
+        draw_anew(renderer)
     assert f"shaders/{file}:{line}:" in str(caught.value)
     assert "\n" not in str(caught.value)
     assert caught.value.exit_code == 6
@@ -352,17 +363,17 @@ def test_a_broken_shader_is_named_by_file_and_line(
 def test_shaders_that_do_not_fit_together_are_both_named(renderer: Renderer, shaders: Path) -> None:
     broken_line(
         shaders / "sphere.frag",
-        "vec3 radiance_from(vec3 direction) {",
-        "vec3 nowhere(vec3 d);\nvec3 radiance_from(vec3 direction) {\n    if (source == 99) return nowhere(direction);",
+        "vec3 original_radiance(vec3 direction) {",
+        "vec3 nowhere(vec3 d);\nvec3 original_radiance(vec3 direction) {\n    if (radius < 0) return nowhere(direction);",
     )
     with pytest.raises(ShaderError, match=r"shaders/screen\.vert \+ shaders/sphere\.frag do not link: .*nowhere"):
-        Renderer(renderer.context)
+        draw_anew(renderer)
 
 
 def test_a_missing_include_lists_the_files_there_are(renderer: Renderer, shaders: Path) -> None:
     broken_line(shaders / "sphere.frag", '"lobes.glsl"', '"lobs.glsl"')
     with pytest.raises(ShaderError, match=r"no shaders/lobs\.glsl; there is: display\.glsl, .*lobes\.glsl"):
-        Renderer(renderer.context)
+        draw_anew(renderer)
 
 
 # --- golden pictures

@@ -14,7 +14,8 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import find_light
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import compose
-from shviewer.viewer.picture import MAP_SIZE, Picture, check, prepare
+from shviewer.viewer.layout import map_size
+from shviewer.viewer.picture import Picture, check, prepare
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState
@@ -76,18 +77,16 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
     renderer: Renderer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     frame = compose(128, 64)
-    render_rgb(renderer, picture("studio"), frame)
+    for n_bands in (5, 33):
+        render_rgb(renderer, picture("studio", n_bands=n_bands), frame)
 
     def forbidden(*arguments: object, **named: object) -> None:
         raise AssertionError("compiled or read again")
 
-    monkeypatch.setattr("shviewer.viewer.renderer._compile", forbidden)
-    monkeypatch.setattr("shviewer.viewer.renderer.load_shader", forbidden)
+    monkeypatch.setattr("shviewer.viewer.programs._compile", forbidden)
     monkeypatch.setattr("shviewer.viewer.analysis.find_light", forbidden)
-    programs = renderer.sphere_program.glo, renderer.overlay_program.glo
-    for n_bands in (6, 33, 1):
+    for n_bands in (6, 40, 1):
         render_rgb(renderer, picture("studio", n_bands=n_bands), frame)
-    assert programs == (renderer.sphere_program.glo, renderer.overlay_program.glo)
 
 
 # --- figures
@@ -181,25 +180,39 @@ def test_a_map_takes_over_above_32_bands() -> None:
     assert picture(n_bands=32).reconstruction_map is None
     above = picture(n_bands=33, muted=frozenset({1}))
     assert above.reconstruction_map is not None
-    texels = above.reconstruction_map.texels
-    assert texels.shape == (*MAP_SIZE, 3)
-    assert above.reconstruction_map.rows_on_poles
+    splines = above.reconstruction_map
+    height, width = map_size(33)
+    assert splines.shape == (height, width, 4)
     rng = np.random.default_rng(0)
-    rows, columns = rng.integers(0, MAP_SIZE[0], 50), rng.integers(0, MAP_SIZE[1], 50)
-    theta, phi = np.pi * rows / (MAP_SIZE[0] - 1), np.pi * (1 - (2 * columns + 1) / MAP_SIZE[1])
+    rows, columns = rng.integers(1, height - 1, 50), rng.integers(0, width, 50)
+    # at its node a quadratic B-spline is 3/4, at the nodes beside it 1/8
+    value = sum(
+        across * along * splines[rows + i, (columns + j) % width, :3].astype(np.float64)
+        for i, across in ((-1, 0.125), (0, 0.75), (1, 0.125))
+        for j, along in ((-1, 0.125), (0, 0.75), (1, 0.125))
+    )
+    theta, phi = np.pi * rows / (height - 1), np.pi * (1 - (2 * columns + 1) / width)
     directions = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1)
     wanted = evaluate_basis(directions, 33) @ above.coefficients
-    np.testing.assert_allclose(texels[rows, columns], wanted, rtol=0, atol=2e-7 * np.abs(wanted).max())
+    np.testing.assert_allclose(value, wanted, rtol=0, atol=3e-7 * np.abs(wanted).max())
+
+
+def test_a_map_is_drawn_where_it_is_asked_for_and_refused_nowhere_but_directly_above_32_bands() -> None:
+    assert picture(evaluate="map").reconstruction_map is not None
+    assert picture(evaluate="direct", n_bands=32).reconstruction_map is None
+    assert prepare(ViewState(), by_map=True).reconstruction_map is not None
+    with pytest.raises(UsageError, match="33 bands: at most 32 are summed directly"):
+        picture(evaluate="direct", n_bands=33)
 
 
 def test_lobes_are_drawn_from_formulas_and_everything_else_from_a_map() -> None:
     lobes, image = picture("studio"), picture("venice_sunset")
     function = picture(FunctionLight(lambda d: d[:, 2]))
-    assert len(lobes.lobes) == 4
-    assert lobes.original_map is None
+    assert len(lobes.original.lobes) == 4
+    assert lobes.original.map is None
     for other in (image, function):
-        assert other.lobes == ()
-        assert other.original_map is not None
+        assert other.original.lobes == ()
+        assert other.original.map is not None
 
 
 # --- exposure

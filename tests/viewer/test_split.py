@@ -60,7 +60,7 @@ def test_the_figures_are_those_of_the_rest():
 def test_the_original_is_the_very_map_of_the_whole():
     light = noon()
     unsplit, split = prepare(ViewState(lights=(light,))), prepare(state(light))
-    assert split.original_map is unsplit.original_map
+    assert split.original.map is unsplit.original.map
     assert split.exposure_stops == unsplit.exposure_stops
     assert split.subject.whole is light
 
@@ -69,7 +69,7 @@ def test_the_original_is_the_very_map_of_the_whole():
 @pytest.mark.parametrize(("quantity", "tolerance"), [("radiance", 1e-6), ("irradiance", 3e-4)])
 def test_rest_and_sun_add_up_to_the_whole(quantity, tolerance):
     picture = prepare(state(noon(), n_bands=6, quantity=quantity))
-    (sun,) = picture.added_lobes
+    (sun,) = picture.suns
     zonal = sun.profile.zonal(1)[0] * np.sqrt(1 / (4 * np.pi)) * sun.radiance
     whole = picture.subject.whole.coefficients(1)[0]
     assert_allclose(picture.coefficients[0] + zonal, whole, rtol=tolerance)
@@ -77,7 +77,7 @@ def test_rest_and_sun_add_up_to_the_whole(quantity, tolerance):
 
 def test_a_light_without_a_sun_is_shown_whole_with_the_reason():
     picture = prepare(ViewState(lights=("green",), split_sun=True))
-    assert picture.added_lobes == ()
+    assert picture.suns == ()
     assert picture.light is prepare(ViewState(lights=("green",))).light
     assert "green has no sun" in picture.subject.refusal
     assert "message" in draw_overlay(picture, compose(1280, 640)).boxes

@@ -1,0 +1,50 @@
+"""The error as one number per direction, and the range of its colours. shaders/error.glsl has the same formula.
+
+The error of a direction is that of the channel where it is largest in magnitude, so that its largest magnitude over the
+sphere is the figure "largest error". Relative to the original, it is measured against no less than a floor: black has no
+relative error.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from shviewer.harmonics.basis import Array
+
+ERRORS = ("off", "signed", "absolute", "relative")
+"""What the third sphere shows, if there is one."""
+
+SPIKE = 4.0
+"""A largest error this many times what QUIET of the sphere stays below would leave all other colours to nothing."""
+
+QUIET = 0.99
+MOST_RELATIVE = 1.0
+"""Colours of the relative error end at 100 % or before."""
+
+
+def error_values(kind: str, original: Array, reconstruction: Array, floor: float) -> Array:
+    """Radiance (..., 3) twice -> the error (...), by one of the ERRORS but "off". Only a signed one may be negative.
+
+    floor: radiance; of the relative error alone.
+    """
+    error = reconstruction - original
+    if kind == "relative":
+        error = error / np.maximum(np.abs(original), floor)
+    worst = np.take_along_axis(error, np.abs(error).argmax(axis=-1)[..., None], axis=-1)[..., 0]
+    return np.asarray(worst if kind == "signed" else np.abs(worst))
+
+
+def automatic_range(kind: str, errors: Array, shares: Array, largest: float) -> float:
+    """Where the colours end: at the largest error, unless it is a spike.
+
+    errors: on a grid, (k,); shares: of the sphere that each stands for, (k,), sum 1; largest: what the metrics found, in
+    the unit of the errors. Never 0, so that it can be divided by.
+    """
+    magnitude = np.abs(errors)
+    order = np.argsort(magnitude)
+    place = min(int(np.searchsorted(np.cumsum(shares[order]), QUIET)), len(order) - 1)
+    quiet = float(magnitude[order[place]])
+    end = min(largest, SPIKE * quiet) if quiet > 0 else largest
+    if kind == "relative":
+        end = min(end, MOST_RELATIVE)
+    return end if end > 0 else 1.0

@@ -1,0 +1,51 @@
+"""Tone curves: what becomes of an exposed radiance before sRGB. shaders/display.glsl has the same formulas.
+
+A curve takes [0, infinity) to [0, 1], without one to itself. Automatic exposure needs the way back: which radiance is shown at
+a given level.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+
+TONES = ("none", "reinhard", "aces", "log")
+
+ACES = (2.51, 0.03, 2.43, 0.59, 0.14)
+"""x (a x + b) / (x (c x + d) + e): a fit to the filmic curve of the Academy Color Encoding System.
+
+[K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2016]; without its white balance and desaturation, hence "like".
+"""
+
+LOG_RANGE = 1000.0
+"""log(1 + k x) / log(1 + k): ten stops below white are told apart."""
+
+
+def toned(exposed: NDArray[np.floating], tone: str) -> Array:
+    """What is shown of exposed radiance >= 0, any shape, by one of the TONES."""
+    x = np.asarray(exposed, dtype=np.float64)
+    if tone == "reinhard":  # [E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, eq. 3]
+        return np.asarray(x / (1 + x))
+    if tone == "aces":
+        a, b, c, d, e = ACES
+        return np.asarray(x * (a * x + b) / (x * (c * x + d) + e))
+    if tone == "log":
+        return np.asarray(np.log1p(LOG_RANGE * x) / np.log1p(LOG_RANGE))
+    return x
+
+
+def exposed_for(level: float, tone: str) -> float:
+    """The exposed radiance that the curve shows at `level`, 0 < level < 1."""
+    if tone == "reinhard":
+        return level / (1 - level)
+    if tone == "aces":
+        a, b, c, d, e = ACES
+        square, linear, constant = a - level * c, b - level * d, -level * e
+        return (-linear + math.sqrt(linear * linear - 4 * square * constant)) / (2 * square)
+    if tone == "log":
+        return math.expm1(level * math.log1p(LOG_RANGE)) / LOG_RANGE
+    return level
