@@ -75,7 +75,9 @@ def _view(options: argparse.Namespace) -> int:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
         out = Path(f"shviewer-{window.file_stem(subject(state).light.name)}.png")
-        save_picture(prepare(state), compose(options.size[0], options.size[1], state.zoom), out)
+        save_picture(
+            prepare(state), compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres), out
+        )
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0
 
@@ -94,7 +96,7 @@ def _screenshot(options: argparse.Namespace) -> int:
         raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
     state = _state(options, all_lights=False)
     picture = prepare(state)
-    composition = compose(options.size[0], options.size[1], state.zoom)
+    composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     _print_notes(picture.subject)
     if options.reference is None or pixels is None:
@@ -240,6 +242,14 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         samples=options.samples,
         seed=options.seed,
         exposure_stops=options.exposure,
+        error=options.error,
+        error_range=options.error_range,
+        tone=options.tone,
+        marks=not options.no_marks,
+        lobe_view=options.lobes or options.basis is not None,
+        basis=options.basis and (options.basis[0], options.basis[1]),
+        evaluate=options.evaluate,
+        sheet="convergence" if options.convergence else "",
         light_rotation=towards(*options.rotate_light) if options.rotate_light else IDENTITY,
         zoom=options.zoom,
     )

@@ -177,6 +177,33 @@ def _add_view_options(parser: OneLineParser) -> None:
     )
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="of the jittered samples (default 0)")
     parser.add_argument("--exposure", metavar="STOPS", type=finite, help="fixed, instead of chosen from the light")
+    parser.add_argument("--tone", metavar="T", default="none", help="curve after exposure: none, reinhard, aces or log")
+    parser.add_argument(
+        "--error",
+        metavar="E",
+        default="off",
+        help="a third sphere, reconstruction minus original: off (default), signed, absolute or relative",
+    )
+    parser.add_argument(
+        "--error-range",
+        metavar="R",
+        type=_error_range,
+        help="where its colours end: a radiance, or for the relative error such as 20%%; chosen from the light unless given",
+    )
+    parser.add_argument("--no-marks", action="store_true", help="do not mark the minimum and the largest error")
+    parser.add_argument(
+        "--lobes", action="store_true", help="surfaces in place of spheres: radius is magnitude, colour is sign"
+    )
+    parser.add_argument(
+        "--basis", metavar=("L", "M"), nargs=2, type=int, help="the surface of one basis function Y(l, m) on the right"
+    )
+    parser.add_argument("--convergence", action="store_true", help="plot the error against the number of bands")
+    parser.add_argument(
+        "--evaluate",
+        metavar="E",
+        default="auto",
+        help="sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes",
+    )
     parser.add_argument(
         "--camera", metavar=("AZIMUTH", "ELEVATION"), nargs=2, type=finite, help="where the camera stands, degrees"
     )
@@ -260,6 +287,13 @@ def finite(text: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
+    return value
+
+
+def _error_range(text: str) -> float:
+    value = finite(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+    if not value > 0:
+        raise argparse.ArgumentTypeError(f"{text!r}: an error range is positive, such as 0.5 or 20%")
     return value
 
 

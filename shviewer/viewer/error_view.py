@@ -14,10 +14,9 @@ from shviewer.harmonics.basis import Array
 ERRORS = ("off", "signed", "absolute", "relative")
 """What the third sphere shows, if there is one."""
 
-SPIKE = 4.0
-"""A largest error this many times what QUIET of the sphere stays below would leave all other colours to nothing."""
+QUIET, SPIKE = 0.95, 2.5
+"""The colours end at SPIKE times what this share of the sphere stays below: beyond, an error leaves no colours to the rest."""
 
-QUIET = 0.99
 MOST_RELATIVE = 1.0
 """Colours of the relative error end at 100 % or before."""
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from shviewer.viewer.colour_bar import draw_colour_bar
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.help_sheet import draw_help
 from shviewer.viewer.layers import Layer, strips
@@ -67,6 +68,7 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     sheet = Image.new("RGBA", (composition.width, composition.height))
     painter = _Painter(ImageDraw.Draw(sheet), composition)
     painter.captions(picture, timing)
+    painter.boxes.update(draw_colour_bar(sheet, picture, composition))
     painter.figures(picture)
     wanted = picture.state.sheet == "plane" and not picture.state.help_visible
     plane = draw_plane(sheet, picture, composition, painter.boxes.values()) if wanted else None
@@ -146,6 +148,9 @@ class _Painter:
             method = f"{method}, {grouped(projection.evaluations)} {projection.evaluation_noun}"
         time = f"{projection.n_bands} bands projected in {grouped_number(projection.milliseconds)} ms" if timing else ""
         far, below = at.width - at.margin, y + at.px(20)
+        if state.error != "off":
+            error = at.spheres[-1]
+            self.text("error", error.x, error.caption_y, f"{state.error.capitalize()} error", 17, INK, "mm")
         names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
         words, said = describe_light(picture), False
         if any(self.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):

@@ -79,6 +79,8 @@ class Picture:
     """The radiance that a darker original counts as in the relative error: the light's mean."""
     error_range: float
     """Where the colours of the error end."""
+    error_beyond: bool
+    """Whether there are larger ones."""
     projection: Projection
     figures: Figures
     needs: Needs
@@ -109,6 +111,10 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     shape = state.n_bands, state.muted_shown, state.window, state.window_width
     coefficients, figures = reconstruct(light, projection, *shape)
     floor = float(np.abs(projection.coefficients[0]).mean()) / (2 * np.sqrt(np.pi))
+    largest = error_range = 1.0
+    if state.error != "off":
+        largest, chosen = _error_range(light, projection, *shape, state.error, floor)
+        error_range = state.error_range or chosen
     by_map = by_map or state.n_bands > MAX_DIRECT_BANDS or state.evaluate == "map"
     return Picture(
         state=state,
@@ -122,9 +128,8 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         light_from_world=camera.light_from_world(state.light_rotation),
         exposure_stops=exposure_stops(state, whole),
         error_floor=max(floor, LEAST_ERROR_RANGE),
-        error_range=1.0
-        if state.error == "off"
-        else state.error_range or _error_range(light, projection, *shape, state.error, floor),
+        error_range=error_range,
+        error_beyond=largest > error_range * (1 + 1e-6),
         projection=projection,
         figures=figures,
         needs=needs(state),
@@ -207,8 +212,8 @@ def _error_range(
     width: float | None,
     kind: str,
     floor: float,
-) -> float:
-    """From the grid on which the figures are found; relative errors have no figure, and end at their own largest."""
+) -> tuple[float, float]:
+    """The largest error, and where its colours end: from the grid on which the figures are found."""
     shown, figures = reconstruct(light, projection, n_bands, muted, window_name, width)
     grid = error_grid(light, grid_rows(n_bands))
     values = Synthesis(shown).on_rows(grid.theta, len(grid.phi))
@@ -216,7 +221,7 @@ def _error_range(
     errors = error_values(kind, original, reconstruction, floor)
     shares = np.repeat(grid.row_share, len(grid.phi))
     largest = figures.extremes.max_error if kind != "relative" else float(errors.max())
-    return max(automatic_range(kind, errors, shares, largest), LEAST_ERROR_RANGE)
+    return largest, max(automatic_range(kind, errors, shares, largest), LEAST_ERROR_RANGE)
 
 
 @remember(most=len(TONES))

@@ -21,6 +21,7 @@ from PIL.PngImagePlugin import PngInfo
 from shviewer import __version__
 from shviewer.errors import OutputError, UsageError
 from shviewer.lights.sun import Sun
+from shviewer.viewer.colour_maps import map_of
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.picture import Picture
 
@@ -53,6 +54,18 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "sanitize": state.reading.sanitize,
         "layout": state.reading.layout,
         "exposure_stops": picture.exposure_stops,
+        "tone": state.tone,
+        "error": None
+        if state.error == "off"
+        else {
+            "kind": state.error,
+            "range": picture.error_range,
+            "floor": picture.error_floor if state.error == "relative" else None,
+            "colour_map": map_of(state.error),
+        },
+        "lobe_view": state.lobe_view,
+        "basis": state.basis,
+        "evaluated": "direct" if picture.reconstruction_map is None else "map",
         "size": [composition.width, composition.height],
         "camera_degrees": list(state.camera),
         "zoom": state.zoom,
@@ -60,7 +73,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "light_from_world": picture.light_from_world.tolist(),
         "spheres": {
             name: {"centre": [sphere.x, sphere.y], "radius": sphere.radius, "clip": list(sphere.clip)}
-            for name, sphere in zip(("original", "reconstruction"), composition.spheres, strict=True)
+            for name, sphere in zip(("original", "reconstruction", "error"), composition.spheres, strict=False)
         },
         "opengl": opengl,
         "figures": {

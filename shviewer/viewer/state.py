@@ -85,6 +85,11 @@ class ViewState:
         return self.lights[self.light_index]
 
     @property
+    def n_spheres(self) -> int:
+        """Original, reconstruction and perhaps their difference."""
+        return 2 if self.error == "off" else 3
+
+    @property
     def muted_shown(self) -> tuple[int, ...]:
         """The muted bands among those in use."""
         return tuple(sorted(band for band in self.muted if band < self.n_bands))

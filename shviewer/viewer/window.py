@@ -154,7 +154,7 @@ class Window:
         if width * height == 0:
             return None
         scale = float(glfw.get_window_content_scale(self.handle)[1])
-        return compose(width, height, self.state.zoom, scale if scale > 0 else 1.0)
+        return compose(width, height, self.state.zoom, scale if scale > 0 else 1.0, self.state.n_spheres)
 
     def _show(self, composition: Composition) -> None:
         self._draw_overlay(composition)
