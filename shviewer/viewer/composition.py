@@ -42,6 +42,13 @@ class Sphere(NamedTuple):
         down = self.y - min(max(self.y, top), bottom)
         return across * across + down * down < self.radius * self.radius
 
+    @property
+    def visible_area(self) -> float:
+        """Pixels of its square within its clip."""
+        wide = min(self.x + self.radius, self.clip.right) - max(self.x - self.radius, self.clip.left)
+        high = min(self.y + self.radius, self.clip.bottom) - max(self.y - self.radius, self.clip.top)
+        return max(wide, 0.0) * max(high, 0.0)
+
     def position(self, x: float, y: float) -> tuple[float, float] | None:
         """Where a pixel lies in radii right and up from the centre; None outside the sphere or where it is cut."""
         right, up = (x - self.x) / self.radius, (self.y - y) / self.radius

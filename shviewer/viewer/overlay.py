@@ -147,6 +147,8 @@ class _Painter:
         if projection.evaluations is not None:
             method = f"{method}, {grouped(projection.evaluations)} {projection.evaluation_noun}"
         time = f"{projection.n_bands} bands projected in {grouped_number(projection.milliseconds)} ms" if timing else ""
+        drawn = describe_evaluation(picture, timing)
+        times = [", ".join(filter(None, (time, drawn))), drawn or time, time]
         far, below = at.width - at.margin, y + at.px(20)
         if state.error != "off":
             error = at.spheres[-1]
@@ -160,7 +162,7 @@ class _Painter:
         if not said and "LDR" in words:
             any(self.text("encoding", at.margin, line, "LDR", 12, FAINT, "lm") for line in (y, below))
         if self.text("method", far, y, method, 13, FAINT, "rm"):
-            self.text("time", far, below, time, 12, FAINT, "rm")
+            any(self.text("time", far, below, text, 12, FAINT, "rm") for text in times)
         else:
             both = f"{method}, {grouped_number(projection.milliseconds)} ms" if time else method
             self.text("method", far, below, both, 12, FAINT, "rm") or self.text(
@@ -280,6 +282,14 @@ def describe_light(picture: Picture) -> list[str]:
     count = len(light.notes)
     marks = ["LDR"] * ("(LDR)" in encoding) + [f"{count} note{'s' if count > 1 else ''}"] * (count > 0)
     return [", ".join(words) for words in ([light.description, *marks], marks, marks[:1]) if words]
+
+
+def describe_evaluation(picture: Picture, timing: bool) -> str:
+    """How the reconstruction is drawn; in a picture that does not depend on the machine only if it is not the sum."""
+    if picture.reconstruction_map is None:
+        return "summed per pixel" if timing else ""
+    height, width = picture.reconstruction_map.shape[:2]
+    return f"from a map of {width} x {height}"
 
 
 def _describe_suns(picture: Picture) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError, UsageError
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.quadrature import MAX_SAMPLES
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
@@ -91,6 +91,14 @@ class Picture:
     def light(self) -> Light:
         """What the figures are of."""
         return self.subject.light
+
+    def rest_at(self, directions: Array) -> Array:
+        """What the coefficients give in unit directions of the light (k, 3), without suns: (k, 3) float64."""
+        return np.asarray(evaluate_basis(directions, self.state.n_bands) @ self.coefficients)
+
+    def suns_at(self, directions: Array) -> Array:
+        """The suns that are drawn on top of it, (k, 3)."""
+        return LobeLight(self.suns).radiance(directions) if self.suns else np.zeros((len(directions), 3))
 
 
 def prepare(state: ViewState, *, by_map: bool = False) -> Picture:

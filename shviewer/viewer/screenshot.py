@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.layers import Layer
+from shviewer.viewer.marks import mark_layers
 from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.picture_files import metadata, write_exr, write_png
@@ -75,7 +76,10 @@ def render_rgb(
     renderer: Renderer, picture: Picture, composition: Composition, *, overlay: bool = True, timing: bool = False
 ) -> NDArray[np.uint8]:
     """The picture as seen: (height, width, 3) uint8, top row first."""
-    layers = draw_overlay(picture, composition, timing=timing, opengl=renderer.version).layers if overlay else ()
+    layers: tuple[Layer, ...] = ()
+    if overlay:
+        written = draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
+        layers = (*mark_layers(picture, composition), *written.layers)
     renderer.show(picture)
     return read_rgb(renderer, composition, layers)
 

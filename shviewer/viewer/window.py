@@ -21,13 +21,17 @@ from shviewer.lights.radiance_files import Reading
 from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, toggle_band, with_bands, zoom
 from shviewer.viewer.analysis import keep_light, needs, read_again, stamp_read
 from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.evaluation import Evaluation
 from shviewer.viewer.glfw_window import key_name, open_window
 from shviewer.viewer.keys import press
+from shviewer.viewer.layers import Layer
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
-from shviewer.viewer.overlay import Overlay, draw_overlay
+from shviewer.viewer.marks import mark_layers
+from shviewer.viewer.overlay import Overlay, describe_evaluation, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
 from shviewer.viewer.plane import measured
+from shviewer.viewer.probe import probe, probe_layers
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState, describe_sanitizing
@@ -78,12 +82,15 @@ class Window:
         self.frame_count = 0
         self.pressed_at: tuple[float, float] | None = None
         self.mouse = self.dragged_to = (0.0, 0.0)
-        self.dragged = False
+        self.dragged = self.hovering = False
+        self.evaluation = Evaluation()
+        self.by_map = False
         self.windowed_place = (0, 0, 1280, 640)
         glfw.set_key_callback(handle, self._on_key)
         glfw.set_char_callback(handle, self._on_char)
         glfw.set_mouse_button_callback(handle, self._on_button)
         glfw.set_cursor_pos_callback(handle, self._on_cursor)
+        glfw.set_cursor_enter_callback(handle, self._on_enter)
         glfw.set_scroll_callback(handle, lambda window, dx, dy: self.change(zoom(self.state, dy)))
         glfw.set_drop_callback(handle, self._on_drop)  # type: ignore[arg-type]  # the stub shows the C signature
         glfw.set_framebuffer_size_callback(handle, lambda *_: self.redraw())
@@ -128,7 +135,7 @@ class Window:
         start = perf_counter()
         self._announce(composition)
         last = self.picture
-        self._prepare()
+        self._prepare(self._by_map(composition))
         try:
             self._show(composition)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
@@ -136,7 +143,7 @@ class Window:
             glfw.set_window_title(self.handle, f"shviewer - {last.light.name}")
             self._keep(error)
             self._show(composition)
-        self.renderer.draw(self.renderer.context.screen, composition, self.overlay.layers if self.overlay else ())
+        self._draw(composition)
         glfw.swap_buffers(self.handle)
         self.frame_count += 1
         if self.verbose:
@@ -155,6 +162,34 @@ class Window:
             return None
         scale = float(glfw.get_window_content_scale(self.handle)[1])
         return compose(width, height, self.state.zoom, scale if scale > 0 else 1.0, self.state.n_spheres)
+
+    def _by_map(self, composition: Composition) -> bool:
+        """Whether the reconstruction is drawn from a map where that is left to the time that frames take."""
+        return self.state.evaluate == "auto" and self.evaluation.choose(self.state.n_bands, summed_pixels(composition))
+
+    def _draw(self, composition: Composition) -> None:
+        """The frame, and of one that is summed per pixel how long it takes."""
+        layers = self._layers(composition)
+        timed = self.state.evaluate == "auto" and self.picture.reconstruction_map is None
+        if timed:
+            self.renderer.context.finish()
+        start = perf_counter()
+        self.renderer.draw(self.renderer.context.screen, composition, layers)
+        if timed:
+            self.renderer.context.finish()
+            milliseconds, pixels = 1000 * (perf_counter() - start), summed_pixels(composition)
+            again = self.evaluation.drawn(self.picture.state.n_bands, pixels, milliseconds)
+            if again or self.evaluation.choose(self.picture.state.n_bands, pixels):
+                self.frames_due = max(self.frames_due, 1)
+
+    def _layers(self, composition: Composition) -> tuple[Layer, ...]:
+        """Marks, what is written, and the values under the mouse."""
+        layers = (*mark_layers(self.picture, composition), *(self.overlay.layers if self.overlay else ()))
+        if self.hovering and not self.dragged and not self.picture.state.help_visible:
+            found = probe(self.picture, composition, *self.mouse)
+            if found is not None:
+                layers += probe_layers(found, composition, *self.mouse)
+        return layers
 
     def _show(self, composition: Composition) -> None:
         self._draw_overlay(composition)
@@ -203,15 +238,15 @@ class Window:
         glfw.swap_buffers(self.handle)
         self.overlay_key = None
 
-    def _prepare(self) -> None:
+    def _prepare(self, by_map: bool = False) -> None:
         last = self.picture
-        if last.state == self.state:
+        if last.state == self.state and self.by_map == by_map:
             return
         anew = self.state.reloads != last.state.reloads
         try:
             if anew:
                 read_again(self.state)
-            picture = prepare(self.state)
+            picture = prepare(self.state, by_map=by_map)
         except ShviewerError as error:
             self._keep(error)
             return
@@ -222,7 +257,7 @@ class Window:
             if message and not self.state.message:
                 self.state = replace(self.state, message=message)
                 picture = replace(picture, state=self.state)
-        self.picture = picture
+        self.picture, self.by_map = picture, by_map
 
     def _news(self, light: Light, *, again: bool) -> str:
         """What is worth saying of a light that was not shown before."""
@@ -243,7 +278,8 @@ class Window:
             home = ViewState()
             state = replace(state, camera=home.camera, light_rotation=home.light_rotation, zoom=home.zoom)
         known = measured(self.picture) if state.sheet == "plane" else ()
-        key = (state, known, composition.width, composition.height, composition.scale)
+        drawn = describe_evaluation(self.picture, timing=True)
+        key = (state, known, drawn, composition.width, composition.height, composition.scale)
         if key != self.overlay_key:
             self.overlay_key = key
             self.overlay = draw_overlay(self.picture, composition, timing=True, opengl=self.renderer.version)
@@ -309,6 +345,9 @@ class Window:
                 if box.contains(*self.pressed_at):
                     self.change(toggle_band(replace(self.state, message=""), band))
             self.pressed_at = None
+            if self.dragged:
+                self.dragged = False
+                self.redraw()
 
     def _on_cursor(self, window: Any, x: float, y: float) -> None:
         """Remember where the mouse is, in pixels of the framebuffer, and drag.
@@ -318,7 +357,10 @@ class Window:
         window_size, pixels = glfw.get_window_size(self.handle), glfw.get_framebuffer_size(self.handle)
         self.mouse = x * pixels[0] / max(window_size[0], 1), y * pixels[1] / max(window_size[1], 1)
         composition = self.composition()
-        if self.pressed_at is None or composition is None:
+        if composition is None:
+            return
+        if self.pressed_at is None:
+            self._hover(composition)
             return
         moved = max(abs(self.mouse[0] - self.pressed_at[0]), abs(self.mouse[1] - self.pressed_at[1]))
         if not self.dragged and moved < CLICK_PIXELS:
@@ -330,9 +372,26 @@ class Window:
         shift = any(glfw.get_key(self.handle, key) for key in (glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT))
         self.change((rotate_light if shift else orbit)(self.state, right, up))
 
+    def _hover(self, composition: Composition) -> None:
+        """Show the values under the mouse, or show them no more."""
+        over = any(sphere.position(*self.mouse) is not None for sphere in composition.spheres)
+        if over or self.hovering:
+            self.hovering = over
+            self.frames_due = max(self.frames_due, 1)
+
+    def _on_enter(self, window: Any, entered: int) -> None:
+        if not entered and self.hovering:
+            self.hovering = False
+            self.frames_due = max(self.frames_due, 1)
+
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
             self.change(reload(open_light(self.state, paths[0])))  # it may have been edited since it was last opened
+
+
+def summed_pixels(composition: Composition) -> float:
+    """Pixels that show the reconstruction or its error, as far as they are in sight."""
+    return sum(sphere.visible_area for sphere in composition.spheres[1:])
 
 
 def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
