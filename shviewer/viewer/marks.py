@@ -85,14 +85,17 @@ def mark_layers(picture: Picture, composition: Composition) -> tuple[Layer, ...]
 
 
 def _place(text: str, x: float, y: float, behind: bool, sphere: Sphere, composition: Composition) -> Placed:
-    """To the right of its ring, or to the left where the cell ends."""
-    words = f"{text}, behind" if behind else text
+    """With the longest words that fit into the cell, to the right of the ring or else to its left."""
     size = max(round(composition.px(12)), MIN_TYPE)
     scale = max(composition.scale, MIN_TYPE / 12)
     half = round(scale * (RING + THICKNESS + SHADOW)) + 1
     gap = round(4 * scale)
-    length = round(font(size).getlength(words))
-    leftwards = x + half + gap + length > sphere.clip.right - gap
+    words, leftwards = "", False
+    for candidate in (f"{text}, behind" if behind else text, text):
+        reach = half + 2 * gap + round(font(size).getlength(candidate)) + 2
+        if x + reach <= sphere.clip.right or x - reach >= sphere.clip.left:
+            words, leftwards = candidate, x + reach > sphere.clip.right
+            break
     image, label = _image(words, size, scale, half, gap, behind, leftwards)
     left, top = (
         round(x - 0.5) - (image.shape[1] - half - 1 if leftwards else half),

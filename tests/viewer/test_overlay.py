@@ -17,7 +17,18 @@ from shviewer.viewer.overlay import SLOT_COUNTS, Overlay, describe_light, draw_o
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
-SIZES = [(320, 160), (400, 300), (640, 320), (700, 400), (1280, 640), (2560, 1280), (900, 1200), (3000, 500)]
+SIZES = [
+    (320, 160),
+    (400, 300),
+    (640, 320),
+    (700, 400),
+    (1280, 640),
+    (2560, 1280),
+    (2560, 1440),
+    (900, 1200),
+    (3000, 500),
+    (500, 1600),
+]
 FRAMES = [(*size, scale) for size in SIZES for scale in (1.0, 2.0)]
 LONG = "a_light_whose_name_is_much_longer_than_anybody_would_ever_want_it_to_be_in_a_caption"
 
@@ -43,6 +54,10 @@ PICTURES = {
         message="a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); fetch or export it again"
     ),
     "zoomed": picture(zoom=3.0),
+    "signed error": picture(error="signed"),
+    "relative error": picture(lights=("venice_sunset",), n_bands=9, error="relative", tone="log"),
+    "tiny error": picture(n_bands=60, error="absolute", muted=frozenset({1, 2})),
+    "zoomed error": picture(error="signed", zoom=2.5, split_sun=True, lights=("sun-sky",)),
 }
 
 
@@ -54,7 +69,7 @@ def overlap(one: Box, other: Box) -> bool:
 @pytest.mark.parametrize("place", FRAMES, ids=str)
 def test_nothing_overlaps_and_nothing_is_cut(name: str, place: tuple[int, int, float]) -> None:
     shown = PICTURES[name]
-    composition = compose(place[0], place[1], shown.state.zoom, place[2])
+    composition = compose(place[0], place[1], shown.state.zoom, place[2], shown.state.n_spheres)
     drawn = draw_overlay(shown, composition, timing=True)
     assert drawn.image.shape == (place[1], place[0], 4)
     assert drawn.image.dtype == np.uint8
@@ -74,7 +89,7 @@ def test_nothing_overlaps_and_nothing_is_cut(name: str, place: tuple[int, int, f
 def test_every_mark_is_in_a_box_that_was_reported(name: str, place: tuple[int, int, float]) -> None:
     """So that the test above sees all there is: outside the boxes there is only the hairline."""
     shown = PICTURES[name]
-    composition = compose(place[0], place[1], shown.state.zoom, place[2])
+    composition = compose(place[0], place[1], shown.state.zoom, place[2], shown.state.n_spheres)
     drawn = draw_overlay(shown, composition)
     left = drawn.image[..., 3] > 0
     for box in drawn.boxes.values():

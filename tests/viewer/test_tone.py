@@ -1,0 +1,43 @@
+"""Tone curves: the published values, and an exposure that puts the same share of the light below white under each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from shviewer.viewer.picture import WHITE_LEVEL, prepare
+from shviewer.viewer.state import ViewState
+from shviewer.viewer.tone import TONES, exposed_for, toned
+
+
+def test_the_curves_are_the_published_ones() -> None:
+    np.testing.assert_allclose(toned(np.array([0.0, 1.0, 3.0]), "reinhard"), [0, 0.5, 0.75])
+    # K. Narkowicz's fit: 1 becomes 0.8038, and 0.18, the grey card, 0.2669
+    np.testing.assert_allclose(toned(np.array([0.0, 0.18, 1.0]), "aces"), [0, 0.2669, 0.8038], atol=1e-4)
+    np.testing.assert_allclose(toned(np.array([0.0, 1.0]), "log"), [0, 1])
+    np.testing.assert_allclose(toned(np.array([0.0, 0.7, 9.0]), "none"), [0, 0.7, 9.0])
+
+
+@pytest.mark.parametrize("tone", TONES)
+def test_a_curve_rises_and_its_way_back_is_its_inverse(tone: str) -> None:
+    exposed = np.geomspace(1e-6, 1e4, 400)
+    assert (np.diff(toned(exposed, tone)) > 0).all()
+    for level in (0.01, 0.5, 0.8, 0.99):
+        assert toned(np.array(exposed_for(level, tone)), tone) == pytest.approx(level, rel=1e-12)
+
+
+@pytest.mark.parametrize("tone", TONES)
+@pytest.mark.parametrize("light", ["green", "venice_sunset", "sun-sky"])
+def test_automatic_exposure_shows_one_hundredth_of_the_sphere_above_the_level_under_every_curve(
+    light: str, tone: str
+) -> None:
+    picture = prepare(ViewState(lights=(light,), tone=tone))
+    directions = np.random.default_rng(0).normal(size=(40_000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    brightest = picture.light.radiance(directions).max(axis=1).clip(min=0)
+    shown = toned(2.0**picture.exposure_stops * brightest, tone)
+    above, up_to = (
+        (shown > WHITE_LEVEL * (1 + step)).mean() for step in (1e-6, -1e-6)
+    )  # an even sky is all at the level
+    assert above < 0.014
+    assert up_to > 0.006
