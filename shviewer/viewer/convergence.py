@@ -175,16 +175,16 @@ class _Drawing:
         sheet, found, area, state, series = self.sheet, self.found, self.area, self.state, self.series
         share = self._percent(series.errors.get(state.n_bands, float("inf")))
         texts = [f"{state.n_bands} band{'' if state.n_bands == 1 else 's'}: {share}", share]
-        self._beside("present", found.points.get(state.n_bands), texts, INK, sheet.ring + 5)
+        self._beside("present", found.points.get(state.n_bands), texts, INK, sheet.ring + sheet.gap + 1)
         changes = ", ".join(filter(None, (describe_window(state), describe_muted(state))))
         if changes:
             share = self._percent(self.picture.figures.relative_l2)
             texts = [f"{changes}: {share}", f"as shown: {share}", share]
-            self._beside("shown", found.shown, texts, ACCENT, sheet.radius + 5)
+            self._beside("shown", found.shown, texts, ACCENT, sheet.radius + sheet.gap + 1)
         self._tolerance()
         if min(series.errors.values(), default=1.0) <= self.picture.figures.floor:
             text = "less cannot be measured"
-            top = found.error.at(self.picture.figures.floor) - sheet.size_of(text)[1] - sheet.radius - 3
+            top = found.error.at(self.picture.figures.floor) - sheet.size_of(text)[1] - sheet.radius - sheet.gap
             sheet.put("floor", text, GREY, sheet.row(text, top, area)[::-1], area)
 
     def _beside(self, name: str, spot: Place | None, texts: list[str], ink: Ink, reach: float) -> None:
@@ -207,8 +207,11 @@ class _Drawing:
         share = f"{100 * needs.tolerance:g} %"
         y, height = self.found.error.at(needs.tolerance), sheet.size_of("0")[1]
         for text in (f"{share} needs {count} band{'' if count == 1 else 's'}", f"{share}: {count}"):
-            above, below = sheet.row(text, y - height - 4, area), sheet.row(text, y + sheet.line + 4, area)
-            corner = sheet.row(text, area.top + 4, area)
+            above, below = (
+                sheet.row(text, y - height - sheet.gap, area),
+                sheet.row(text, y + sheet.line + sheet.gap, area),
+            )
+            corner = sheet.row(text, area.top + sheet.gap, area)
             if sheet.put("tolerance", text, GREY, [*above[::-1], *below, *corner[::-1]], area):
                 break
 

@@ -167,11 +167,11 @@ class _Drawing:
             figures = f"{name}: {grouped_number(found.milliseconds)} ms, {self._percent(self.errors[plane.present])}"
             again = [f"{figures}, best of {found.repetitions}"] if found.repetitions > 1 else []
             texts = (*again, figures, name)
-            spot, reach = plane.places[plane.present], sheet.ring + 5
+            spot, reach = plane.places[plane.present], sheet.ring + sheet.gap + 1
             any(sheet.label("present", spot, text, INK, reach, area) for text in texts) or any(
                 sheet.label("present", spot, text, INK, reach, area, away=True, over_lines=True) for text in texts
             )
-        below = plane.error.at(plane.floor) + sheet.radius + 4
+        below = plane.error.at(plane.floor) + sheet.radius + sheet.gap
         n_bands, share = self.picture.state.n_bands, self._percent(plane.floor)
         left_out = f"{n_bands} band{' leaves' if n_bands == 1 else 's leave'} out {share}"
         for text in (f"no samples get below: {left_out}", left_out, share):
@@ -185,8 +185,8 @@ class _Drawing:
             sheet.put("more", MORE, GREY, [((area.left + area.right - width) / 2, middle - height / 2)], area)
         for key in sorted(plane.places, key=lambda key: -self.times[key]):
             if key not in (plane.present, BEST):
-                name = "_".join(map(str, key))
-                sheet.label(name, plane.places[key], short_count(key[1]), LOOKS[key[0]][1], sheet.radius + 5, area)
+                name, reach = "_".join(map(str, key)), sheet.radius + sheet.gap + 1
+                sheet.label(name, plane.places[key], short_count(key[1]), LOOKS[key[0]][1], reach, area)
 
     def _percent(self, share: float) -> str:
         return percent(share, floor=self.picture.figures.floor * (1 + 1e-9))

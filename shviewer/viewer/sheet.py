@@ -85,6 +85,7 @@ class Sheet:
         self.line = max(1, round(self.unit))
         self.radius = max(round(4.5 * self.unit), 3)
         self.ring = 2 * self.radius
+        self.gap = max(round(4 * self.unit), 4)
         self.face, self.title_face = (font(max(round(size * self.unit), MIN_TYPE)) for size in (12, 15))
         self.boxes: dict[str, Box] = {}
         shape = round(box.bottom - box.top), round(box.right - box.left)
@@ -122,8 +123,8 @@ class Sheet:
 
     def legend(self, room: Box, entries: Sequence[Entry]) -> bool:
         """What each mark stands for, in a row that ends at the right of the room; nothing is drawn if it is too narrow."""
-        gap, apart = 14 * self.unit, self.radius + 4
-        step = 2 * self.radius + 4 + gap
+        gap, apart = 14 * self.unit, self.radius + self.gap
+        step = apart + self.radius + gap
         if sum(self.width_of(entry.text) + step for entry in entries) > room.right - room.left:
             return False
         x, y = room.right, (room.top + room.bottom) / 2

@@ -256,7 +256,9 @@ def test_errors_below_the_floor_are_not_drawn_as_numbers(monkeypatch: pytest.Mon
         assert found.points[picture.state.n_bands][1] == pytest.approx(found.error.at(floor))
         texts = captured(monkeypatch, picture)
         assert texts["present"].endswith(f"< {round_percent(floor)}")
-        assert texts["floor"] == "less cannot be measured"
+        assert (texts.get("floor") == "less cannot be measured") == (
+            name != "black samples"
+        )  # no room left in the last
 
 
 def test_infinite_errors_are_said_and_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
