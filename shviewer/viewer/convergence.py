@@ -17,7 +17,7 @@ from shviewer.viewer.band_series import band_series
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.lettering import ACCENT, FAINT, GREY, INK, RULE, Ink, percent, round_percent, short_count
 from shviewer.viewer.log_axis import Axis, padded_axis
-from shviewer.viewer.marks import LOOKS, Place
+from shviewer.viewer.markers import LOOKS, Place
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.sheet import Entry, Sheet, Size, place
 from shviewer.viewer.state import describe_muted, describe_window

@@ -28,7 +28,7 @@ from shviewer.viewer.lettering import (
     short_count,
 )
 from shviewer.viewer.log_axis import Axis, padded_axis
-from shviewer.viewer.marks import LOOKS, Place
+from shviewer.viewer.markers import LOOKS, Place
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.sheet import Entry, Sheet, Size, place
 

@@ -16,7 +16,7 @@ from PIL import Image, ImageDraw, ImageFont
 from shviewer.viewer.composition import Box, Composition, Sphere
 from shviewer.viewer.lettering import FAINT, GREY, INK, MIN_TYPE, RULE, Ink, font, round_percent
 from shviewer.viewer.log_axis import Axis
-from shviewer.viewer.marks import Place, curve_mask, marker_mask
+from shviewer.viewer.markers import Place, curve_mask, marker_mask
 
 GROUND: Ink = (14, 14, 16, 236)
 

@@ -19,7 +19,7 @@ from shviewer.viewer.composition import Box, Composition, Sphere, compose
 from shviewer.viewer.convergence import EXACT, LEAST, LEFT_OUT, MOST, Convergence
 from shviewer.viewer.lettering import ACCENT, percent, round_percent, short_count
 from shviewer.viewer.log_axis import Axis
-from shviewer.viewer.marks import LOOKS
+from shviewer.viewer.markers import LOOKS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.sheet import place

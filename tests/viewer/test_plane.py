@@ -19,7 +19,7 @@ from shviewer.viewer.composition import Box, compose
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.lettering import ACCENT
 from shviewer.viewer.log_axis import Axis
-from shviewer.viewer.marks import LOOKS
+from shviewer.viewer.markers import LOOKS
 from shviewer.viewer.memory import MEMORY, MOST_LIGHTS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
