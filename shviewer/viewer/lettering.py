@@ -72,3 +72,19 @@ def grouped(count: int) -> str:
 
 def grouped_number(value: float) -> str:
     return f"{value:.2f}" if value < 10 else grouped(round(value))
+
+
+def short_count(count: int) -> str:
+    """625, 2.5k, 160k, 1M."""
+    for size, letter in ((1_000_000, "M"), (1000, "k")):
+        if count >= size:
+            return f"{count / size:.3g}{letter}"
+    return str(count)
+
+
+def round_percent(share: float) -> str:
+    """A round share of 1, as it stands beside an axis: 150 %, 0.002 %, 1e-7 %."""
+    if share < 0.99e-7:
+        mantissa, exponent = f"{100 * share:.1e}".split("e")
+        return f"{mantissa.removesuffix('.0')}e{int(exponent)} %"
+    return f"{100 * share:.10f}".rstrip("0").rstrip(".") + " %"

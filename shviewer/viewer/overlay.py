@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from shviewer.viewer.band_axis import band_slots, band_step
 from shviewer.viewer.colour_bar import draw_colour_bar
 from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.convergence import Convergence, draw_convergence
 from shviewer.viewer.help_sheet import draw_help
 from shviewer.viewer.layers import Layer, strips
 from shviewer.viewer.lettering import (
@@ -40,11 +42,11 @@ from shviewer.viewer.picture import Picture
 from shviewer.viewer.plane import Plane, draw_plane
 from shviewer.viewer.state import describe_exposure, describe_muted, describe_window
 
-SLOT_COUNTS = (10, 16, 32, 64, 128)
-"""Bars shown: the smallest of these that holds the bands in use, so that a bar stays where it is while keys are pressed."""
-
 HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
-NO_PLANE = "no room for time against error: enlarge the window, or B"
+NO_ROOM = {
+    "plane": "no room for time against error: enlarge the window, or B",
+    "convergence": "no room for error against bands: enlarge the window, or G",
+}
 
 
 @dataclass
@@ -58,6 +60,8 @@ class Overlay:
     bars: dict[int, Box] = field(default_factory=dict)
     plane: Plane | None = None
     """The time-error plane, if it is shown; what is written in it is among the boxes, too."""
+    convergence: Convergence | None = None
+    """Likewise."""
 
 
 def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "") -> Overlay:
@@ -70,14 +74,17 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     painter.captions(picture, timing)
     painter.boxes.update(draw_colour_bar(sheet, picture, composition))
     painter.figures(picture)
-    wanted = picture.state.sheet == "plane" and not picture.state.help_visible
-    plane = draw_plane(sheet, picture, composition, painter.boxes.values()) if wanted else None
-    painter.boxes.update(plane.boxes if plane else {})
-    painter.hint(picture, NO_PLANE if wanted and not plane else "")
+    wanted = "" if picture.state.help_visible else picture.state.sheet
+    drawing = sheet, picture, composition, list(painter.boxes.values())
+    plane = draw_plane(*drawing) if wanted == "plane" else None
+    convergence = draw_convergence(*drawing) if wanted == "convergence" else None
+    shown = plane or convergence
+    painter.boxes.update(shown.boxes if shown else {})
+    painter.hint(picture, NO_ROOM[wanted] if wanted and not shown else "")
     if picture.state.help_visible:
         draw_help(sheet, picture.state, composition, opengl)
     image = np.asarray(sheet)
-    return Overlay(image, strips(image), painter.boxes, painter.bars, plane)
+    return Overlay(image, strips(image), painter.boxes, painter.bars, plane, convergence)
 
 
 class _Painter:
@@ -210,7 +217,7 @@ class _Painter:
     def band_bars(self, picture: Picture) -> None:
         """Energy of each band: filled as far as it is kept, hollow when muted, dim above n. A bar stays where it is."""
         at, state = self.at, picture.state
-        slots = next(count for count in SLOT_COUNTS if count >= min(state.n_bands, SLOT_COUNTS[-1]))
+        slots = band_slots(state.n_bands)
         left = max((box.right for box in self.boxes.values() if box.top > at.hairline_y), default=0) + at.px(24)
         face = self.face(12)
         label_width = face.getlength("energy, %")
@@ -227,7 +234,7 @@ class _Painter:
             (first - at.px(16), base - at.px(5)), "energy, %" if numbers else "energy", FAINT, face, anchor="rm"
         )
         self.draw.text((first - at.px(16), base + at.px(13)), "band", FAINT, face, anchor="rm")
-        step = next(step for step in (1, 2, 4, 8, 16, 32) if pitch * step > face.getlength("128") + 4 or step == 32)
+        step = band_step(pitch, face.getlength("128") + 4)
         for band in range(slots):
             middle = first + (band + 0.5) * pitch
             share = shares[band] if band < len(shares) else 0.0

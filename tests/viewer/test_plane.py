@@ -19,10 +19,11 @@ from shviewer.viewer.composition import Box, compose
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.lettering import ACCENT
 from shviewer.viewer.log_axis import Axis
+from shviewer.viewer.markers import LOOKS
 from shviewer.viewer.memory import MEMORY, MOST_LIGHTS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.plane import LOOKS, Plane, measured
+from shviewer.viewer.plane import Plane, measured
 from shviewer.viewer.state import ViewState
 
 SIZES = [
