@@ -1,8 +1,10 @@
 """What a frame costs: python tests/benchmarks/frames.py
 
 CPU time of all threads, which on software OpenGL is the cost of the shaders. 1280 x 640, Green's light. The base, measured in
-the same run, shows a constant light with one band on the right. Then the CPU work of a band key outside the draw: a new
-picture of bands never shown before (goal: under 2 ms up to 16 bands), and its overlay.
+the same run, shows a constant light with one band on the right. The reconstruction is summed per pixel, or drawn from its
+map (goal: at most 25 cpu-ms whatever n is), with a third sphere for the error, and with everything written over it. Then how
+far the map is from the sum (goal: under half a step of white up to 32 bands), and the CPU work of events outside the draw:
+a band key (goal: under 2 ms up to 16 bands) with its overlay, a turn of the light, and the values under the mouse.
 """
 
 from __future__ import annotations
@@ -12,39 +14,60 @@ from dataclasses import replace
 import numpy as np
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
+from shviewer.viewer.actions import rotate_light
 from shviewer.viewer.analysis import reconstruct
 from shviewer.viewer.composition import compose
+from shviewer.viewer.layers import Layer
+from shviewer.viewer.marks import mark_layers
 from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.screenshot import headless_renderer
+from shviewer.viewer.probe import probe, probe_layers
+from shviewer.viewer.renderer import Renderer
+from shviewer.viewer.screenshot import headless_renderer, offscreen, render_linear
 from shviewer.viewer.state import ViewState
 
 BANDS = (3, 4, 5, 8, 16, 32)
 COMPOSITION = compose(1280, 640)
+REPEATS = 9
 
 
-def frame_costs() -> dict[str, float]:
-    with headless_renderer() as renderer:
-        context = renderer.context
-        texture = context.texture((1280, 640), 4)
-        target = context.framebuffer([texture])
-
-        def draw(picture: Picture) -> None:
+def frame_costs(renderer: Renderer) -> dict[str, float]:
+    base = replace(prepare(ViewState(n_bands=1)), coefficients=np.ones((1, 3)))
+    pictures = {"base": base} | {f"{n} bands, sum": prepare(ViewState(n_bands=n)) for n in BANDS}
+    pictures |= {f"{n} bands, map": prepare(ViewState(n_bands=n), by_map=True) for n in (3, 16, 32, 128)}
+    pictures["16 bands, map, error"] = prepare(ViewState(n_bands=16, error="signed"), by_map=True)
+    pictures["16 bands, map, written over"] = pictures["16 bands, map"]
+    costs = {}
+    with offscreen(renderer, COMPOSITION) as target:
+        for name, picture in pictures.items():  # one after the other: uploading a map is no part of a frame
+            composition = compose(1280, 640, n_spheres=picture.state.n_spheres)
+            layers: tuple[Layer, ...] = ()
+            if "written" in name:
+                layers = (*mark_layers(picture, composition), *draw_overlay(picture, composition).layers)
             renderer.show(picture)
-            renderer.draw(target, COMPOSITION)
-            context.finish()
 
-        base = replace(prepare(ViewState(n_bands=1)), coefficients=np.ones((1, 3)))
-        pictures = {"base": base} | {f"{n} bands": prepare(ViewState(n_bands=n)) for n in (*BANDS, 64)}
-        print(renderer.version)
-        try:
-            return medians({name: lambda p=picture: draw(p) for name, picture in pictures.items()}, 9, cpu_milliseconds)
-        finally:
-            target.release()
-            texture.release()
+            def draw(composition=composition, layers=layers) -> None:  # type: ignore[no-untyped-def]
+                renderer.draw(target, composition, layers)
+                renderer.context.finish()
+
+            costs[name] = medians({name: draw}, REPEATS, cpu_milliseconds)[name]
+    return costs
 
 
-def key_costs() -> None:
+def map_differences(renderer: Renderer) -> None:
+    for light in ("green", "studio", "venice_sunset", "film_studio"):
+        steps = []
+        for n_bands in (8, 16, 32):
+            pictures = [prepare(ViewState(lights=(light,), n_bands=n_bands), by_map=by_map) for by_map in (False, True)]
+            shown = [
+                np.clip(2.0**picture.exposure_stops * render_linear(renderer, picture, COMPOSITION), -1, 1)
+                for picture in pictures
+            ]
+            steps.append(f"{255 * np.abs(shown[0] - shown[1]).max():.4f}")
+        print(f"{light:<16} map against sum at 8, 16, 32 bands: {', '.join(steps)} of 255 of white")
+
+
+def event_costs() -> None:
     prepare(ViewState())
     for n_bands in (4, 8, 16, 32):
         state = ViewState(n_bands=n_bands)
@@ -58,14 +81,33 @@ def key_costs() -> None:
             {"picture": press, "overlay": lambda p=picture: draw_overlay(p, COMPOSITION)}, 25, wall_milliseconds
         )
         print(f"key to {n_bands:>3} bands: picture {times['picture']:6.2f} ms, overlay {times['overlay']:6.2f} ms")
+    turned = ViewState(n_bands=32)
+
+    def turn() -> None:
+        nonlocal turned
+        turned = rotate_light(turned, 0.01, 0.003)
+        mark_layers(prepare(turned), COMPOSITION)
+
+    picture = prepare(turned)
+
+    def point() -> None:
+        found = probe(picture, COMPOSITION, 330.0, 260.0)
+        assert found is not None
+        probe_layers(found, COMPOSITION, 330.0, 260.0)
+
+    for name, milliseconds in medians({"turn of the light": turn, "values under the mouse": point}, 25).items():
+        print(f"{name}, 32 bands: {milliseconds:.2f} ms")
 
 
 def main() -> None:
     print(machine())
-    costs = frame_costs()
-    for name, milliseconds in costs.items():
-        print(f"{name:<10}{milliseconds:8.1f} cpu-ms{milliseconds - costs['base']:+9.1f} to the base")
-    key_costs()
+    with headless_renderer() as renderer:
+        print(renderer.version)
+        costs = frame_costs(renderer)
+        for name, milliseconds in costs.items():
+            print(f"{name:<28}{milliseconds:8.1f} cpu-ms{milliseconds - costs['base']:+9.1f} to the base")
+        map_differences(renderer)
+    event_costs()
 
 
 if __name__ == "__main__":

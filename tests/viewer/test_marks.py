@@ -77,8 +77,8 @@ def test_marks_name_their_values_with_a_sign() -> None:
 
 @pytest.mark.parametrize(
     "changes",
-    [{"marks": False}, {"lobe_view": True}, {"lights": ("constant",)}],
-    ids=["X", "surfaces", "nothing negative"],
+    [{"marks": False}, {"lobe_view": True}, {"help_visible": True}, {"lights": ("constant",)}],
+    ids=["X", "surfaces", "help", "nothing negative"],
 )
 def test_there_are_no_marks_where_none_are_wanted(changes: dict[str, object]) -> None:
     shown = picture(**changes)
