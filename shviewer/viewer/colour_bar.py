@@ -45,14 +45,14 @@ def tick_text(value: float, ticks: list[float], *, percent: bool) -> str:
 
 def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Composition) -> dict[str, Box]:
     """The bar and its numbers; their boxes by name. None where there is no room for either."""
-    place, kind = composition.colour_bar, picture.state.error
-    if place is None or kind == "off" or place.right - place.left < composition.px(60):
+    place, scale = composition.colour_bar, picture.error_scale
+    if place is None or scale is None or place.right - place.left < composition.px(60):
         return {}
     draw = ImageDraw.Draw(sheet)
-    tip = round(composition.px(TIP)) if picture.error_beyond else 0
-    signed, height = kind == "signed", max(round(composition.px(HEIGHT)), 4)
+    tip = round(composition.px(TIP)) if scale.beyond else 0
+    signed, height = scale.kind == "signed", max(round(composition.px(HEIGHT)), 4)
     left, right, top = round(place.left) + tip, round(place.right) - tip, round(place.top)
-    colours = colour_maps.table(colour_maps.map_of(kind))
+    colours = colour_maps.table(colour_maps.map_of(scale.kind))
     shades = colours[np.round(np.linspace(0, 255, right - left)).astype(int)]
     sheet.paste(Image.fromarray(np.repeat(shades[None], height, axis=0)), (left, top))
     ends = ((right - 1, right - 1 + tip, 255), (left, left - tip, 0))
@@ -63,11 +63,11 @@ def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Compositi
         )
     boxes = {"colour_bar": Box(left - tip, top, right + tip, top + height)}
     face = font(max(round(composition.px(12)), MIN_TYPE))
-    low = -picture.error_range if signed else 0.0
+    low = -scale.end if signed else 0.0
     for most in (9, 7, 5, 3, 2):
-        ticks = round_ticks(low, picture.error_range, most)
-        notches = [left + (tick - low) / (picture.error_range - low) * (right - 1 - left) for tick in ticks]
-        texts = [tick_text(tick, ticks, percent=kind == "relative") for tick in ticks]
+        ticks = round_ticks(low, scale.end, most)
+        notches = [left + (tick - low) / (scale.end - low) * (right - 1 - left) for tick in ticks]
+        texts = [tick_text(tick, ticks, percent=scale.kind == "relative") for tick in ticks]
         halves = [face.getlength(text) / 2 for text in texts]
         places = [min(max(x, place.left + half), place.right - half) for x, half in zip(notches, halves, strict=True)]
         y = top + height + composition.px(4)

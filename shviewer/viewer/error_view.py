@@ -7,6 +7,8 @@ relative error.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from shviewer.harmonics.basis import Array
@@ -19,6 +21,26 @@ QUIET, SPIKE = 0.95, 2.5
 
 MOST_RELATIVE = 1.0
 """Colours of the relative error end at 100 % or before."""
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorScale:
+    """How the error of one picture is shown. Radiance, or for the relative error shares of the original."""
+
+    kind: str
+    floor: float
+    """The radiance that a darker original counts as in the relative error."""
+    largest: float
+    """Where its magnitude is largest; negative only if signed."""
+    direction: Array
+    """There, (3,), in the frame of the light."""
+    end: float
+    """Where the colours end."""
+
+    @property
+    def beyond(self) -> bool:
+        """Whether there are errors without a colour of their own."""
+        return abs(self.largest) > self.end * (1 + 1e-6)
 
 
 def error_values(kind: str, original: Array, reconstruction: Array, floor: float) -> Array:

@@ -13,9 +13,8 @@ from PIL import Image, ImageDraw
 
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composition import Box, Composition, Sphere
-from shviewer.viewer.error_view import error_values
 from shviewer.viewer.layers import Layer
-from shviewer.viewer.lettering import GREY, INK, MIN_TYPE, Ink, font, radiance
+from shviewer.viewer.lettering import GREY, INK, MIN_TYPE, Ink, font, percent, radiance
 from shviewer.viewer.picture import Picture
 
 RING, THICKNESS, SHADOW = 6.0, 1.5, 1.25
@@ -60,11 +59,11 @@ def marks_of(picture: Picture) -> list[Mark]:
     lowest = radiance(extremes.minimum, extremes.peak)
     if extremes.minimum < 0 and lowest != "0":
         marks.append(Mark("minimum", RECONSTRUCTION, np.array(extremes.minimum_direction), f"minimum {lowest}"))
-    if state.error != "off" and extremes.max_error > 0:
-        direction = np.array(extremes.max_error_direction)
-        signed = error_values("signed", picture.light.radiance(direction[None]), picture.rest_at(direction[None]), 0.0)
-        value = np.copysign(extremes.max_error, signed[0])
-        marks.append(Mark("largest", ERROR, direction, f"largest {_signed(radiance(value, extremes.peak))}"))
+    scale = picture.error_scale
+    if scale is not None and scale.largest:
+        value = percent(scale.largest) if scale.kind == "relative" else radiance(scale.largest, extremes.peak)
+        sign = "+" if scale.kind == "signed" and scale.largest > 0 else ""
+        marks.append(Mark("largest", ERROR, scale.direction, f"largest {sign}{value}"))
     return marks
 
 
@@ -143,7 +142,3 @@ def _ring(half: int, scale: float, broken: bool) -> tuple[Image.Image, Image.Ima
         for mask in masks
     )
     return shadow, ring
-
-
-def _signed(text: str) -> str:
-    return text if text.startswith("-") or text == "0" else f"+{text}"

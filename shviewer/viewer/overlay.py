@@ -169,7 +169,10 @@ class _Painter:
         if not said and "LDR" in words:
             any(self.text("encoding", at.margin, line, "LDR", 12, FAINT, "lm") for line in (y, below))
         if self.text("method", far, y, method, 13, FAINT, "rm"):
-            any(self.text("time", far, below, text, 12, FAINT, "rm") for text in times)
+            low = at.hairline_y - at.px(16)  # beside the colour bar, where the corner is taken
+            any(self.text("time", far, below, text, 12, FAINT, "rm") for text in times) or any(
+                self.text("time", at.margin, low, text, 12, FAINT, "lm") for text in times
+            )
         else:
             both = f"{method}, {grouped_number(projection.milliseconds)} ms" if time else method
             self.text("method", far, below, both, 12, FAINT, "rm") or self.text(

@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 
 from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, evaluate_basis
-from shviewer.harmonics.quadrature import MAX_SAMPLES
+from shviewer.harmonics.extremes import DISPLAY_ROUNDS, at_directions, climb
+from shviewer.harmonics.quadrature import MAX_SAMPLES, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer import camera
 from shviewer.viewer.analysis import (
+    BEST,
     Figures,
     Needs,
     Projection,
@@ -30,7 +32,7 @@ from shviewer.viewer.analysis import (
     subject,
 )
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
-from shviewer.viewer.error_view import ERRORS, automatic_range, error_values
+from shviewer.viewer.error_view import ERRORS, ErrorScale, automatic_range, error_values
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS, map_size
 from shviewer.viewer.memory import remember
 from shviewer.viewer.state import EVALUATIONS, MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
@@ -75,12 +77,8 @@ class Picture:
     world_from_view: Array
     light_from_world: Array
     exposure_stops: float
-    error_floor: float
-    """The radiance that a darker original counts as in the relative error: the light's mean."""
-    error_range: float
-    """Where the colours of the error end."""
-    error_beyond: bool
-    """Whether there are larger ones."""
+    error_scale: ErrorScale | None
+    """Of the error, if it is shown."""
     projection: Projection
     figures: Figures
     needs: Needs
@@ -118,11 +116,9 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         )
     shape = state.n_bands, state.muted_shown, state.window, state.window_width
     coefficients, figures = reconstruct(light, projection, *shape)
-    floor = float(np.abs(projection.coefficients[0]).mean()) / (2 * np.sqrt(np.pi))
-    largest = error_range = 1.0
-    if state.error != "off":
-        largest, chosen = _error_range(light, projection, *shape, state.error, floor)
-        error_range = state.error_range or chosen
+    scale = None if state.error == "off" else _error_scale(light, projection, *shape, state.error)
+    if scale is not None and state.error_range is not None:
+        scale = replace(scale, end=state.error_range)
     by_map = by_map or state.n_bands > MAX_DIRECT_BANDS or state.evaluate == "map"
     return Picture(
         state=state,
@@ -135,9 +131,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         world_from_view=camera.world_from_view(*state.camera),
         light_from_world=camera.light_from_world(state.light_rotation),
         exposure_stops=exposure_stops(state, whole),
-        error_floor=max(floor, LEAST_ERROR_RANGE),
-        error_range=error_range,
-        error_beyond=largest > error_range * (1 + 1e-6),
+        error_scale=scale,
         projection=projection,
         figures=figures,
         needs=needs(state),
@@ -211,7 +205,7 @@ def _reconstruction_map(
 
 
 @remember(most=16)
-def _error_range(
+def _error_scale(
     light: Light,
     projection: Projection,
     n_bands: int,
@@ -219,17 +213,30 @@ def _error_range(
     window_name: str,
     width: float | None,
     kind: str,
-    floor: float,
-) -> tuple[float, float]:
-    """The largest error, and where its colours end: from the grid on which the figures are found."""
+) -> ErrorScale:
+    """From the grid on which the figures are found; the largest relative error, which is no figure, is climbed to there.
+
+    The floor of the relative error is the light's mean.
+    """
     shown, figures = reconstruct(light, projection, n_bands, muted, window_name, width)
-    grid = error_grid(light, grid_rows(n_bands))
-    values = Synthesis(shown).on_rows(grid.theta, len(grid.phi))
+    exact = project(light, *BEST, projection.n_bands).coefficients
+    floor = max(float(np.abs(exact[0]).mean()) / (2 * np.sqrt(np.pi)), LEAST_ERROR_RANGE)
+    grid, synthesis = error_grid(light, grid_rows(n_bands)), Synthesis(shown)
+    values = synthesis.on_rows(grid.theta, len(grid.phi))
     original, reconstruction = (part.transpose(0, 2, 1).reshape(-1, 3) for part in (grid.original, values))
     errors = error_values(kind, original, reconstruction, floor)
-    shares = np.repeat(grid.row_share, len(grid.phi))
-    largest = figures.extremes.max_error if kind != "relative" else float(errors.max())
-    return largest, max(automatic_range(kind, errors, shares, largest), LEAST_ERROR_RANGE)
+
+    def error_at(directions: Array) -> Array:
+        return error_values(kind, light.radiance(directions), at_directions(synthesis, directions), floor)
+
+    direction = np.array(figures.extremes.max_error_direction)
+    if kind == "relative":
+        row, column = divmod(int(errors.argmax()), len(grid.phi))
+        start = directions_from_angles(grid.theta[[row]], grid.phi[[column]])
+        direction = climb(error_at, start, np.pi / len(grid.theta), DISPLAY_ROUNDS)[1][0]
+    largest = float(error_at(direction[None])[0])
+    end = automatic_range(kind, errors, np.repeat(grid.row_share, len(grid.phi)), abs(largest))
+    return ErrorScale(kind, floor, largest, direction, max(end, LEAST_ERROR_RANGE))
 
 
 @remember(most=len(TONES))

@@ -32,7 +32,7 @@ PIXEL_STEP = 2
 def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
     """Everything that made the picture, as one JSON text; equal arguments give equal text."""
     state, figures, projection = picture.state, picture.figures, picture.projection
-    extremes = figures.extremes
+    extremes, scale = figures.extremes, picture.error_scale
     description: dict[str, Any] = {
         "version": __version__,
         "light": picture.light.name,
@@ -56,12 +56,14 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "exposure_stops": picture.exposure_stops,
         "tone": state.tone,
         "error": None
-        if state.error == "off"
+        if scale is None
         else {
-            "kind": state.error,
-            "range": picture.error_range,
-            "floor": picture.error_floor if state.error == "relative" else None,
-            "colour_map": map_of(state.error),
+            "kind": scale.kind,
+            "range": scale.end,
+            "floor": scale.floor if scale.kind == "relative" else None,
+            "largest": scale.largest,
+            "largest_direction_in_light": scale.direction.tolist(),
+            "colour_map": map_of(scale.kind),
         },
         "lobe_view": state.lobe_view,
         "basis": state.basis,

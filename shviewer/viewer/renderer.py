@@ -65,12 +65,12 @@ class Renderer:
             self.sh_buffer.write(pack_coefficients(picture.coefficients))
             self.coefficients = picture.coefficients
         original = picture.original.map
-        compared = picture.compared.map if picture.state.error != "off" else None
+        compared = picture.compared.map if picture.error_scale is not None else None
         self.original_map.follow(None if original is None else original.texels)
         self.compared_map.follow(None if compared is None or compared is original else compared.texels)
         self.reconstruction_map.follow(picture.reconstruction_map)
-        if picture.state.error != "off":
-            self.colour_map.follow(self._colours(colour_maps.map_of(picture.state.error)))
+        if picture.error_scale is not None:
+            self.colour_map.follow(self._colours(colour_maps.map_of(picture.error_scale.kind)))
         self.picture = picture
 
     def draw(
@@ -94,6 +94,8 @@ class Renderer:
         self.reconstruction_map.use(SAMPLERS["reconstruction_map"])
         self.colour_map.use(SAMPLERS["colour_map"])
         for shown, sphere in zip(CHOICES["SHOWN"], composition.spheres, strict=False):
+            if shown == "ERROR" and picture.error_scale is None:
+                continue
             self._draw_sphere(target, composition, picture, shown, sphere, linear)
         target.viewport = (0, 0, composition.width, composition.height)
         if not linear:
@@ -150,10 +152,10 @@ class Renderer:
             original_lobes=lobes,
             sun_lobes=suns,
             original_rows_on_poles=source.map is not None and source.map.rows_on_poles,
-            error_kind=max(ERRORS.index(picture.state.error) - 1, 0),
-            error_range=picture.error_range,
-            error_floor=picture.error_floor,
         )
+        scale = picture.error_scale
+        if scale is not None:
+            program.set(error_kind=ERRORS.index(scale.kind) - 1, error_range=scale.end, error_floor=scale.floor)
         target.viewport = box
         program.draw()
 

@@ -74,8 +74,10 @@ def test_the_colours_are_those_of_the_table_for_the_errors_of_the_cpu(
     picture = picture_of(light, n_bands=5, error=error)
     seen = picture_view(frame, ERROR, picture)
     original = original_at(picture, seen.directions)
-    values = error_values(error, original, sum_of_harmonics(seen.directions, picture.coefficients), picture.error_floor)
-    share = np.clip(values / picture.error_range, -1, 1)
+    values = error_values(
+        error, original, sum_of_harmonics(seen.directions, picture.coefficients), picture.error_scale.floor
+    )
+    share = np.clip(values / picture.error_scale.end, -1, 1)
     position = 255 * (0.5 + 0.5 * share if error == "signed" else share)
     colours = table(map_of(error)).astype(float)
     wanted = np.stack([np.interp(position, np.arange(256), colours[:, channel]) for channel in range(3)], axis=1)
@@ -89,7 +91,7 @@ def test_the_colours_are_those_of_the_table_for_the_errors_of_the_cpu(
 def test_a_fixed_range_is_kept_whatever_the_error(renderer: Renderer) -> None:
     frame = three_spheres()
     wide, narrow = (picture_of("green", error="absolute", error_range=end) for end in (10.0, 0.01))
-    assert (wide.error_range, narrow.error_range) == (10.0, 0.01)
+    assert (wide.error_scale.end, narrow.error_scale.end) == (10.0, 0.01)
     dark, bright = (
         render_rgb(renderer, p, frame, overlay=False)[picture_view(frame, ERROR, p).mask] for p in (wide, narrow)
     )

@@ -38,6 +38,21 @@ def test_the_largest_error_in_any_pixel_is_the_figure_of_that_name() -> None:
     assert 0.9 * shown.figures.extremes.max_error < errors.max() <= shown.figures.extremes.max_error * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("error", ["signed", "absolute", "relative"])
+def test_no_pixel_has_a_larger_error_than_the_one_that_is_marked(error: str) -> None:
+    shown = picture(lights=("studio",), n_bands=7, error=error)
+    scale = shown.error_scale
+    assert scale is not None
+    directions = np.random.default_rng(1).normal(size=(20_000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+
+    def errors(at: np.ndarray) -> np.ndarray:
+        return error_values(error, shown.light.radiance(at), shown.rest_at(at), scale.floor)
+
+    assert errors(scale.direction[None])[0] == pytest.approx(scale.largest, rel=1e-9)
+    assert 0.9 * abs(scale.largest) < np.abs(errors(directions)).max() <= abs(scale.largest) * (1 + 1e-3)
+
+
 def test_the_colours_end_at_the_largest_error_unless_it_is_a_spike() -> None:
     shares = np.full(1000, 1e-3)
     even = np.linspace(-1, 1, 1000)
@@ -59,14 +74,14 @@ def test_relative_errors_end_at_all_of_it_and_no_error_has_a_range_all_the_same(
 @pytest.mark.parametrize("light", ["green", "hemisphere", "cosine"])
 def test_a_light_without_spikes_is_coloured_up_to_its_largest_error(light: str) -> None:
     shown = picture(lights=(light,), n_bands=5, error="signed")
-    assert shown.error_range == shown.figures.extremes.max_error
-    assert not shown.error_beyond
+    assert shown.error_scale.end == pytest.approx(shown.figures.extremes.max_error, rel=1e-9)
+    assert not shown.error_scale.beyond
 
 
 def test_a_sun_does_not_leave_the_rest_without_colours() -> None:
     shown = picture(lights=("venice_sunset",), n_bands=9, error="signed")
-    assert shown.error_beyond
-    assert shown.error_range < 0.01 * shown.figures.extremes.max_error
+    assert shown.error_scale.beyond
+    assert shown.error_scale.end < 0.01 * shown.figures.extremes.max_error
 
 
 @pytest.mark.parametrize(
