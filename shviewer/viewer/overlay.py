@@ -39,7 +39,9 @@ from shviewer.viewer.plane import Plane, draw_plane
 from shviewer.viewer.state import describe_exposure, describe_muted, describe_window
 
 SLOT_COUNTS = (10, 16, 32, 64, 128)
-"""Bars shown: the smallest of these that holds the bands in use, so that a bar stays where it is while keys are pressed."""
+"""Bars shown: the smallest of these that holds the bands in use, so that a bar stays where it is while keys are pressed.
+
+During a sweep they hold those it ends with."""
 
 HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
 NO_PLANE = "no room for time against error: enlarge the window, or B"
@@ -199,7 +201,9 @@ class _Painter:
     def band_bars(self, picture: Picture) -> None:
         """Energy of each band: filled as far as it is kept, hollow when muted, dim above n. A bar stays where it is."""
         at, state = self.at, picture.state
-        slots = next(count for count in SLOT_COUNTS if count >= min(state.n_bands, SLOT_COUNTS[-1]))
+        slots = next(
+            count for count in SLOT_COUNTS if count >= min(max(state.n_bands, state.sweep_to or 0), SLOT_COUNTS[-1])
+        )
         left = max((box.right for box in self.boxes.values() if box.top > at.hairline_y), default=0) + at.px(24)
         face = self.face(12)
         label_width = face.getlength("energy, %")
