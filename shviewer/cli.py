@@ -44,9 +44,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         if arguments[:1] == ["screenshot"]:
-            return _screenshot(screenshot_parser().parse_args(arguments[1:]))
+            return _screenshot(screenshot_parser().parse_intermixed_args(arguments[1:]))
         if arguments[:1] == ["sweep"]:
-            return _sweep(sweep_parser().parse_args(arguments[1:]))
+            return _sweep(sweep_parser().parse_intermixed_args(arguments[1:]))
         if arguments[:1] == ["report"]:
             return _report(report_parser().parse_args(arguments[1:]))
         if arguments[:1] == ["info"]:

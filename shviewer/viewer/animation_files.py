@@ -2,13 +2,14 @@
 
 At 1280 x 640 a frame of the band sweeps of green and venice_sunset takes 51 and 68 kB and 0.3 to 0.4 s as lossless WebP.
 Quality 90 would take 19 and 21 kB and 0.06 s, but be 74 of 255 off at the edges of letters: a tool that measures errors keeps
-its pixels. As GIF it is 52 and 38 kB and 0.3 s, most of which is drawing it twice.
+its pixels. As GIF it is 63 and 38 kB and 0.3 s, most of which is drawing it twice.
 """
 
 from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,22 +78,26 @@ def _indexed(draw: Draw, count: int, palette: SharedPalette, table: bytes) -> It
 
 
 class _Reel(Image.Image):
-    """An image of several frames, like those that Pillow reads from files: a frame is there once it has been sought."""
+    """An image of several frames, like those that Pillow reads from files: one is drawn when its pixels are wanted."""
 
     def __init__(self, draw: Draw, n_frames: int) -> None:
         super().__init__()
         self.draw = draw
         self.n_frames = n_frames
-        self.position = -1
-        self.seek(0)
+        self.position, self.drawn = 0, -1
+        self.load()
 
     def seek(self, frame: int) -> None:
         if frame >= self.n_frames:
             raise EOFError("no more frames")
-        if frame != self.position:
-            drawn = Image.fromarray(self.draw(frame))
-            self.im, self._mode, self._size = drawn.im, drawn.mode, drawn.size
-            self.position = frame
+        self.position = frame
 
     def tell(self) -> int:
         return self.position
+
+    def load(self) -> Any:
+        if self.drawn != self.position:
+            self.drawn = self.position
+            image = Image.fromarray(self.draw(self.position))
+            self.im, self._mode, self._size = image.im, image.mode, image.size
+        return super().load()
