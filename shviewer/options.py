@@ -103,7 +103,6 @@ def sweep_parser() -> OneLineParser:
     parser.add_argument(
         "out", metavar="OUT", type=Path, help="OUT.webp: lossless; OUT.gif: one palette of 255 colours for all frames"
     )
-    _add_view_options(parser)
     parser.add_argument("--from", metavar="N", dest="first", type=int, help="bands of the first frame (default 1)")
     parser.add_argument("--to", metavar="N", dest="last", type=int, help="bands of the last frame (default 16)")
     parser.add_argument(
@@ -117,6 +116,7 @@ def sweep_parser() -> OneLineParser:
         help="that a frame is shown, 0.02 to 60 (default 0.7, the last band three times as long; --turntable 0.08)",
     )
     parser.add_argument("--no-overlay", action="store_true", help="the two spheres alone")
+    _add_view_options(parser)
     return parser
 
 
