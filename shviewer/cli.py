@@ -10,13 +10,23 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer.errors import LightError, ShviewerError, UsageError
-from shviewer.options import DEFAULT_BANDS, finite, info_parser, report_parser, screenshot_parser, view_parser
+from shviewer.options import (
+    DEFAULT_BANDS,
+    DEFAULT_SWEEP,
+    finite,
+    info_parser,
+    report_parser,
+    screenshot_parser,
+    sweep_parser,
+    view_parser,
+)
 
 if TYPE_CHECKING:
     from shviewer.lights.radiance_files import Reading
@@ -34,7 +44,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         if arguments[:1] == ["screenshot"]:
-            return _screenshot(screenshot_parser().parse_args(arguments[1:]))
+            return _screenshot(screenshot_parser().parse_intermixed_args(arguments[1:]))
+        if arguments[:1] == ["sweep"]:
+            return _sweep(sweep_parser().parse_intermixed_args(arguments[1:]))
         if arguments[:1] == ["report"]:
             return _report(report_parser().parse_args(arguments[1:]))
         if arguments[:1] == ["info"]:
@@ -108,6 +120,52 @@ def _screenshot(options: argparse.Namespace) -> int:
     return 1 if verdict else 0
 
 
+def _sweep(options: argparse.Namespace) -> int:
+    _check_sweep(options)
+    from shviewer.viewer.animation import ENCODERS, TURN_FRAMES, TURN_SECONDS, band_sweep, save_animation, turntable
+    from shviewer.viewer.composition import compose
+    from shviewer.viewer.playing import SWEEP_SECONDS
+
+    if options.out.suffix.lower() not in ENCODERS:
+        raise UsageError(f"{options.out}: OUT must end in {' or '.join(ENCODERS)}")
+    state = _state(options, all_lights=False)
+    if options.turntable:
+        frames = TURN_FRAMES if options.frames is None else options.frames
+        animation = turntable(state, frames, TURN_SECONDS if options.seconds is None else options.seconds)
+    else:
+        first = DEFAULT_SWEEP[0] if options.first is None else options.first
+        last = DEFAULT_SWEEP[1] if options.last is None else options.last
+        animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
+    composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
+    with _status_line() as line:
+        picture = save_animation(
+            animation,
+            composition,
+            options.out,
+            overlay=not options.no_overlay,
+            progress=line.fraction if line else None,
+        )
+    _print_notes(picture.subject)
+    return 0
+
+
+def _check_sweep(options: argparse.Namespace) -> None:
+    """UsageError for options that contradict each other."""
+    if options.turntable:
+        for name, value in (("--from", options.first), ("--to", options.last)):
+            if value is not None:
+                raise UsageError(f"{name} {value} with --turntable: a turn has one number of bands; give --bands")
+        return
+    if options.frames is not None:
+        raise UsageError(f"--frames {options.frames}: a sweep has one for each band count; give --from and --to")
+    if options.bands is not None:
+        raise UsageError(f"--bands {options.bands}: a sweep goes through them; give --from and --to, or --turntable")
+    if options.tolerance is not None:
+        raise UsageError(
+            f"--tolerance {options.tolerance:g}: a sweep goes through all bands; give --from and --to, or --turntable"
+        )
+
+
 def _info(options: argparse.Namespace) -> int:
     """Every light that can be read is described; the exit code is that of the first that cannot."""
     from shviewer.viewer.information import as_json_object, as_text, describe
@@ -173,17 +231,13 @@ def _report(options: argparse.Namespace) -> int:
         reading=_reading(options),
         shader=not options.no_shader,
     )
-    line = _StatusLine() if sys.stderr.isatty() else None
-    try:
+    with _status_line() as line:
         summary = write_report(
             options.lights,
             options.output or Path("shviewer-report"),
             wanted,
             progress=line.fraction if line else None,
         )
-    finally:
-        if line:
-            line.clear()
     print(summary.text)
     print(f"wrote {summary.rows} rows: {', '.join(str(summary.folder / name) for name in summary.files)}")
     return 1 if summary.stability_failed else 0
@@ -192,10 +246,8 @@ def _report(options: argparse.Namespace) -> int:
 def _stability(options: argparse.Namespace) -> int:
     from shviewer import stability
 
-    line = _StatusLine() if sys.stderr.isatty() else None
-    outcomes = stability.run(progress=line.show if line else None, shader=not options.no_shader)
-    if line:
-        line.clear()
+    with _status_line() as line:
+        outcomes = stability.run(progress=line.show if line else None, shader=not options.no_shader)
     print(stability.as_text(outcomes))
     return 0 if all(outcome.passed for outcome in outcomes) else 1
 
@@ -213,6 +265,17 @@ class _StatusLine:
 
     def clear(self) -> None:
         self.show("")
+
+
+@contextmanager
+def _status_line() -> Iterator[_StatusLine | None]:
+    """One on stderr where that is a terminal, wiped at the end whatever happens; else none."""
+    line = _StatusLine() if sys.stderr.isatty() else None
+    try:
+        yield line
+    finally:
+        if line:
+            line.clear()
 
 
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:

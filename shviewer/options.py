@@ -20,6 +20,7 @@ EXIT_CODES = """exit codes:
   130  interrupted"""
 
 DEFAULT_BANDS = 5
+DEFAULT_SWEEP = (1, 16)
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
@@ -40,10 +41,12 @@ def view_parser() -> OneLineParser:
         prog="shviewer",
         usage="shviewer [LIGHT] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
+        "       shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]\n"
         "       shviewer info LIGHT [LIGHT ...] [options]\n"
         "       shviewer report [LIGHT ...] [-o DIR] [options]",
         description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
         epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
+        "\nanimations: shviewer sweep --help"
         "\nwhat a light is, in figures: shviewer info --help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -85,6 +88,35 @@ def screenshot_parser() -> OneLineParser:
         default=0.001,
         help="share of the pixels, 0 to 1, that may differ from the reference by more than 2/255 (default 0.001)",
     )
+    return parser
+
+
+def sweep_parser() -> OneLineParser:
+    """shviewer sweep OUT [LIGHT]: an animation without a window."""
+    parser = OneLineParser(
+        prog="shviewer sweep",
+        description="Write an animation of more and more bands, or with --turntable of the camera going round. Every frame is "
+        "the screenshot of its state.",
+        epilog=EXIT_CODES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "out", metavar="OUT", type=Path, help="OUT.webp: lossless; OUT.gif: one palette of 255 colours for all frames"
+    )
+    parser.add_argument("--from", metavar="N", dest="first", type=int, help="bands of the first frame (default 1)")
+    parser.add_argument("--to", metavar="N", dest="last", type=int, help="bands of the last frame (default 16)")
+    parser.add_argument(
+        "--turntable", action="store_true", help="turn the camera once round instead, with --bands N bands"
+    )
+    parser.add_argument("--frames", metavar="K", type=int, help="of --turntable, 2 to 720 (default 72)")
+    parser.add_argument(
+        "--seconds",
+        metavar="S",
+        type=finite,
+        help="that a frame is shown, 0.02 to 60 (default 0.7, the last band three times as long; --turntable 0.08)",
+    )
+    parser.add_argument("--no-overlay", action="store_true", help="the two spheres alone")
+    _add_view_options(parser)
     return parser
 
 

@@ -69,7 +69,15 @@ def failing(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, s
 
 
 @pytest.mark.parametrize(
-    "option", [["--version"], ["--help"], ["screenshot", "--help"], ["info", "--help"], ["--list-keys", "--help"]]
+    "option",
+    [
+        ["--version"],
+        ["--help"],
+        ["screenshot", "--help"],
+        ["sweep", "--help"],
+        ["info", "--help"],
+        ["--list-keys", "--help"],
+    ],
 )
 def test_asking_for_help_loads_neither_numpy_nor_opengl(option: list[str]) -> None:
     heavy = ("numpy", "moderngl", "glfw", "PIL", "pyrr", "OpenEXR")
@@ -138,7 +146,11 @@ def test_the_lists_are_those_of_the_program(capsys: pytest.CaptureFixture[str]) 
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else str(value),
 )
-@pytest.mark.parametrize("mode", [[], ["screenshot", "a.png"]], ids=["window", "screenshot"])
+@pytest.mark.parametrize(
+    "mode",
+    [[], ["screenshot", "a.png"], ["sweep", "a.gif", "--turntable"]],
+    ids=["window", "screenshot", "turntable"],
+)
 def test_a_bad_argument_is_one_line_with_its_value_and_the_rule(
     capsys: pytest.CaptureFixture[str],
     tmp_path: Path,
@@ -171,6 +183,62 @@ def test_a_bad_screenshot_argument_exits_2(
     code, line = failing(capsys, *arguments)
     assert code == 2
     assert all(word in line for word in words), line
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["a.mp4"], 2, ["a.mp4", ".gif or .webp"]),
+        (["a"], 2, ["a: OUT must end in .gif or .webp"]),
+        ([], 2, ["OUT"]),
+        (["a.gif", "--from", "5", "--to", "4"], 2, ["--from 5 --to 4", "at most --to"]),
+        (["a.gif", "--from", "17"], 2, ["--from 17 --to 16"]),
+        (["a.gif", "--from", "0"], 2, ["--from 0", "1 to 128"]),
+        (["a.gif", "--to", "129"], 2, ["--to 129", "1 to 128"]),
+        (["a.gif", "--to", "few"], 2, ["--to", "'few'"]),
+        (["a.gif", "--bands", "5"], 2, ["--bands 5", "--from and --to, or --turntable"]),
+        (["a.gif", "--tolerance", "5%"], 2, ["--tolerance 0.05", "--from and --to, or --turntable"]),
+        (["a.gif", "--frames", "9"], 2, ["--frames 9", "--from and --to"]),
+        (["a.gif", "--turntable", "--from", "2"], 2, ["--from 2 with --turntable", "--bands"]),
+        (["a.gif", "--turntable", "--to", "2"], 2, ["--to 2 with --turntable", "--bands"]),
+        (["a.gif", "--turntable", "--frames", "1"], 2, ["--frames 1", "2 to 720"]),
+        (["a.gif", "--turntable", "--frames", "721"], 2, ["--frames 721", "2 to 720"]),
+        (["a.gif", "--seconds", "0.01"], 2, ["--seconds 0.01", "0.02 to 60"]),
+        (["a.gif", "--seconds", "61"], 2, ["--seconds 61", "0.02 to 60"]),
+        (["a.gif", "--seconds", "nan"], 2, ["'nan'", "finite"]),
+        (["a.gif", "--seconds", "50"], 2, ["16 frames last 900 s", "at most 655", "--seconds"]),
+        (["a.webp", "--size", "8192", "8192"], 2, ["16 frames of 8192 x 8192", "--size up to 5792 5792"]),
+        (["a.webp", "--size", "99", "9000"], 2, ["size 99 x 9000"]),
+        (["gone/a.gif"], 4, ["gone/a.gif", "no such folder"]),
+        (["folder.gif"], 4, ["folder.gif", "s a directory"]),
+        (["a.gif", "gren"], 3, ["unknown light 'gren'"]),
+        (["a.gif", "--window", "dering", "--to", "40"], 2, ["dering"]),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else str(value),
+)
+def test_a_bad_sweep_is_one_line_before_anything_is_drawn(
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str],
+    code: int,
+    words: list[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("shviewer.viewer.animation.headless_renderer", None)  # it would be called to draw
+    (tmp_path / "folder.gif").mkdir()
+    (tmp_path / "a.gif").write_text("kept")
+    found, line = failing(capsys, "sweep", *arguments)
+    assert found == code
+    assert all(word in line for word in words), line
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "folder.gif"]
+    assert (tmp_path / "a.gif").read_text() == "kept"
+
+
+@pytest.mark.parametrize("mode", [["screenshot", "a.png"], ["sweep", "a.gif"]])
+def test_the_light_may_stand_behind_options(capsys: pytest.CaptureFixture[str], mode: list[str]) -> None:
+    code, line = failing(capsys, *mode, "--zoom", "2", "gren", "--no-overlay")
+    assert (code, "unknown light 'gren'" in line) == (3, True)
 
 
 def write(path: Path, content: str | bytes) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from shviewer.lights.scene import PROFILES, read_scene
-from shviewer.options import EXIT_CODES, info_parser, report_parser, screenshot_parser, view_parser
+from shviewer.options import EXIT_CODES, info_parser, report_parser, screenshot_parser, sweep_parser, view_parser
 from shviewer.viewer.keys import key_table
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.state import METHODS, ViewState
@@ -32,8 +32,8 @@ def test_the_exit_codes_are_those_of_the_help() -> None:
 
 @pytest.mark.parametrize(
     "parser",
-    [view_parser(), screenshot_parser(), info_parser(), report_parser()],
-    ids=["view", "screenshot", "info", "report"],
+    [view_parser(), screenshot_parser(), sweep_parser(), info_parser(), report_parser()],
+    ids=["view", "screenshot", "sweep", "info", "report"],
 )
 def test_every_option_is_explained(parser: object) -> None:
     options = [text for action in parser._actions for text in action.option_strings if text.startswith("--")]  # type: ignore[attr-defined]

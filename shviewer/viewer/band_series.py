@@ -45,7 +45,7 @@ class BandSeries:
 def band_series(picture: Picture) -> BandSeries:
     """What the convergence plot of a picture shows."""
     state, figures, needs = picture.state, picture.figures, picture.needs
-    slots, floor = band_slots(state.n_bands), figures.floor
+    slots, floor = band_slots(state.bands_ahead), figures.floor
 
     def on_axis(errors: Array) -> dict[int, float]:
         shares = enumerate(map(float, errors[: slots + 1]), 1)

@@ -220,7 +220,7 @@ class _Painter:
     def band_bars(self, picture: Picture) -> None:
         """Energy of each band: filled as far as it is kept, hollow when muted, dim above n. A bar stays where it is."""
         at, state = self.at, picture.state
-        slots = band_slots(state.n_bands)
+        slots = band_slots(state.bands_ahead)
         left = max((box.right for box in self.boxes.values() if box.top > at.hairline_y), default=0) + at.px(24)
         face = self.face(12)
         label_width = face.getlength("energy, %")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import json
 import math
@@ -160,8 +161,23 @@ def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> Non
     except FileExistsError:
         raise
     except OSError as error:
-        reason = "no such folder" if isinstance(error, FileNotFoundError) else error.strerror or error
-        raise OutputError(f"{path}: cannot be written: {reason}; choose another place") from error
+        raise _refused(path, error) from error
+
+
+def check_place(path: Path) -> None:
+    """OutputError if nothing can be written there: to be asked before what is to be written is worked on for long."""
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise _refused(path, error) from error
+
+
+def _refused(path: Path, error: OSError) -> OutputError:
+    reason = "no such folder" if isinstance(error, FileNotFoundError) else error.strerror or error
+    return OutputError(f"{path}: cannot be written: {reason}; choose another place")
 
 
 def _place_exclusively(name: str, path: Path, data: bytes) -> None:

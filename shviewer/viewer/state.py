@@ -90,6 +90,11 @@ class ViewState:
         return 2 if self.error == "off" else 3
 
     @property
+    def bands_ahead(self) -> int:
+        """Those in use, or during a sweep those it ends with: what bars and axes have to have room for."""
+        return max(self.n_bands, self.sweep_to or 0)
+
+    @property
     def muted_shown(self) -> tuple[int, ...]:
         """The muted bands among those in use."""
         return tuple(sorted(band for band in self.muted if band < self.n_bands))

@@ -18,7 +18,7 @@ import moderngl
 from shviewer.errors import ShviewerError
 from shviewer.lights.light import Light, split_light
 from shviewer.lights.radiance_files import Reading
-from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, toggle_band, with_bands, zoom
+from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, step_sweep, toggle_band, with_bands, zoom
 from shviewer.viewer.analysis import keep_light, needs, read_again, stamp_read
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.evaluation import Evaluation
@@ -31,6 +31,7 @@ from shviewer.viewer.overlay import Overlay, describe_evaluation, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
 from shviewer.viewer.plane import measured
+from shviewer.viewer.playing import Metronome
 from shviewer.viewer.probe import probe, probe_layers
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
@@ -74,6 +75,7 @@ class Window:
         self.picture: Picture = replace(first, state=self.state)
         self.watch = Watch() if watch else None
         self.looked_at = perf_counter()
+        self.metronome = Metronome()
         self.verbose = verbose
         self.renderer = Renderer(moderngl.create_context(require=330))
         self.overlay: Overlay | None = None
@@ -98,14 +100,16 @@ class Window:
         glfw.set_window_title(handle, f"shviewer - {self.picture.light.name}")
 
     def loop(self) -> None:
-        """Draw what is due, then sleep until something happens."""
+        """Draw what is due, then sleep until something happens or a sweep takes its next step."""
         while not glfw.window_should_close(self.handle):
             if self.frames_due:
                 self.frame()
             if self.frames_due:
                 glfw.poll_events()
             else:
-                glfw.wait_events_timeout(IDLE_SECONDS)
+                glfw.wait_events_timeout(self.metronome.wait(perf_counter(), IDLE_SECONDS))
+            if self.metronome.beats(self.state.sweep_to is not None, perf_counter()):
+                self.change(step_sweep(self.state))
             if self.watch is not None:
                 self._look(self.watch)
 
@@ -205,12 +209,12 @@ class Window:
             self.change(reload(replace(self.state, message="")))
 
     def _keep(self, error: ShviewerError) -> None:
-        """Stay with the picture there is, and say why."""
+        """Stay with the picture there is, and say why; a sweep ends, whose next step would take that away."""
         keep_light(self.picture.state, self.picture.subject.whole)
         names = ("fullscreen", "closing", "screenshots", "fits", "layout_tried")
         wishes = {name: getattr(self.state, name) for name in names}
         message = with_keys(str(error), self.state.light, self.picture.state.reading)
-        self.state = replace(self.picture.state, message=message, **wishes)
+        self.state = replace(self.picture.state, message=message, sweep_to=None, **wishes)
         self.picture = replace(self.picture, state=self.state)
         if self.verbose:
             print(f"kept {self.picture.light.name}: {error}", file=sys.stderr, flush=True)

@@ -15,6 +15,8 @@ import numpy as np
 import pytest
 from desktop import PATIENCE, Viewer, screenshot
 
+from shviewer.viewer.playing import SWEEP_SECONDS
+
 Start = Callable[..., Viewer]
 
 
@@ -195,6 +197,33 @@ def test_a_dropped_file_opens_and_a_bad_one_leaves_the_present_light_and_says_wh
     assert messages[0] == messages[3] == ""
 
 
+REFUSED_SWEEP_SCRIPT = """
+from dataclasses import replace
+from shviewer.viewer import window
+from shviewer.viewer.actions import step_sweep
+from shviewer.viewer.state import ViewState
+with window.open_window((640, 320)) as handle:
+    shown = window.Window(handle, ViewState(n_bands=32, window="dering", sweep_to=40), False)
+    shown.frame()
+    shown.change(step_sweep(shown.state))
+    shown.frame()
+    print(shown.state.n_bands, shown.state.sweep_to, shown.state.message)
+"""
+
+
+def test_a_sweep_to_a_state_that_cannot_be_shown_ends_there_and_says_why(display: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", REFUSED_SWEEP_SCRIPT],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=PATIENCE,
+    )
+    assert done.stdout.startswith("32 None ")
+    assert "dering" in done.stdout
+
+
 def test_an_idle_window_costs_under_one_percent_of_a_core(start: Start) -> None:
     viewer = start()
     time.sleep(0.5)
@@ -210,3 +239,38 @@ def test_ctrl_c_in_the_terminal_ends_it_at_once(start: Start) -> None:
     assert viewer.process.wait(PATIENCE) == 130
     assert time.monotonic() - begin < 3  # it wakes up four times a second; the rest is Python closing down
     assert not any("Traceback" in line for line in viewer.seen)
+
+
+def test_space_plays_a_sweep_to_the_bands_in_use_and_then_costs_nothing(start: Start) -> None:
+    viewer = start("green", "--bands", "4", "--size", "640", "320")
+    viewer.press("space", " 1 bands")
+    begin = time.monotonic()
+    for n_bands in (2, 3, 4):
+        line = viewer.wait_for("frame")
+        assert f" {n_bands} bands" in line
+    taken = time.monotonic() - begin
+    assert taken > 3 * SWEEP_SECONDS - 0.3  # of which the first frame may have taken some
+    time.sleep(1.0)
+    before = viewer.cpu_seconds()
+    time.sleep(2)
+    assert viewer.cpu_seconds() - before < 0.02 + 0.011
+    assert viewer.lines.empty()
+
+
+def test_a_sweep_goes_on_under_other_keys_until_space_or_a_band_key(start: Start) -> None:
+    viewer = start("green", "--bands", "9", "--size", "640", "320")
+    viewer.press("space", " 1 bands")
+    viewer.press("e", "frame")
+    viewer.wait_for(" 3 bands")
+    viewer.press("space", "frame")
+    stopped = json.loads(viewer.saved_picture()[1])["bands"]
+    viewer.wait_for("frame")  # which says that it was saved
+    time.sleep(1.2 * SWEEP_SECONDS)
+    assert viewer.lines.empty()
+    assert 3 <= stopped < 9
+    viewer.press("space", " 1 bands")  # from the present count again
+    viewer.wait_for(" 2 bands")
+    viewer.press("Prior", " bands")
+    viewer.forget()
+    time.sleep(1.2 * SWEEP_SECONDS)
+    assert viewer.lines.empty()

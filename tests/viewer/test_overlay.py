@@ -368,3 +368,15 @@ def test_a_share_has_three_digits_and_never_rounds_up_to_100(share: float, text:
 )
 def test_a_radiance_has_three_digits_or_a_power_of_ten(value: float, text: str) -> None:
     assert radiance(value, 1e-6) == text
+
+
+@pytest.mark.parametrize("size", [(1280, 640), (640, 320)])
+@pytest.mark.parametrize("to", [9, 16, 32])
+def test_through_a_sweep_every_bar_stays_where_it_is(size: tuple[int, int], to: int) -> None:
+    composition = compose(*size)
+    end = draw_overlay(picture(n_bands=to), composition)
+    for n_bands in range(1, to, max(to // 8, 1)):
+        drawn = draw_overlay(picture(n_bands=n_bands, sweep_to=to), composition)
+        assert drawn.bars == end.bars
+        assert drawn.boxes["bars"] == end.boxes["bars"]
+    assert len(end.bars) > 9

@@ -1,0 +1,32 @@
+"""When a sweep that plays takes its next step. Pure arithmetic: it is told the time and asks no clock."""
+
+from __future__ import annotations
+
+SWEEP_SECONDS = 0.7
+"""How long a sweep shows each band count: long enough to read the error."""
+
+
+class Metronome:
+    """A beat every so many seconds while something plays, the first one a whole period after it began.
+
+    A beat that comes late, because a frame took long, moves those after it: none is caught up with and none left out.
+    """
+
+    def __init__(self, seconds: float = SWEEP_SECONDS) -> None:
+        self.seconds = seconds
+        self.due: float | None = None
+        """When the next beat is, on the clock of `now`; None while nothing plays."""
+
+    def beats(self, playing: bool, now: float) -> bool:
+        """Whether it is time for a step."""
+        if not playing:
+            self.due = None
+            return False
+        beat = self.due is not None and now >= self.due
+        if beat or self.due is None:
+            self.due = now + self.seconds
+        return beat
+
+    def wait(self, now: float, longest: float) -> float:
+        """Seconds to sleep until the next beat, but at most `longest`."""
+        return longest if self.due is None else min(max(self.due - now, 0.0), longest)
