@@ -20,20 +20,14 @@ from shviewer.lights.light import Light, split_light
 from shviewer.lights.radiance_files import Reading
 from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, step_sweep, toggle_band, with_bands, zoom
 from shviewer.viewer.analysis import keep_light, needs, read_again, stamp_read
+from shviewer.viewer.canvas import Canvas
 from shviewer.viewer.composition import Composition, compose
-from shviewer.viewer.evaluation import Evaluation
 from shviewer.viewer.glfw_window import key_name, open_window
 from shviewer.viewer.keys import press
-from shviewer.viewer.layers import Layer
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
-from shviewer.viewer.marks import mark_layers
-from shviewer.viewer.overlay import Overlay, describe_evaluation, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_numbered
-from shviewer.viewer.plane import measured
 from shviewer.viewer.playing import Metronome
-from shviewer.viewer.probe import probe, probe_layers
-from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState, describe_sanitizing
 from shviewer.viewer.watching import Watch
@@ -60,11 +54,11 @@ def run(state: ViewState, size: tuple[int, int], *, verbose: bool = False, watch
         try:
             window.loop()
         finally:
-            window.renderer.release()
+            window.canvas.release()
 
 
 class Window:
-    """One window, one state, one renderer."""
+    """One window, one state, one canvas."""
 
     def __init__(self, handle: Any, state: ViewState, verbose: bool, watch: bool = False) -> None:
         self.handle = handle
@@ -77,15 +71,12 @@ class Window:
         self.looked_at = perf_counter()
         self.metronome = Metronome()
         self.verbose = verbose
-        self.renderer = Renderer(moderngl.create_context(require=330))
-        self.overlay: Overlay | None = None
-        self.overlay_key: object = None
+        self.canvas = Canvas(moderngl.create_context(require=330))
         self.frames_due = 2  # the first swap may still have the old size
         self.frame_count = 0
         self.pressed_at: tuple[float, float] | None = None
         self.mouse = self.dragged_to = (0.0, 0.0)
         self.dragged = self.hovering = False
-        self.evaluation = Evaluation()
         self.by_map = False
         self.windowed_place = (0, 0, 1280, 640)
         glfw.set_key_callback(handle, self._on_key)
@@ -139,15 +130,17 @@ class Window:
         start = perf_counter()
         self._announce(composition)
         last = self.picture
-        self._prepare(self._by_map(composition))
+        self._prepare(self.canvas.by_map(self.state, composition))
+        composition = self.composition() or composition  # a state that was refused has left another one
         try:
-            self._show(composition)
+            self.canvas.show(self.picture, composition)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             self.picture = last
             glfw.set_window_title(self.handle, f"shviewer - {last.light.name}")
             self._keep(error)
-            self._show(composition)
-        self._draw(composition)
+            self.canvas.show(self.picture, composition)
+        if self.canvas.draw(composition, self.mouse if self.hovering and not self.dragged else None):
+            self.frames_due = max(self.frames_due, 1)
         glfw.swap_buffers(self.handle)
         self.frame_count += 1
         if self.verbose:
@@ -166,38 +159,6 @@ class Window:
             return None
         scale = float(glfw.get_window_content_scale(self.handle)[1])
         return compose(width, height, self.state.zoom, scale if scale > 0 else 1.0, self.state.n_spheres)
-
-    def _by_map(self, composition: Composition) -> bool:
-        """Whether the reconstruction is drawn from a map where that is left to the time that frames take."""
-        return self.state.evaluate == "auto" and self.evaluation.choose(self.state.n_bands, summed_pixels(composition))
-
-    def _draw(self, composition: Composition) -> None:
-        """The frame, and of one that is summed per pixel how long it takes."""
-        layers = self._layers(composition)
-        timed = self.state.evaluate == "auto" and self.picture.reconstruction_map is None
-        if timed:
-            self.renderer.context.finish()
-        start = perf_counter()
-        self.renderer.draw(self.renderer.context.screen, composition, layers)
-        if timed:
-            self.renderer.context.finish()
-            milliseconds, pixels = 1000 * (perf_counter() - start), summed_pixels(composition)
-            again = self.evaluation.drawn(self.picture.state.n_bands, pixels, milliseconds)
-            if again or self.evaluation.choose(self.picture.state.n_bands, pixels):
-                self.frames_due = max(self.frames_due, 1)
-
-    def _layers(self, composition: Composition) -> tuple[Layer, ...]:
-        """Marks, what is written, and the values under the mouse."""
-        layers = (*mark_layers(self.picture, composition), *(self.overlay.layers if self.overlay else ()))
-        if self.hovering and not self.dragged and not self.picture.state.help_visible:
-            found = probe(self.picture, composition, *self.mouse)
-            if found is not None:
-                layers += probe_layers(found, composition, *self.mouse)
-        return layers
-
-    def _show(self, composition: Composition) -> None:
-        self._draw_overlay(composition)
-        self.renderer.show(self.picture)
 
     def _look(self, watch: Watch) -> None:
         """Read the light's file again if it has changed."""
@@ -234,13 +195,8 @@ class Window:
         if state.method != "jittered" or not new or state.samples * bands**2 < LONG_PROJECTION:
             return
         message = f"projecting {state.samples} samples to {bands} bands ..."
-        waiting = replace(self.picture, state=replace(self.picture.state, message=message))
-        self.renderer.show(self.picture)
-        self.renderer.draw(
-            self.renderer.context.screen, composition, draw_overlay(waiting, composition, timing=True).layers
-        )
+        self.canvas.say(message, self.picture, composition)
         glfw.swap_buffers(self.handle)
-        self.overlay_key = None
 
     def _prepare(self, by_map: bool = False) -> None:
         last = self.picture
@@ -272,22 +228,6 @@ class Window:
             print(f"reloaded {light.name}", file=sys.stderr, flush=True)
         return f"reloaded {notes or light.name}"
 
-    def _draw_overlay(self, composition: Composition) -> None:
-        """Anew only if something written in it changed: turning and zooming write nothing unless the help shows them.
-
-        The time-error plane also changes with what has been measured.
-        """
-        state = self.picture.state
-        if not state.help_visible:
-            home = ViewState()
-            state = replace(state, camera=home.camera, light_rotation=home.light_rotation, zoom=home.zoom)
-        known = measured(self.picture) if state.sheet == "plane" else ()
-        drawn = describe_evaluation(self.picture, timing=True)
-        key = (state, known, drawn, composition.width, composition.height, composition.scale)
-        if key != self.overlay_key:
-            self.overlay_key = key
-            self.overlay = draw_overlay(self.picture, composition, timing=True, opengl=self.renderer.version)
-
     def _save(self) -> None:
         composition = self.composition()
         if composition is None:
@@ -296,8 +236,8 @@ class Window:
         self.state = replace(self.state, message="")
         self._prepare()
         try:
-            pixels = render_rgb(self.renderer, self.picture, composition)
-            text = metadata(self.picture, composition, self.renderer.version)
+            pixels = render_rgb(self.canvas.renderer, self.picture, composition)
+            text = metadata(self.picture, composition, self.canvas.renderer.version)
             path = write_numbered(f"shviewer-{file_stem(self.picture.light.name)}", pixels, text)
         except ShviewerError as error:
             self.state = replace(self.state, message=str(error))
@@ -343,8 +283,8 @@ class Window:
             self.pressed_at = self.dragged_to = self.mouse
             self.dragged = False
         elif self.pressed_at is not None:
-            clickable = self.overlay is not None and not self.dragged and not self.state.help_visible
-            bars = self.overlay.bars if self.overlay is not None and clickable else {}
+            overlay = None if self.dragged or self.state.help_visible else self.canvas.overlay
+            bars = overlay.bars if overlay is not None else {}
             for band, box in bars.items():
                 if box.contains(*self.pressed_at):
                     self.change(toggle_band(replace(self.state, message=""), band))
@@ -391,11 +331,6 @@ class Window:
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
             self.change(reload(open_light(self.state, paths[0])))  # it may have been edited since it was last opened
-
-
-def summed_pixels(composition: Composition) -> float:
-    """Pixels that show the reconstruction or its error, as far as they are in sight."""
-    return sum(sphere.visible_area for sphere in composition.spheres[1:])
 
 
 def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:

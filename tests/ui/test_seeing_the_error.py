@@ -79,14 +79,14 @@ def test_the_mouse_over_a_sphere_draws_a_frame_and_elsewhere_none(start: Start) 
 SCRIPT = """
 import json
 import sys
-from shviewer.viewer import window
+from shviewer.viewer import canvas, window
 from shviewer.viewer.keys import press
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.actions import orbit, rotate_light
 
 drawn = []
-draw_overlay = window.draw_overlay
-window.draw_overlay = lambda *a, **k: (drawn.append(1), draw_overlay(*a, **k))[1]
+draw_overlay = canvas.draw_overlay
+canvas.draw_overlay = lambda *a, **k: (drawn.append(1), draw_overlay(*a, **k))[1]
 said = {}
 with window.open_window((800, 400)) as handle:
     shown = window.Window(handle, ViewState(evaluate=sys.argv[1], n_bands=int(sys.argv[2])), False)
@@ -103,10 +103,12 @@ with window.open_window((800, 400)) as handle:
     shown.frame()
     said["redrawn by turning and pointing"] = len(drawn) - count
     said["same map"] = shown.picture.reconstruction_map is before
-    plain = len(shown._layers(shown.composition()))
+    composition = shown.composition()
+    assert shown.hovering
+    said["layers of the probe"] = len(shown.canvas.layers(composition, shown.mouse)) - len(shown.canvas.layers(composition))
     shown._on_enter(handle, 0)
-    said["layers of the probe"] = plain - len(shown._layers(shown.composition()))
-    said["error"] = shown.renderer.context.error
+    assert not shown.hovering
+    said["error"] = shown.canvas.renderer.context.error
     count = len(drawn)
     shown.change(press(shown.state, "X"))
     shown.frame()
