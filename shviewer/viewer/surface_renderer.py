@@ -22,7 +22,7 @@ OVERSAMPLING = 3
 TILE = 512
 """Pixels along a side of what is drawn at a time: large frames take time, not memory."""
 
-TOLERANCE_PIXELS = 0.5
+TOLERANCE_PIXELS = 0.25
 """How far a surface may be from its triangles; between half of this and all of it is used."""
 
 RING_WIDTH = 1 / 200
