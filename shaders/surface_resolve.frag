@@ -17,12 +17,7 @@ out vec4 colour;
 const vec3 POSITIVE_INK = vec3(0.86, 0.80, 0.70);
 const vec3 NEGATIVE_INK = mix(NEGATIVE_HUE, vec3(1.0), 0.10);
 const vec3 RING = BACKGROUND + 0.022;
-
-vec3 ink(float signed_tone) {
-    float tone = abs(signed_tone);
-    float gloss = smoothstep(0.72, 1.0, tone);
-    return mix(tone * (signed_tone < 0.0 ? NEGATIVE_INK : POSITIVE_INK), vec3(1.0), 0.35 * gloss * gloss);
-}
+const float GLOSS_FROM = 0.72, GLOSS = 0.35;    // the tone above which ink turns towards white, and how far
 
 void main() {
     float off_ring = abs(distance(gl_FragCoord.xy, centre) - radius);
@@ -30,16 +25,20 @@ void main() {
     vec3 behind = mix(BACKGROUND, RING, ring);
 
     ivec2 corner = ivec2(gl_FragCoord.xy - origin) * oversampling;
-    vec3 sum = vec3(0.0);
-    int covered = 0;
+    vec2 tones = vec2(0.0), glosses = vec2(0.0);    // sums of positive samples, and of negative ones
+    float covered = 0.0;
     for (int y = 0; y < oversampling; ++y)
         for (int x = 0; x < oversampling; ++x) {
             float signed_tone = texelFetch(signed_tones, corner + ivec2(x, y), 0).r;
-            if (signed_tone == 0.0) continue;
-            sum += ink(signed_tone);
-            ++covered;
+            vec2 tone = max(vec2(signed_tone, -signed_tone), 0.0);
+            vec2 gloss = max(tone - GLOSS_FROM, 0.0) / (1.0 - GLOSS_FROM);
+            tones += tone;
+            glosses += GLOSS * gloss * gloss;
+            covered += signed_tone == 0.0 ? 0.0 : 1.0;
         }
-    if (covered == 0 && ring == 0.0) discard;
-    int samples = oversampling * oversampling;
-    colour = vec4(encode((sum + float(samples - covered) * behind) / float(samples)), 1.0);
+    if (covered == 0.0 && ring == 0.0) discard;
+    float samples = float(oversampling * oversampling);
+    vec3 sum = tones.x * POSITIVE_INK + glosses.x * (1.0 - POSITIVE_INK)
+             + tones.y * NEGATIVE_INK + glosses.y * (1.0 - NEGATIVE_INK);
+    colour = vec4(encode((sum + (samples - covered) * behind) / samples), 1.0);
 }

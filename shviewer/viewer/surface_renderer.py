@@ -87,7 +87,7 @@ class SurfaceRenderer:
             set_uniform(self.resolve_program, "origin", (x, y))
             with self._using(fine, moderngl.DEPTH_TEST | moderngl.CULL_FACE):
                 fine.viewport = (0, 0, TILE * OVERSAMPLING, TILE * OVERSAMPLING)
-                fine.clear()
+                fine.clear(viewport=(0, 0, wide * OVERSAMPLING, high * OVERSAMPLING))
                 drawable.array.render(moderngl.TRIANGLES)
             with self._using(target, moderngl.NOTHING):
                 target.viewport = (x, y, wide, high)

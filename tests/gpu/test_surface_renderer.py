@@ -151,6 +151,29 @@ def test_an_asymmetric_surface_turns_as_the_spheres_do(frame: Frame) -> None:
         assert np.abs(frame.covered() - coverage(outline(lambda d: d @ axis, turn), SPHERE, SIDE, SIDE)).max() < 0.5
 
 
+@pytest.mark.parametrize(("l", "m"), [(2, 1), (5, -3), (9, 0)])
+def test_what_is_nearest_on_a_ray_is_what_is_seen(frame: Frame, l: int, m: int) -> None:
+    """Random pixels against 2000 points on each ray in float64; edges between lobes pass through some of them."""
+    pixels = frame.draw(basis_surface(l, m, rows_for(l + 1, SPHERE.radius)), SKEW)
+    columns, rows = np.random.default_rng(0).integers(60, SIDE - 60, size=(2, 1500))
+    x, y = (columns + 0.5 - SPHERE.x) / SPHERE.radius, (SPHERE.y - rows - 0.5) / SPHERE.radius
+    depth = np.linspace(1, -1, 2001)
+    wrong, hits, values = 0, 0, harmonic(l, m)
+    for column, row, right, up in zip(columns, rows, x, y, strict=True):
+        points = np.stack([np.full(2001, right), np.full(2001, up), depth], axis=1)
+        distance = np.linalg.norm(points, axis=1)
+        value = values(points @ SKEW.T / distance[:, None])
+        inside = np.abs(value) >= distance
+        pixel = pixels[row, column]
+        if not inside.any():
+            wrong += bool((np.abs(pixel - EMPTY) > 3).any())
+            continue
+        hits += 1
+        wrong += not (warm if value[inside.argmax()] > 0 else blue)(pixel)
+    assert hits > 150
+    assert wrong < 0.02 * 1500
+
+
 def test_a_surface_is_cut_to_its_box_and_pixels_beside_it_are_left_alone(frame: Frame) -> None:
     shown = basis_surface(0, 0, 129)
     box = Box(100, 150, 301, 333)
