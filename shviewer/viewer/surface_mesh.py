@@ -12,6 +12,7 @@ Source
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -22,10 +23,13 @@ from shviewer.harmonics.quadrature import column_azimuths, directions_from_angle
 
 Floats = NDArray[np.float32]
 Points = NDArray[np.float32]
-"""The last axis holds x, y, z."""
+"""The first axis holds x, y, z."""
 
-Sides = tuple[Points, ...]
-"""Of one end of each side, the point of the surface and the normal."""
+Part = tuple[slice, slice]
+"""Rows and columns of a grid."""
+
+BLOCK_VALUES = 2**14
+"""Points of the grid that are measured at a time, so that they stay in the cache."""
 
 JUMP = 1 / 16
 """A second difference beyond this is no curvature: 16 bands have 1/100 on 513 rows."""
@@ -54,7 +58,7 @@ def surface_mesh(values: Floats, tolerance: float, most: int = MAX_TRIANGLES) ->
     if size < 2 or size & (size - 1) or columns != 2 * size:
         raise ValueError(f"a grid of {rows} x {columns}: it must be 2^k + 1 rows and 2^(k+1) columns")
     directions = grid_directions(rows)
-    normals = values[..., None] * directions - gradient(values)
+    normals = values * directions - gradient(values)
     error = _saturate(_deviations(values, directions, normals))
     fewest = error.size - (most - 4) // 2
     if fewest > 0:
@@ -63,22 +67,23 @@ def surface_mesh(values: Floats, tolerance: float, most: int = MAX_TRIANGLES) ->
     used = np.zeros(values.size, dtype=bool)
     used[corners] = True
     number = np.cumsum(used, dtype=np.uint32) - np.uint32(1)
-    parts = values[..., None], directions, normals
-    vertices = np.concatenate([part.reshape(used.size, -1)[used] for part in parts], axis=1)
+    parts = values, *directions, *normals
+    vertices = np.stack([part.ravel()[used] for part in parts], axis=1)
     return _pinched(vertices, number[corners])
 
 
 @lru_cache(maxsize=2)
 def grid_directions(rows: int) -> Points:
-    """Of a lat-long grid with rows on the poles and twice as many columns as intervals: (rows, 2 (rows - 1), 3)."""
+    """Of a lat-long grid with rows on the poles and twice as many columns as intervals: (3, rows, 2 (rows - 1))."""
     theta = np.linspace(0, np.pi, rows)[:, None]
-    directions = directions_from_angles(theta, column_azimuths(2 * (rows - 1))).astype(np.float32)
+    last = directions_from_angles(theta, column_azimuths(2 * (rows - 1)))
+    directions = np.ascontiguousarray(np.moveaxis(last, -1, 0), dtype=np.float32)
     directions.flags.writeable = False
     return directions
 
 
 def gradient(values: Floats) -> Points:
-    """Of a function on the unit sphere from its values on a grid of rows on the poles, (rows, columns, 3), tangential.
+    """Of a function on the unit sphere from its values on a grid with rows on the poles: (3, rows, columns), tangential.
 
     Central differences, but at a jump only towards the larger radius: the rim of a wall is shaded as what it ends, and its
     foot as the wall. At a pole the first harmonic of the row beside it.
@@ -91,12 +96,13 @@ def gradient(values: Floats) -> Points:
     eastward = _difference(next(turned), values[1:-1], next(turned))
     eastward *= (columns / (2 * np.pi) / np.sin(theta)).astype(np.float32)
     sine, cosine, along, across = (f(angle).astype(np.float32) for angle in (theta, phi) for f in (np.sin, np.cos))
-    slope = np.zeros((rows, columns, 3), dtype=np.float32)
-    slope[1:-1, :, 0] = southward * cosine * across - eastward * along
-    slope[1:-1, :, 1] = southward * cosine * along + eastward * across
-    slope[1:-1, :, 2] = -southward * sine
+    slope = np.zeros((3, rows, columns), dtype=np.float32)
+    slope[0, 1:-1] = southward * cosine * across - eastward * along
+    slope[1, 1:-1] = southward * cosine * along + eastward * across
+    slope[2, 1:-1] = -southward * sine
     for pole, beside in ((0, 1), (-1, -2)):
-        slope[pole, :, :2] = values[beside] @ np.stack([across, along], axis=1) * (2 / columns / np.sin(step))
+        towards = np.stack([across, along]) @ values[beside] * (2 / columns / np.sin(step))
+        slope[:2, pole] = towards[:, None]
     return slope
 
 
@@ -114,42 +120,65 @@ def _deviations(values: Floats, directions: Points, normals: Points) -> Floats:
 
     Or half of that side times the error of its normal there, if this is more: a crease must not be shaded across a side.
     """
-    size = len(values) - 1
-    radii = np.abs(values)
-    points = radii[..., None] * directions
-    error = np.zeros_like(radii)
-
-    def measure(at: tuple[slice, slice], first: Sides, second: Sides) -> None:
-        """To first order the distance from the middle to the surface; in a pinch, to its walls."""
-        middle, side = (first[0] + second[0]) / 2, first[0] - second[0]
-        direction, normal, facing = directions[at], normals[at], first[1] + second[1]
-        turned = 1 - _dot(normal, facing) / np.maximum(np.sqrt(_dot(normal, normal) * _dot(facing, facing)), TINY)
-        outward = np.maximum(np.sqrt(_dot(middle, middle)) - radii[at], 0)
-        wall = normal + np.copysign(outward, values[at])[..., None] * direction
-        distance = np.abs(_dot(middle - points[at], wall)) / np.maximum(np.sqrt(_dot(wall, wall)), TINY)
-        error[at] = np.maximum(distance, np.sqrt(_dot(side, side) * np.maximum(turned, 0) / 2))
-
+    size, columns = len(values) - 1, values.shape[1]
+    error = np.zeros_like(values)
+    points, facing = (
+        np.concatenate([part, part[..., :1]], axis=-1) for part in (np.abs(values) * directions, normals)
+    )  # once round, to the first column again
     step = 1
     while 2 * step <= size:
-        even, odd = slice(0, None, 2 * step), slice(step, None, 2 * step)
-        corners = points[even, even], normals[even, even]
-        beside = tuple(np.roll(part, -1, axis=1) for part in corners)
-        north, south = (tuple(part[rows] for part in corners) for rows in (slice(-1), slice(1, None)))
-        north_beside, south_beside = (tuple(part[rows] for part in beside) for rows in (slice(-1), slice(1, None)))
-        measure((odd, even), north, south)
-        measure((even, odd), corners, beside)
-        falling = np.indices(north[0].shape[:2]).sum(axis=0)[..., None] % 2 == 0  # the way a square's diagonal goes
-        starts, ends = (
-            tuple(np.where(falling, *pair) for pair in zip(*sides, strict=True))
-            for sides in ((north, north_beside), (south_beside, south))
-        )
-        measure((odd, odd), starts, ends)
+        for at, start, end in _halvings(size, columns, step):
+            of_points = [grid[..., at[0], at[1]] for grid in (error, values, directions, normals)]
+            of_ends = [grid[:, rows, across] for grid in (points, facing) for rows, across in (start, end)]
+            height = max(1, BLOCK_VALUES // max(1, of_points[0].shape[1]))
+            for first in range(0, len(of_points[0]), height):
+                _measure(*(grid[..., first : first + height, :] for grid in (*of_points, *of_ends)))
         step *= 2
     return error
 
 
+def _halvings(size: int, columns: int, step: int) -> Iterator[tuple[Part, Part, Part]]:
+    """Points `step` from the ends of the sides that they halve, and those ends, which may lie in column `columns`."""
+    side = 2 * step
+
+    def every(stride: int, first: int, stop: int) -> tuple[slice, slice]:
+        """From `first` on, and one side further."""
+        return slice(first, stop, stride), slice(first + side, stop + side, stride)
+
+    (north, south), (west, east) = every(side, 0, size), every(side, 0, columns)
+    rows, between = slice(0, size + 1, side), slice(step, None, side)
+    yield (between, slice(0, columns, side)), (north, west), (south, west)
+    yield (rows, between), (rows, west), (rows, east)
+    for down, right in ((0, 0), (0, 1), (1, 0), (1, 1)):  # the diagonal of a square falls, of its neighbour rises
+        top, left = side * down, side * right
+        (north, south), (west, east) = every(2 * side, top, size), every(2 * side, left, columns)
+        if down != right:
+            west, east = east, west
+        yield (slice(top + step, None, 2 * side), slice(left + step, None, 2 * side)), (north, west), (south, east)
+
+
+def _measure(
+    error: Floats,
+    value: Floats,
+    direction: Points,
+    normal: Points,
+    start: Points,
+    end: Points,
+    start_normal: Points,
+    end_normal: Points,
+) -> None:
+    """Into `error`: to first order the distance from the middle of a side to the surface; in a pinch, to its walls."""
+    middle, side, facing = (start + end) / 2, start - end, start_normal + end_normal
+    turned = 1 - _dot(normal, facing) / np.maximum(np.sqrt(_dot(normal, normal) * _dot(facing, facing)), TINY)
+    radius = np.abs(value)
+    outward = np.maximum(np.sqrt(_dot(middle, middle)) - radius, 0)
+    wall = normal + np.copysign(outward, value) * direction
+    distance = np.abs(_dot(middle - radius * direction, wall)) / np.maximum(np.sqrt(_dot(wall, wall)), TINY)
+    np.maximum(distance, np.sqrt(_dot(side, side) * np.maximum(turned, 0) / 2), out=error)
+
+
 def _dot(a: NDArray[np.floating], b: NDArray[np.floating]) -> Floats:
-    return np.asarray(np.einsum("ijk,ijk->ij", a, b), dtype=np.float32)
+    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2], dtype=np.float32)
 
 
 def _saturate(error: Floats) -> Floats:

@@ -25,8 +25,8 @@ TILE = 512
 TOLERANCE_PIXELS = 0.25
 """How far a surface may be from its triangles; between half of this and all of it is used."""
 
-RING_WIDTH = 1 / 200
-"""Of the circle of radius 1, in units of its radius; at least a pixel."""
+RING_WIDTH, WIDEST_RING = 1 / 200, 2.0
+"""Of the circle of radius 1: in units of its radius, but at least a pixel, and in pixels."""
 
 MOST_SURFACES = 4
 """Kept on the GPU: one for each sphere of a frame, and one to come back to."""
@@ -80,7 +80,7 @@ class SurfaceRenderer:
         set_uniform(self.resolve_program, "oversampling", OVERSAMPLING)
         set_uniform(self.resolve_program, "centre", (sphere.x, height - sphere.y))
         set_uniform(self.resolve_program, "radius", sphere.radius)
-        set_uniform(self.resolve_program, "ring_width", max(1.0, sphere.radius * RING_WIDTH))
+        set_uniform(self.resolve_program, "ring_width", min(max(1.0, sphere.radius * RING_WIDTH), WIDEST_RING))
         for x, y, wide, high in _tiles(sphere, height):
             centre = ((sphere.x - x) * OVERSAMPLING, (height - sphere.y - y) * OVERSAMPLING)
             set_uniform(self.program, "centre", centre)
