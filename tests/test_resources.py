@@ -104,7 +104,8 @@ def test_the_folders_of_the_installation_are_found_and_a_missing_one_is_said() -
 
 
 def test_every_shader_that_is_shipped_is_used() -> None:
-    joined = {file for name in ("screen.vert", "sphere.frag", "overlay.frag") for file, _ in origins(name)}
+    used = "screen.vert", "sphere.frag", "layer.frag", "surface.vert", "surface.frag", "surface_resolve.frag"
+    joined = {file for name in used for file, _ in origins(name)}
     assert joined - {"constants.glsl"} == {path.name for path in resource_folder("shaders").iterdir()}
 
 

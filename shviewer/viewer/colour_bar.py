@@ -46,7 +46,7 @@ def tick_text(value: float, ticks: list[float], *, percent: bool) -> str:
 def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Composition) -> dict[str, Box]:
     """The bar and its numbers; their boxes by name. None where there is no room for either."""
     place, scale = composition.colour_bar, picture.error_scale
-    if place is None or scale is None or place.right - place.left < composition.px(60):
+    if place is None or scale is None or picture.surfaces or place.right - place.left < composition.px(60):
         return {}
     draw = ImageDraw.Draw(sheet)
     tip = round(composition.px(TIP)) if scale.beyond else 0

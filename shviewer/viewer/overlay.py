@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from shviewer.harmonics.basis import index
+from shviewer.harmonics.extremes import LUMINANCE
 from shviewer.viewer.band_axis import band_slots, band_step
 from shviewer.viewer.colour_bar import draw_colour_bar
 from shviewer.viewer.composition import Box, Composition
@@ -40,7 +42,7 @@ from shviewer.viewer.lettering import (
 )
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.plane import Plane, draw_plane
-from shviewer.viewer.state import describe_exposure, describe_muted, describe_window
+from shviewer.viewer.state import describe_basis, describe_exposure, describe_muted, describe_window
 
 HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
 NO_ROOM = {
@@ -143,10 +145,17 @@ class _Painter:
         plural = "s" if state.n_bands > 1 else ""
         bands = f"{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
         original = "Original" if state.quantity == "radiance" else "Irradiance"
+        if picture.surfaces and picture.surfaces[0].clipped:
+            original = f"{original}, cut at the circle"
         self.text("original", left, y, original, 17, INK, "mm")
         suns = len(picture.subject.suns)
         apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
         changes = [change for change in (apart, describe_window(state), muted) if change]
+        if picture.surfaces and picture.surfaces[1].clipped:
+            changes.append("cut at the circle")
+        if state.basis is not None:
+            value = float(picture.coefficients[index(*state.basis)] @ LUMINANCE)
+            bands, changes = describe_basis(state), [f"coefficient {radiance(value, 0.0)}"]
         captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
         any(self.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
         projection = picture.projection
@@ -159,7 +168,8 @@ class _Painter:
         far, below = at.width - at.margin, y + at.px(20)
         if state.error != "off":
             error = at.spheres[-1]
-            self.text("error", error.x, error.caption_y, f"{state.error.capitalize()} error", 17, INK, "mm")
+            caption = "Error" if state.lobe_view else f"{state.error.capitalize()} error"
+            self.text("error", error.x, error.caption_y, caption, 17, INK, "mm")
         names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
         words, said = describe_light(picture), False
         if any(self.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):

@@ -36,6 +36,16 @@ from shviewer.viewer.error_view import ERRORS, ErrorScale, automatic_range, erro
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS, map_size
 from shviewer.viewer.memory import remember
 from shviewer.viewer.state import EVALUATIONS, MAX_EXPOSURE, METHODS, QUANTITIES, WINDOWS, ZOOM_RANGE, ViewState
+from shviewer.viewer.surface import (
+    LIGHT_ROWS,
+    Surface,
+    basis_surface,
+    common_scale,
+    rows_for,
+    sample_light,
+    sample_reconstruction,
+    surface,
+)
 from shviewer.viewer.tone import TONES, exposed_for
 
 DIMMEST, BRIGHTEST = 1e-30, 1e30
@@ -49,6 +59,13 @@ WHITE_LEVEL = 0.8
 
 LEAST_ERROR_RANGE = 1e-30
 """So that float32 can divide by it."""
+
+
+SURFACE_RADIUS = 222.0
+"""Pixels at zoom 1 for which surfaces are made fine enough: those of the 1280 x 640 design."""
+
+Shape = tuple[int, tuple[int, ...], str, float | None]
+"""What of a projection is shown: bands, those muted, the window and its width."""
 
 
 class Source(NamedTuple):
@@ -79,6 +96,8 @@ class Picture:
     exposure_stops: float
     error_scale: ErrorScale | None
     """Of the error, if it is shown."""
+    surfaces: tuple[Surface, ...]
+    """In place of the spheres, as many as there are; none unless the lobe view is shown."""
     projection: Projection
     figures: Figures
     needs: Needs
@@ -132,6 +151,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         light_from_world=camera.light_from_world(state.light_rotation),
         exposure_stops=exposure_stops(state, whole),
         error_scale=scale,
+        surfaces=_surfaces(state, light, projection, shape) if state.lobe_view else (),
         projection=projection,
         figures=figures,
         needs=needs(state),
@@ -141,6 +161,18 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
 
 def _source(light: Light) -> Source:
     return Source(light.lobes if isinstance(light, LobeLight) else (), light.radiance_map())
+
+
+def _surfaces(state: ViewState, light: Light, projection: Projection, shape: Shape) -> tuple[Surface, ...]:
+    """Of the light, its reconstruction or a basis function in place of it, and their difference."""
+    radius = SURFACE_RADIUS * state.zoom
+    original, reconstruction, error = _compared_surfaces(
+        light, projection, *shape, max(LIGHT_ROWS, rows_for(state.n_bands, radius))
+    )
+    if state.basis is not None:
+        l, m = state.basis
+        reconstruction = basis_surface(l, m, rows_for(l + 1, radius))
+    return (original, reconstruction, error)[: state.n_spheres]
 
 
 def _sun_lobes(shown: Subject, quantity: str) -> tuple[Lobe, ...]:
@@ -202,6 +234,23 @@ def _reconstruction_map(
 ) -> NDArray[np.float32]:
     shown, _ = reconstruct(light, projection, n_bands, muted, window_name, width)
     return Synthesis(shown).spline_map(*map_size(n_bands))
+
+
+@remember(most=4)
+def _compared_surfaces(
+    light: Light,
+    projection: Projection,
+    n_bands: int,
+    muted: tuple[int, ...],
+    window_name: str,
+    width: float | None,
+    rows: int,
+) -> tuple[Surface, Surface, Surface]:
+    shown, _ = reconstruct(light, projection, n_bands, muted, window_name, width)
+    original, reconstruction = sample_light(light, rows), sample_reconstruction(shown, rows)
+    scale = common_scale(original, reconstruction)
+    values = original, reconstruction, reconstruction - original
+    return surface(values[0], scale), surface(values[1], scale), surface(values[2], scale)
 
 
 @remember(most=16)

@@ -16,17 +16,22 @@ from shviewer.viewer.layout import glsl_constants
 BLOCKS = {"ShBlock": 0, "LobeBlock": 1}
 """Uniform blocks and where their buffers are bound."""
 
-SAMPLERS = {"original_map": 0, "reconstruction_map": 1, "colour_map": 2, "layer": 3}
+SAMPLERS = {"original_map": 0, "reconstruction_map": 1, "colour_map": 2, "layer": 3, "signed_tones": 4}
+"""Textures and the units they are bound to."""
 
 
 class Program:
-    """A fullscreen triangle drawn by one fragment shader. ShaderError if it does not compile or link."""
+    """A vertex and a fragment shader; by default a triangle as large as the viewport. ShaderError if they do not compile."""
 
     def __init__(
-        self, context: moderngl.Context, fragment: str, chosen: Mapping[str, str] = MappingProxyType({})
+        self,
+        context: moderngl.Context,
+        fragment: str,
+        chosen: Mapping[str, str] = MappingProxyType({}),
+        vertex: str = "screen.vert",
     ) -> None:
-        self.program = _compile(context, "screen.vert", fragment, chosen)
-        self._triangle = context.vertex_array(self.program, [])
+        self.program = _compile(context, vertex, fragment, chosen)
+        self._triangle = context.vertex_array(self.program, []) if vertex == "screen.vert" else None
         self._uniforms: dict[str, Any] = {}
         for name in self.program:
             member = self.program[name]
@@ -45,10 +50,12 @@ class Program:
 
     def draw(self) -> None:
         """All pixels of the viewport."""
+        assert self._triangle is not None
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
 
     def release(self) -> None:
-        self._triangle.release()
+        if self._triangle is not None:
+            self._triangle.release()
         self.program.release()
 
 

@@ -17,6 +17,7 @@ from shviewer.viewer.layers import Layer
 from shviewer.viewer.layout import BACKGROUND, CHOICES, LOBE_SLOTS, SH_TERMS, pack_coefficients, pack_lobes
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.programs import BLOCKS, SAMPLERS, Program
+from shviewer.viewer.surface_renderer import SurfaceRenderer
 from shviewer.viewer.textures import ArrayTexture
 
 GL_VERSIONS = (450, 410, 330)
@@ -34,6 +35,8 @@ class Renderer:
         self.programs: dict[tuple[str, ...], Program] = {}
         """Of sphere.frag, by the choices they were made for."""
         self.layer_program = Program(context, "layer.frag")
+        self.surfaces: SurfaceRenderer | None = None
+        """Made when the first surface is drawn."""
         self.sh_buffer = context.buffer(reserve=SH_TERMS * VEC4)
         self.lobe_buffer = context.buffer(reserve=LOBE_SLOTS * 3 * VEC4)
         self.original_map, self.compared_map, self.reconstruction_map, self.colour_map = (
@@ -89,22 +92,19 @@ class Renderer:
         target.viewport = (0, 0, composition.width, composition.height)
         self.context.disable(moderngl.BLEND)
         target.clear(color=(0.0, 0.0, 0.0, 0.0) if linear else (*_encode(BACKGROUND), 1.0))
-        self.sh_buffer.bind_to_uniform_block(BLOCKS["ShBlock"])
-        self.lobe_buffer.bind_to_uniform_block(BLOCKS["LobeBlock"])
-        self.reconstruction_map.use(SAMPLERS["reconstruction_map"])
-        self.colour_map.use(SAMPLERS["colour_map"])
-        for shown, sphere in zip(CHOICES["SHOWN"], composition.spheres, strict=False):
-            if shown == "ERROR" and picture.error_scale is None:
-                continue
-            self._draw_sphere(target, composition, picture, shown, sphere, linear)
+        if picture.surfaces and not linear:
+            self._draw_surfaces(target, composition, picture)
+        else:
+            self._draw_spheres(target, composition, picture, linear)
         target.viewport = (0, 0, composition.width, composition.height)
         if not linear:
             self._draw_layers(target, composition, layers)
 
     def release(self) -> None:
         """Free everything this object made."""
-        resources: tuple[Program | moderngl.Buffer | ArrayTexture, ...] = (
+        resources: tuple[Program | SurfaceRenderer | moderngl.Buffer | ArrayTexture, ...] = (
             *self.programs.values(),
+            *((self.surfaces,) if self.surfaces else ()),
             self.layer_program,
             self.sh_buffer,
             self.lobe_buffer,
@@ -120,6 +120,25 @@ class Renderer:
             if attachment is not None:
                 attachment.release()
         self.rest.release()
+
+    def _draw_surfaces(self, target: moderngl.Framebuffer, composition: Composition, picture: Picture) -> None:
+        if self.surfaces is None:
+            self.surfaces = SurfaceRenderer(self.context)
+        light_from_view = picture.light_from_world @ picture.world_from_view
+        for sphere, surface in zip(composition.spheres, picture.surfaces, strict=False):
+            self.surfaces.draw(target, sphere, composition.height, surface, light_from_view)
+
+    def _draw_spheres(
+        self, target: moderngl.Framebuffer, composition: Composition, picture: Picture, linear: bool
+    ) -> None:
+        self.sh_buffer.bind_to_uniform_block(BLOCKS["ShBlock"])
+        self.lobe_buffer.bind_to_uniform_block(BLOCKS["LobeBlock"])
+        self.reconstruction_map.use(SAMPLERS["reconstruction_map"])
+        self.colour_map.use(SAMPLERS["colour_map"])
+        for shown, sphere in zip(CHOICES["SHOWN"], composition.spheres, strict=False):
+            if shown == "ERROR" and picture.error_scale is None:
+                continue
+            self._draw_sphere(target, composition, picture, shown, sphere, linear)
 
     def _draw_sphere(
         self,

@@ -1,0 +1,149 @@
+"""What the lobe view draws: values on the sphere that become radii, in one scale where they are to be compared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import ceil, log2, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, count_bands, index
+from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.synthesis import Synthesis
+from shviewer.lights.light import Light
+from shviewer.viewer.memory import remember
+
+Floats = NDArray[np.float32]
+
+FEWEST_ROWS, MOST_ROWS = 129, 1025
+"""Of a grid: 2^k + 1, from pole to pole, with 2^(k+1) columns."""
+
+LIGHT_ROWS = 513
+"""For what has no bands: cells of 0.35 degrees, so that a sun does not fall between them."""
+
+TIP_PIXELS = 0.25
+"""By how much the tip of the finest lobe may be cut off between two points of a grid."""
+
+ASIDE = 1e-7
+"""Radians by which rows are off, so that rounding does not decide point by point on which side of an edge they are."""
+
+SPIKE_SHARE, SPIKE_FACTOR = 0.99, 4.0
+"""Radii end at SPIKE_FACTOR times the magnitude below which this share of the sphere stays."""
+
+BLOCK_ROWS = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """values (2^k + 1, 2^(k+1)) float32, signed: magnitudes are radii, 1 at most. Drawings are kept by identity."""
+
+    values: Floats
+    clipped: bool
+    """Whether anything longer was cut off at radius 1."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The magnitude that has radius 1; `spike` if there are larger ones among what it was chosen for."""
+
+    magnitude: float
+    spike: bool = False
+
+
+def rows_for(n_bands: int, radius: float) -> int:
+    """Rows of a grid on which n bands, drawn with a radius in pixels, are smooth to TIP_PIXELS, as far as MOST_ROWS goes.
+
+    A lobe of degree l = n - 1 has at its tip a second derivative of at most l^2 times its length; a chord of an angle h
+    cuts off h^2/8 of that.
+    """
+    intervals = float(np.pi) * (n_bands - 1) * sqrt(radius / (8 * TIP_PIXELS))
+    return max(FEWEST_ROWS, min(int(2 ** ceil(log2(max(intervals, 1.0)))) + 1, MOST_ROWS))
+
+
+def sample_reconstruction(coefficients: Array, rows: int) -> Floats:
+    """Rec. 709 luminance of the sum with coefficients (n**2, 3) on the grid, (rows, 2 (rows - 1))."""
+    return _synthesise(coefficients @ LUMINANCE, rows)
+
+
+def sample_basis(l: int, m: int, rows: int) -> Floats:
+    """Y(l, m) on the grid. ValueError unless |m| <= l."""
+    if not -l <= m <= l:
+        raise ValueError(f"Y({l},{m}): the order goes from -l to l")
+    coefficients = np.zeros((l + 1) ** 2)
+    coefficients[index(l, m)] = 1
+    return _synthesise(coefficients, rows)
+
+
+@remember(most=2)
+def sample_light(light: Light, rows: int) -> Floats:
+    """Rec. 709 luminance of a light on the grid; remembered with the light."""
+    theta, phi = np.linspace(0, np.pi, rows), column_azimuths(2 * (rows - 1))
+    theta[1:-1] += ASIDE
+    values = np.empty((rows, len(phi)), dtype=np.float32)
+    for start in range(0, rows, BLOCK_ROWS):
+        directions = directions_from_angles(theta[start : start + BLOCK_ROWS, None], phi)
+        radiance = light.radiance(directions.reshape(-1, 3))
+        values[start : start + BLOCK_ROWS] = (radiance @ LUMINANCE).reshape(directions.shape[:2])
+    values[[0, -1]] = values[[0, -1], :1]  # one direction each
+    _raise_landmarks(values, light)
+    values.flags.writeable = False
+    return values
+
+
+def common_scale(*compared: Floats) -> Scale:
+    """For an original and its reconstruction: the largest magnitude of all.
+
+    But where that is more than SPIKE_FACTOR times what SPIKE_SHARE of the sphere stays below, in whichever of them this is
+    largest, a sun would shrink everything else to nothing: then radii end at that bound.
+    """
+    peak = max(float(np.abs(values).max()) for values in compared)
+    bound = SPIKE_FACTOR * max(_magnitude_below(SPIKE_SHARE, values) for values in compared)
+    return Scale(bound, True) if 0 < bound < peak else Scale(peak)
+
+
+def surface(values: Floats, scale: Scale) -> Surface:
+    """In units of the scale, and cut at 1."""
+    if scale.magnitude <= 0:
+        return Surface(np.zeros_like(values), False)
+    scaled = values / np.float32(scale.magnitude)
+    longest = float(np.abs(scaled).max())
+    return Surface(np.clip(scaled, -1, 1), longest > 1 + 1e-5)
+
+
+@lru_cache(maxsize=32)
+def basis_surface(l: int, m: int, rows: int) -> Surface:
+    """Y(l, m), its largest magnitude being the radius 1."""
+    values = sample_basis(l, m, rows)
+    return surface(values, Scale(float(np.abs(values).max())))
+
+
+def _synthesise(coefficients: Array, rows: int) -> Floats:
+    wide = np.zeros((count_bands(coefficients) ** 2, 3))
+    wide[:, 0] = coefficients
+    return np.ascontiguousarray(Synthesis(wide).pole_to_pole(rows, 2 * (rows - 1))[..., 0])
+
+
+def _raise_landmarks(values: Floats, light: Light) -> None:
+    """Let what is smaller than the grid's cells, such as a sun, reach one cell far: a point that stands alone has no width."""
+    cell = np.pi / (len(values) - 1)
+    theta, phi = np.linspace(0, np.pi, len(values)), column_azimuths(values.shape[1])
+    places = light.landmarks()
+    for place, peak in zip(places, light.radiance(places) @ LUMINANCE, strict=True):
+        row = round(float(np.arctan2(np.hypot(place[0], place[1]), place[2])) / cell)
+        rows = slice(max(row - 3, 0), row + 4)
+        chord = np.linalg.norm(directions_from_angles(theta[rows, None], phi) - place, axis=-1)
+        values_there = values[rows]
+        filled = np.abs(values_there[chord < 3 * cell]) > abs(peak) / 2
+        if filled.mean() < 0.25:
+            values_there[(chord < cell) & (np.abs(values_there) < abs(peak))] = peak
+
+
+def _magnitude_below(share: float, values: Floats) -> float:
+    """The magnitude that this share of the sphere, by solid angle, does not exceed."""
+    intervals = len(values) - 1
+    middles = np.arccos(1 - (2 * np.arange(intervals) + 1) / intervals)  # of zones of equal area
+    rows = np.rint(middles * (intervals / np.pi)).astype(np.int64)
+    return float(np.quantile(np.abs(values[rows]), share))

@@ -1,0 +1,148 @@
+"""What the lobe view draws: values and their scale."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from shviewer.harmonics.basis import Array, evaluate_basis, index
+from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.harmonics.zonal import Disc
+from shviewer.lights.light import find_light
+from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.viewer.surface import (
+    LIGHT_ROWS,
+    MOST_ROWS,
+    Scale,
+    common_scale,
+    rows_for,
+    sample_basis,
+    sample_light,
+    sample_reconstruction,
+    surface,
+)
+
+
+def grid(rows: int) -> Array:
+    """Directions (rows, 2 (rows - 1), 3) of a lat-long grid with rows on the poles, without shviewer."""
+    columns = 2 * (rows - 1)
+    theta = np.pi * np.arange(rows)[:, None] / (rows - 1)
+    phi = np.pi * (1 - 2 * (np.arange(columns) + 0.5) / columns)
+    x, y = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi)
+    return np.stack([x, y, np.broadcast_to(np.cos(theta), x.shape)], axis=-1)
+
+
+# --- values
+
+
+@pytest.mark.parametrize(("l", "m"), [(0, 0), (1, -1), (3, 2), (15, -7), (31, 31)])
+def test_values_of_a_basis_function_are_those_of_the_basis(l: int, m: int) -> None:
+    values = sample_basis(l, m, 65)
+    assert values.dtype == np.float32
+    wanted = evaluate_basis(grid(65), l + 1)[..., index(l, m)]
+    assert np.abs(values - wanted).max() < 1e-6 * np.abs(wanted).max()
+
+
+def test_an_order_beyond_the_degree_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"Y\(2,-3\): the order goes from -l to l"):
+        sample_basis(2, -3, 65)
+
+
+def test_values_of_a_reconstruction_are_its_luminance() -> None:
+    coefficients = np.random.default_rng(0).normal(size=(36, 3))
+    wanted = evaluate_basis(grid(65), 6) @ coefficients @ LUMINANCE
+    assert np.abs(sample_reconstruction(coefficients, 65) - wanted).max() < 1e-6 * np.abs(wanted).max()
+
+
+def test_values_of_a_light_are_its_luminance_and_remembered() -> None:
+    light = find_light("green")
+    values = sample_light(light, 65)
+    wanted = light.radiance(grid(65).reshape(-1, 3)) @ LUMINANCE
+    assert np.abs(values.ravel() - wanted).max() < 1e-6  # rows stand 1e-7 aside; slopes are up to 5
+    assert sample_light(light, 65) is values
+
+
+@pytest.mark.parametrize(
+    "axis", [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8), (-1.0, 1e-9, 0.0), (0.36, 0.48, -0.8)]
+)
+def test_a_sun_smaller_than_a_cell_has_the_width_of_one(axis: tuple[float, float, float]) -> None:
+    sun = LobeLight((Lobe(Disc(np.radians(0.05)), np.array(axis), np.array([5.0, 5.0, 5.0])),))
+    bright = sample_light(sun, 129) > 4
+    assert bright.any()
+    chord = np.linalg.norm(grid(129)[bright] - axis, axis=-1)
+    assert chord.max() < np.pi / 128
+    assert bright.sum() >= 2
+
+
+def test_the_edge_of_a_large_disc_is_left_as_it_is() -> None:
+    """Also one that passes through a row of points, where rounding would decide."""
+    values = sample_light(find_light("hemisphere"), 129)
+    assert set(np.unique(values)) == {0.0, 1.0}
+    assert (values == values[:, :1]).all()
+
+
+def test_more_bands_and_larger_pictures_get_more_rows_up_to_a_bound() -> None:
+    assert rows_for(1, 222) == rows_for(4, 222) == 129
+    assert rows_for(16, 222) == LIGHT_ROWS == 513
+    assert rows_for(32, 222) == rows_for(16, 222 * 16) == rows_for(128, 8192) == MOST_ROWS == 1025
+
+
+# --- the scale
+
+
+def test_an_original_and_its_reconstruction_share_the_largest_magnitude_of_both() -> None:
+    original, reconstruction = sample_basis(1, 0, 129), -2 * sample_basis(2, 1, 129)
+    scale = common_scale(original, reconstruction)
+    assert scale == Scale(float(np.abs(reconstruction).max()))
+    shown = [surface(values, scale) for values in (original, reconstruction)]
+    assert [item.clipped for item in shown] == [False, False]
+    assert np.abs(shown[1].values).max() == pytest.approx(1)
+    assert np.abs(shown[0].values).max() == pytest.approx(np.abs(original).max() / scale.magnitude)
+
+
+def capped(half_angle: float, height: float) -> np.ndarray:
+    """1, but `height` within an angle of the axis (0.6, 0, 0.8)."""
+    inside = grid(257) @ np.array([0.6, 0.0, 0.8]) > np.cos(half_angle)
+    return np.where(inside, height, 1.0).astype(np.float32)
+
+
+@pytest.mark.parametrize(
+    ("share", "height", "expected"),
+    [
+        (0.005, 100.0, Scale(4.0, True)),  # a spike: four times what 99 % stay below
+        (0.005, 3.9, Scale(3.9)),  # not four times as high
+        (0.02, 100.0, Scale(100.0)),  # not so small
+        (0.005, -100.0, Scale(4.0, True)),  # downwards as well
+    ],
+)
+def test_a_spike_does_not_set_the_scale(share: float, height: float, expected: Scale) -> None:
+    half_angle = float(np.arccos(1 - 2 * share))
+    found = common_scale(capped(half_angle, height))
+    assert (found.magnitude, found.spike) == (pytest.approx(expected.magnitude), expected.spike)
+    shown = surface(capped(half_angle, height), found)
+    assert shown.clipped == expected.spike
+    assert np.abs(shown.values).max() == pytest.approx(1)
+
+
+def test_a_share_of_the_sphere_is_by_solid_angle() -> None:
+    """A cap of 0.5 % holds 4.5 % of the rows of a grid."""
+    cap = np.where(np.arange(257)[:, None] < 257 * 0.045, np.float32(50), np.float32(1)) * np.ones(512, np.float32)
+    assert common_scale(cap) == Scale(4.0, True)
+
+
+def test_a_lone_spike_on_nothing_is_not_cut() -> None:
+    values = np.where(capped(0.05, 7.0) > 1, np.float32(7), np.float32(0))
+    assert common_scale(values) == Scale(7.0)
+
+
+def test_an_error_longer_than_the_scale_is_cut_and_says_so() -> None:
+    error = sample_basis(1, 0, 129)
+    shown = surface(error, Scale(float(np.abs(error).max()) / 1.5))
+    assert shown.clipped
+    assert np.abs(shown.values).max() == 1
+
+
+def test_zero_has_no_scale_and_no_radius() -> None:
+    shown = surface(np.zeros((129, 256), np.float32), common_scale(np.zeros((129, 256), np.float32)))
+    assert not shown.values.any()
+    assert not shown.clipped
