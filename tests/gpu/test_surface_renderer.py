@@ -373,6 +373,7 @@ def test_what_is_held_is_bounded_and_all_is_released(frame: Frame) -> None:
     assert tile is not None
     frame.surfaces.release()
     assert not frame.surfaces.held
-    parts = [*tile, frame.surfaces.program, frame.surfaces.resolve_program, *(d.vertices for d in held)]
+    programs = frame.surfaces.program, frame.surfaces.resolve_program
+    parts = [*tile, *(program.program for program in programs), *(d.vertices for d in held)]
     assert all(isinstance(part.mglo, moderngl.InvalidObject) for part in parts)
     frame.surfaces = SurfaceRenderer(frame.context)
