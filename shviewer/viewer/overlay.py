@@ -155,7 +155,7 @@ class _Painter:
             changes.append("cut at the circle")
         if state.basis is not None:
             value = float(picture.coefficients[index(*state.basis)] @ LUMINANCE)
-            bands, changes = describe_basis(state), [f"coefficient {radiance(value, 0.0)}"]
+            bands, changes = describe_basis(state), [f"coefficient {radiance(value, picture.figures.extremes.peak)}"]
         captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
         any(self.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
         projection = picture.projection
