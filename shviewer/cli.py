@@ -16,7 +16,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer.errors import LightError, ShviewerError, UsageError
-from shviewer.options import DEFAULT_BANDS, finite, info_parser, report_parser, screenshot_parser, view_parser
+from shviewer.options import (
+    DEFAULT_BANDS,
+    finite,
+    info_parser,
+    project_parser,
+    report_parser,
+    screenshot_parser,
+    view_parser,
+)
 
 if TYPE_CHECKING:
     from shviewer.lights.radiance_files import Reading
@@ -35,6 +43,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         if arguments[:1] == ["screenshot"]:
             return _screenshot(screenshot_parser().parse_args(arguments[1:]))
+        if arguments[:1] == ["project"]:
+            return _project(project_parser().parse_args(arguments[1:]))
         if arguments[:1] == ["report"]:
             return _report(report_parser().parse_args(arguments[1:]))
         if arguments[:1] == ["info"]:
@@ -133,6 +143,24 @@ def _info(options: argparse.Namespace) -> int:
     return exit_code
 
 
+def _project(options: argparse.Namespace) -> int:
+    from shviewer.exchange.command import project_lights, wanted_convention
+
+    convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
+    if convention.quantity:
+        options.quantity = convention.quantity.removesuffix("-over-pi")
+    if options.bands is None and options.tolerance is None and convention.most_bands:
+        options.bands = min(DEFAULT_BANDS, convention.most_bands)
+    line = _StatusLine() if sys.stderr.isatty() else None
+
+    def state_of(light: str) -> ViewState:
+        return _state(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+
+    return project_lights(
+        options.lights or ["green"], options.output, options.format, convention, state_of, line.show if line else None
+    )
+
+
 def _reading(options: argparse.Namespace) -> Reading:
     """How images are read. UsageError for an unknown layout."""
     from shviewer.lights.decoders.limits import Limits
@@ -149,7 +177,22 @@ def _reading(options: argparse.Namespace) -> Reading:
         "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
     }
     limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
-    return Reading(sanitize=options.sanitize, layout=options.layout, limits=limits)
+    return Reading(
+        sanitize=options.sanitize, layout=options.layout, limits=limits, convention=_input_convention(options)
+    )
+
+
+def _input_convention(options: argparse.Namespace) -> str:
+    """UsageError for one that is not known."""
+    text: str = options.input_convention
+    if text:
+        from shviewer.harmonics.conventions.programs import parse_convention
+
+        try:
+            parse_convention(text)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+    return text
 
 
 def _report(options: argparse.Namespace) -> int:
@@ -215,7 +258,7 @@ class _StatusLine:
 
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
-    from shviewer.lights.light import built_in_lights
+    from shviewer.lights.light import COEFFICIENT_SUFFIXES, built_in_lights, split_light
     from shviewer.viewer.camera import IDENTITY, towards
     from shviewer.viewer.picture import check
     from shviewer.viewer.state import ViewState, open_light
@@ -231,7 +274,7 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         reading=_reading(options),
         n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
         muted=options.mute,
-        quantity=options.quantity,
+        quantity=options.quantity or "radiance",
         split_sun=options.split_sun,
         window=window,
         window_width=_finite_width(width) if separator else None,
@@ -248,6 +291,11 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         state = replace(state, tolerance=options.tolerance)
     check(state, tuple(options.size))
     state = open_light(state, options.light)
+    if split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.exchange.given import as_the_file_holds
+
+        any_bands = options.bands is None and options.tolerance is None
+        state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
     return state if options.tolerance is None else _fitted(state, options)
 
 

@@ -11,7 +11,7 @@ from shviewer import __version__
 
 EXIT_CODES = """exit codes:
   0    done
-  1    --reference: the picture differs; --stability: a case failed
+  1    --reference: the picture differs; --stability: a case failed; project: one of several lights failed
   2    bad arguments
   3    a light that is unknown, unreadable or damaged
   4    a file that could not be written
@@ -23,7 +23,7 @@ DEFAULT_BANDS = 5
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
-    "or file.py:function"
+    "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl)"
 )
 
 
@@ -41,10 +41,12 @@ def view_parser() -> OneLineParser:
         usage="shviewer [LIGHT] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
         "       shviewer info LIGHT [LIGHT ...] [options]\n"
+        "       shviewer project [LIGHT ...] -o FILE [options]\n"
         "       shviewer report [LIGHT ...] [-o DIR] [options]",
         description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
         epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
-        "\nwhat a light is, in figures: shviewer info --help",
+        "\nwhat a light is, in figures: shviewer info --help"
+        "\nits coefficients as a file: shviewer project --help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     _add_view_options(parser)
@@ -103,6 +105,52 @@ def info_parser() -> OneLineParser:
     return parser
 
 
+PROJECT_OPTIONS = frozenset(
+    ("--bands", "--tolerance", "--for", "--split-sun", "--window", "--mute", "--method", "--samples", "--seed")
+)
+"""What `project` has in common with the window."""
+
+
+def project_parser() -> OneLineParser:
+    """shviewer project [LIGHT ...] -o FILE: coefficients as a file."""
+    parser = OneLineParser(
+        prog="shviewer project",
+        description="Write the coefficients of LIGHT, with the convention stamped on them. Several lights go into a folder.",
+        epilog=f"{EXIT_CODES}\n\nOf several lights those that can be projected are written, whatever becomes of the others.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("lights", metavar="LIGHT", nargs="*", help=f"{LIGHT_HELP} (default green)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        required=True,
+        help="FILE.json, .csv, .npz, .h or .glsl; - is stdout; a folder if there are several lights",
+    )
+    parser.add_argument("--format", metavar="F", help="json, csv, npz, h or glsl, where FILE does not say it")
+    parser.add_argument(
+        "--convention",
+        metavar="C",
+        default="shviewer",
+        help="whose: shviewer (default), filament, three, unity, unreal, ambix, sphericart or scipy; after commas what differs,"
+        " such as shviewer,no-phase,4pi",
+    )
+    parser.add_argument(
+        "--axes",
+        metavar="A",
+        help="y-up or z-up (right-handed), y-up-left or z-up-left, or which of our axes x, y and z are, such as +x+z-y",
+    )
+    parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
+    donor = OneLineParser(add_help=False)
+    _add_view_options(donor)
+    for action in donor._actions:
+        if PROJECT_OPTIONS.intersection(action.option_strings):
+            parser._add_action(action)
+    _add_reading_options(parser, convention="--input-convention")
+    parser.set_defaults(camera=None, rotate_light=None, zoom=1.0, exposure=None, size=(1280, 640))
+    return parser
+
+
 def report_parser() -> OneLineParser:
     """shviewer report [LIGHT ...]: speed against error, measured on this machine."""
     parser = OneLineParser(
@@ -154,7 +202,6 @@ def _add_view_options(parser: OneLineParser) -> None:
         "--for",
         metavar="WHAT",
         dest="quantity",
-        default="radiance",
         help="radiance (default), or irradiance: what a white Lambertian surface receives",
     )
     parser.add_argument(
@@ -196,8 +243,15 @@ def _add_view_options(parser: OneLineParser) -> None:
     _add_reading_options(parser)
 
 
-def _add_reading_options(parser: OneLineParser) -> None:
-    """How an image is read."""
+def _add_reading_options(parser: OneLineParser, convention: str = "--convention") -> None:
+    """How an image is read, and coefficients that do not say their convention."""
+    parser.add_argument(
+        convention,
+        metavar="C",
+        dest="input_convention",
+        default="",
+        help="of a bare list of coefficients: shviewer, filament, three, unity, unreal, ambix, sphericart or scipy",
+    )
     parser.add_argument(
         "--sanitize",
         action="store_true",

@@ -375,4 +375,4 @@ def grid_rows(n_bands: int) -> int:
 @remember(most=8)
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
-    return ErrorGrid(light.radiance, light.landmarks(), rows)
+    return ErrorGrid(light.radiance, light.landmarks(), rows, getattr(light, "on_rows", None))

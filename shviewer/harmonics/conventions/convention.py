@@ -180,6 +180,18 @@ def to_quantity(coefficients: Array, held: str, wanted: str) -> Array:
     return np.asarray(coefficients)
 
 
+def recovered_radiance(irradiance: Array) -> tuple[Array, list[int]]:
+    """Ours of irradiance (n**2, k) -> ours of a radiance with that irradiance, and the degrees of which it tells nothing.
+
+    Those are the odd ones from 3 on, where A(l) = 0; they are zero in what is returned.
+    """
+    n_bands = count_bands(irradiance)
+    lost = list(range(3, n_bands, 2))
+    factors = irradiance_factors(n_bands)
+    factors[lost] = np.inf
+    return irradiance / per_coefficient(factors), lost
+
+
 def to_complex(coefficients: Array) -> NDArray[np.complex128]:
     """Those of the complex functions of which sqrt(2) times the real and the imaginary part are Y(l, m) and Y(l, -m), m > 0."""
     n_bands = count_bands(coefficients)
