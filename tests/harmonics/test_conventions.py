@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import peer_evaluators as peers
 import pytest
+from harmonics import peer_evaluators as peers
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, evaluate_basis

@@ -6,7 +6,7 @@ file's own numbers as irradiance, and they can be written as either.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands, safe_unit
 from shviewer.harmonics.conventions.convention import RADIANCE, recovered_radiance
-from shviewer.harmonics.conventions.programs import convention_text
+from shviewer.harmonics.conventions.programs import CONVENTIONS, OURS, convention_text
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.lights.lat_long import LatLongMap
@@ -53,8 +53,11 @@ class CoefficientLight:
 
     @property
     def convention(self) -> str:
-        """Of its file, as a text."""
-        return convention_text(self.file.convention) if self.file else "shviewer"
+        """Of its file, as a text without the quantity."""
+        if self.file is None:
+            return OURS.name
+        held = self.file.convention
+        return convention_text(replace(held, quantity=CONVENTIONS[held.name].quantity))
 
     @property
     def description(self) -> str:
