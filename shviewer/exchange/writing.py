@@ -33,7 +33,7 @@ def encode(projected: Projected, convention: Convention, kind: str) -> bytes:
         raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
     try:
         numbers = convention.from_ours(projected.coefficients, projected.quantity)
-        stamp = projected.stamp(convention, count_bands(numbers))  # type: ignore[arg-type]
+        stamp = projected.stamp(convention, count_bands(numbers))
         return _ENCODERS[kind](numbers, stamp, convention, projected.name)
     except ValueError as error:
         raise UsageError(str(error)) from error
@@ -73,7 +73,7 @@ def _h(numbers: NDArray[np.generic], stamp: Stamp, convention: Convention, name:
 
 
 def _glsl(numbers: NDArray[np.generic], stamp: Stamp, convention: Convention, name: str) -> bytes:
-    factors = convention.basis_factors(count_bands(numbers))  # type: ignore[arg-type]
+    factors = convention.basis_factors(count_bands(numbers))
     rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
     quantity = str(stamp["quantity"]).replace("-", "_")
     return glsl_source(name, quantity, _comment_lines("//", stamp), rows, factors, convention.mirrored).encode()
@@ -96,6 +96,6 @@ def _comment_lines(mark: str, stamp: Stamp) -> list[str]:
 
 def _rows(numbers: NDArray[np.generic], convention: Convention) -> Iterable[tuple[int, int, NDArray[np.float64]]]:
     """(l, m, numbers) in the order of the file."""
-    n_bands = count_bands(numbers)  # type: ignore[arg-type]
+    n_bands = count_bands(numbers)
     for index, (m, row) in enumerate(zip(orders(n_bands), real_columns(numbers), strict=True)):
         yield int(np.sqrt(index)), int(-m if convention.mirrored else m), row

@@ -140,7 +140,7 @@ class Convention:
 
         ValueError for too many bands, or complex numbers that no real function has.
         """
-        n_bands = count_bands(numbers)  # type: ignore[arg-type]
+        n_bands = count_bands(numbers)
         self.check_bands(n_bands)
         found = from_complex(numbers) if self.complex else np.asarray(numbers, dtype=np.float64)
         if self.mirrored:
@@ -204,7 +204,7 @@ def to_complex(coefficients: Array) -> NDArray[np.complex128]:
 def from_complex(numbers: NDArray[np.generic]) -> Array:
     """The inverse of `to_complex`. ValueError unless c(l, -m) = (-1)^m conj(c(l, m)), as for every real function."""
     values = np.asarray(numbers, dtype=np.complex128)
-    n_bands = count_bands(values)  # type: ignore[arg-type]
+    n_bands = count_bands(values)
     partner = np.conj(values[mirrored_orders(n_bands)]) * alternating(orders(n_bands))
     if np.abs(values - partner).max() > UNREAL * np.abs(values).max():
         worst = int(np.abs(values - partner).max(axis=1).argmax())

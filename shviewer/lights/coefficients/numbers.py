@@ -69,9 +69,8 @@ def as_table(numbers: NDArray[np.generic], *, complex_pairs: bool = False) -> ND
         wide = wide[..., 0::2] + 1j * wide[..., 1::2]
     if not np.isfinite(wide).all():
         row = int(np.argmin(np.isfinite(wide).reshape(len(wide), -1).all(axis=1)))
-        raise LightError(
-            f"a value in row {row} (from 0) is not finite; coefficients are finite numbers: project the light again"
-        )
+        where = f"{'row' if wide.ndim > 1 else 'number'} {row} (from 0)"
+        raise LightError(f"{where} is not finite; coefficients are finite numbers: project the light again")
     table = wide.T if wide.ndim == 2 and wide.shape[0] == 3 and wide.shape[1] != 3 else wide
     flat = table.reshape(-1)
     n_bands = isqrt(flat.size)

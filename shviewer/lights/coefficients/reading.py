@@ -85,7 +85,7 @@ def _interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> Coefficient
             f"a bare list of numbers; name its convention: --convention {', '.join(CONVENTIONS)}, such as --convention three"
         )
     table = as_table(numbers, complex_pairs=convention.complex)
-    if stamp and "bands" in stamp and str(stamp["bands"]) != str(count_bands(table)):  # type: ignore[arg-type]
+    if stamp and "bands" in stamp and str(stamp["bands"]) != str(count_bands(table)):
         raise LightError(
             f"says {stamp['bands']} bands but has {len(table)} rows; n bands have n^2: project the light again"
         )
