@@ -81,6 +81,7 @@ def _view(options: argparse.Namespace) -> int:
 
     state = _state(options, all_lights=True)
     _print_notes(subject(state))
+    _print_suspicion(state)
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
@@ -107,6 +108,7 @@ def _screenshot(options: argparse.Namespace) -> int:
     composition = compose(options.size[0], options.size[1], state.zoom)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     _print_notes(picture.subject)
+    _print_suspicion(state)
     if options.reference is None or pixels is None:
         return 0
     difference = options.out.with_name(f"{options.out.stem}-difference.png")
@@ -291,8 +293,13 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         state = replace(state, tolerance=options.tolerance)
     check(state, tuple(options.size))
     state = open_light(state, options.light)
-    if split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
-        from shviewer.exchange.given import as_the_file_holds
+    if options.compare:
+        from shviewer.lights.coefficients.light import CoefficientLight
+
+        file = Path(options.compare)
+        state = replace(state, compare=replace(CoefficientLight.read(file, state.reading), name=file.name))
+    if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.viewer.comparison import as_the_file_holds
 
         any_bands = options.bands is None and options.tolerance is None
         state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
@@ -327,6 +334,15 @@ def _print_notes(subject: Subject) -> None:
         print(f"shviewer: note: {subject.light.name}: {note}", file=sys.stderr)
     if subject.refusal:
         print(f"shviewer: note: {subject.refusal}", file=sys.stderr)
+
+
+def _print_suspicion(state: ViewState) -> None:
+    """By which usual mistake coefficients that are compared are off."""
+    from shviewer.viewer.analysis import load_light
+    from shviewer.viewer.comparison import suspicion
+
+    if state.compare and (found := suspicion(load_light(state), state.compare)):
+        print(f"shviewer: {found}", file=sys.stderr)
 
 
 def _finite_width(text: str) -> float:

@@ -50,6 +50,7 @@ def view_parser() -> OneLineParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     _add_view_options(parser)
+    _add_compare_option(parser)
     parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
     parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
     parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")
@@ -70,6 +71,7 @@ def screenshot_parser() -> OneLineParser:
         "out", metavar="OUT", type=Path, help="OUT.png: the picture; OUT.exr: linear float32 radiance of both spheres"
     )
     _add_view_options(parser)
+    _add_compare_option(parser)
     parser.add_argument("--no-overlay", action="store_true", help="the two spheres alone")
     parser.add_argument(
         "--timing", action="store_true", help="also say how long the projection took; then no two runs are equal"
@@ -147,7 +149,7 @@ def project_parser() -> OneLineParser:
         if PROJECT_OPTIONS.intersection(action.option_strings):
             parser._add_action(action)
     _add_reading_options(parser, convention="--input-convention")
-    parser.set_defaults(camera=None, rotate_light=None, zoom=1.0, exposure=None, size=(1280, 640))
+    parser.set_defaults(compare=None, camera=None, rotate_light=None, zoom=1.0, exposure=None, size=(1280, 640))
     return parser
 
 
@@ -187,6 +189,14 @@ def report_parser() -> OneLineParser:
     parser.add_argument("--no-shader", action="store_true", help="nothing is drawn; needs no OpenGL")
     _add_reading_options(parser)
     return parser
+
+
+def _add_compare_option(parser: OneLineParser) -> None:
+    parser.add_argument(
+        "--compare",
+        metavar="FILE",
+        help="show the coefficients in FILE instead of the light's own, and say by which usual mistake they are off",
+    )
 
 
 def _add_view_options(parser: OneLineParser) -> None:

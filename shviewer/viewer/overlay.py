@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from shviewer.viewer.comparison import caption
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.help_sheet import draw_help
 from shviewer.viewer.lettering import (
@@ -128,7 +129,7 @@ class _Painter:
         left, right = (sphere.x for sphere in at.spheres)
         muted = describe_muted(state)
         plural = "s" if state.n_bands > 1 else ""
-        bands = f"{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
+        bands = f"{caption(state)}{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
         original = "Original" if state.quantity == "radiance" else "Irradiance"
         self.text("original", left, y, original, 17, INK, "mm")
         suns = len(picture.subject.suns)
@@ -246,7 +247,7 @@ class _Painter:
         """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
         at, state = self.at, picture.state
         y = at.hairline_y + at.px(104)
-        message = state.message or remark or picture.subject.refusal.partition(";")[0]
+        message = state.message or remark or picture.suspicion or picture.subject.refusal.partition(";")[0]
         if message:
             face = self.face(13)
             text = message

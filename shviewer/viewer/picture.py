@@ -27,6 +27,7 @@ from shviewer.viewer.analysis import (
     sampling_of,
     subject,
 )
+from shviewer.viewer.comparison import suspicion
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.memory import remember
@@ -69,6 +70,8 @@ class Picture:
     needs: Needs
     needs_unsplit: Needs | None
     """What the light would need with its suns; None if none were split off."""
+    suspicion: str = ""
+    """What is wrong with coefficients that are compared and do not fit."""
 
     @property
     def light(self) -> Light:
@@ -107,6 +110,7 @@ def prepare(state: ViewState) -> Picture:
         figures=figures,
         needs=needs(state),
         needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
+        suspicion=suspicion(light, state.compare) if state.compare else "",
     )
 
 

@@ -15,7 +15,7 @@ from itertools import pairwise
 from PIL import Image, ImageDraw, ImageFont
 
 from shviewer.harmonics.metrics import pareto_front
-from shviewer.viewer.analysis import BEST, Measurement, measurements, sampling_of
+from shviewer.viewer.analysis import BEST, Measurement, measurements, way_of
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.lettering import ACCENT, FAINT, GREY, INK, MIN_TYPE, RULE, Ink, font, grouped_number, percent
 from shviewer.viewer.log_axis import Axis, padded_axis
@@ -143,7 +143,7 @@ class _Drawing:
         }
         keys = list(places)
         best = pareto_front([(self.times[key], self.errors[key]) for key in keys])
-        present = sampling_of(picture.state)
+        present = way_of(picture.state)
         self.plane = Plane(box, milliseconds, error, floor, present, places, [keys[i] for i in best])
         self.obstacles = [self._around(*place, self.radius + 1) for place in places.values()]
         self.thin: list[Box] = []

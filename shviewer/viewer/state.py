@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.layouts.recognise import LAYOUTS
 from shviewer.lights.light import Light
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading
@@ -37,6 +38,8 @@ class ViewState:
     cursor: int = 0
     cursor_visible: bool = False
     quantity: str = "radiance"
+    compare: CoefficientLight | None = None
+    """Given coefficients, shown instead of the light's own; no more bands than they have are shown."""
     split_sun: bool = False
     """Take compact sources out of the light as discs, where it has any, and project the rest."""
     window: str = "none"
@@ -84,7 +87,10 @@ def more_bands(count: int) -> Action:
 
 
 def with_bands(state: ViewState, n_bands: int) -> ViewState:
-    n_bands = min(max(n_bands, 1), MAX_SHOWN_BANDS)
+    most = min(state.compare.n_bands, MAX_SHOWN_BANDS) if state.compare else MAX_SHOWN_BANDS
+    if state.compare and n_bands > most:
+        state = replace(state, message=f"{state.compare.name} has {most} band{'s' if most > 1 else ''}")
+    n_bands = min(max(n_bands, 1), most)
     return replace(state, n_bands=n_bands, cursor=min(state.cursor, n_bands - 1))
 
 
@@ -151,6 +157,8 @@ def toggle_split(state: ViewState) -> ViewState:
 
 
 def next_method(state: ViewState) -> ViewState:
+    if state.compare:
+        return replace(state, message=f"the coefficients are those of {state.compare.name}, and no method's")
     return replace(state, method=METHODS[(METHODS.index(state.method) + 1) % len(METHODS)])
 
 
@@ -182,6 +190,7 @@ def reset(state: ViewState) -> ViewState:
         lights=state.lights,
         light_index=state.light_index,
         reading=state.reading,
+        compare=state.compare,
         reloads=state.reloads,
         fullscreen=state.fullscreen,
         screenshots=state.screenshots,

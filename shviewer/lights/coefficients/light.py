@@ -11,9 +11,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, safe_unit
-from shviewer.harmonics.conventions.convention import RADIANCE, recovered_radiance
+from shviewer.harmonics.conventions.convention import RADIANCE, Convention, recovered_radiance
 from shviewer.harmonics.conventions.programs import CONVENTIONS, OURS, convention_text
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.coefficients.reading import CoefficientFile, read_coefficients
@@ -41,6 +42,15 @@ class CoefficientLight:
         if file.quantity == RADIANCE:
             return cls(file.coefficients, path.stem, file)
         return cls(recovered_radiance(file.coefficients)[0], path.stem, file)
+
+    @classmethod
+    def of_numbers(
+        cls, numbers: NDArray[np.generic], convention: Convention, name: str = "coefficients"
+    ) -> CoefficientLight:
+        """Of a program's own numbers (n**2, 3). ValueError for more bands than it has."""
+        held = convention.quantity or RADIANCE
+        coefficients = convention.to_ours(numbers)
+        return cls(coefficients if held == RADIANCE else recovered_radiance(coefficients)[0], name)
 
     @property
     def n_bands(self) -> int:
