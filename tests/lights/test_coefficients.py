@@ -220,6 +220,30 @@ def test_a_stamp_that_is_wrong_is_not_believed(changes: dict[str, Any], says: st
     assert says in refused(tmp_path / "a.json", stamped(**changes), Reading())
 
 
+WORDS = {
+    "shviewer": "orthonormal real spherical harmonics | Condon-Shortley phase kept | l(l+1) + m | +x +y +z; z up, right",
+    "filament": "1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, their constants in the numbers | no phase: plain polynomials | l(l+1) + m"
+    " | +y +z +x; y up, right",
+    "three": "orthonormal real spherical harmonics | no Condon-Shortley phase | l(l+1) + m | +x +z -y; y up, right",
+    "unity": "1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, their constants in the numbers | no phase: plain polynomials | l(l+1) + m"
+    " | +x +z +y; y up, left",
+    "unreal": "orthonormal real spherical harmonics | Condon-Shortley phase kept | l(l+1) + m | +x -y +z; z up, left",
+    "ambix": "SN3D real spherical harmonics; the numbers are integrals with them | no Condon-Shortley phase | l(l+1) + m"
+    " | +x +y +z; z up, right",
+    "sphericart": "orthonormal real spherical harmonics | no Condon-Shortley phase | l(l+1) + m | +x +y +z; z up, right",
+    "scipy": "orthonormal complex spherical harmonics | Condon-Shortley phase kept | l(l+1) + m | +x +y +z; z up, right",
+}
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_the_words_of_schema_1_stay_what_they_are(name: str) -> None:
+    """A reader compares them: other words would make yesterday's files contradict themselves."""
+    stamp = stamp_of(CONVENTIONS[name], "radiance", 3)
+    basis, phase, index, axes = WORDS[name].split(" | ")
+    assert (stamp["basis"], stamp["phase"], stamp["index"]) == (basis, phase, index)
+    assert stamp["axes"] == f"x y z are our {axes}-handed"
+
+
 def test_a_stamp_may_say_more_than_is_understood_but_not_something_else_than_the_user(tmp_path: Path) -> None:
     assert read(tmp_path / "a.json", stamped(moon="full"), Reading()).convention == "three"
     assert read(tmp_path / "a.json", stamped(), THREE).convention == "three"

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.radiance_files import Reading
 from shviewer.viewer import camera
@@ -191,6 +192,9 @@ def test_exposure_goes_by_half_stops_and_n_makes_it_automatic() -> None:
     assert (again.exposure_stops, again.exposure_offset) == (None, 0.0)
 
 
+GIVEN = CoefficientLight(np.ones((4, 3)))
+
+
 def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
     changed = ViewState(
         lights=LIGHTS,
@@ -201,6 +205,7 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         cursor=3,
         cursor_visible=True,
         quantity="irradiance",
+        compare=GIVEN,
         split_sun=True,
         window="hann",
         window_width=3.0,
@@ -224,7 +229,10 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
     )
     assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
     after = press(changed, "R")
-    assert after == ViewState(lights=LIGHTS, light_index=2, reading=Reading(sanitize=True), tolerance=0.1, reloads=5)
+    kept = ViewState(
+        lights=LIGHTS, light_index=2, reading=Reading(sanitize=True), compare=GIVEN, tolerance=0.1, reloads=5
+    )
+    assert after == kept
     assert after.fullscreen
     assert after.screenshots == 3
     assert after.layout_tried == "cube"

@@ -107,7 +107,7 @@ class Convention:
     @property
     def phase_words(self) -> str:
         if self.scale == "polynomial":
-            return "none: plain polynomials"
+            return "no phase: plain polynomials"
         return "Condon-Shortley phase kept" if self.phase else "no Condon-Shortley phase"
 
     def check_bands(self, n_bands: int) -> None:
