@@ -220,13 +220,14 @@ def test_a_stamp_that_is_wrong_is_not_believed(changes: dict[str, Any], says: st
     assert says in refused(tmp_path / "a.json", stamped(**changes), Reading())
 
 
+POLYNOMIALS = "1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, their constants in the numbers"
+POLYNOMIALS += " | no phase: plain polynomials | l(l+1) + m | "
+
 WORDS = {
     "shviewer": "orthonormal real spherical harmonics | Condon-Shortley phase kept | l(l+1) + m | +x +y +z; z up, right",
-    "filament": "1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, their constants in the numbers | no phase: plain polynomials | l(l+1) + m"
-    " | +y +z +x; y up, right",
+    "filament": POLYNOMIALS + "+y +z +x; y up, right",
     "three": "orthonormal real spherical harmonics | no Condon-Shortley phase | l(l+1) + m | +x +z -y; y up, right",
-    "unity": "1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, their constants in the numbers | no phase: plain polynomials | l(l+1) + m"
-    " | +x +z +y; y up, left",
+    "unity": POLYNOMIALS + "+x +z +y; y up, left",
     "unreal": "orthonormal real spherical harmonics | Condon-Shortley phase kept | l(l+1) + m | +x -y +z; z up, left",
     "ambix": "SN3D real spherical harmonics; the numbers are integrals with them | no Condon-Shortley phase | l(l+1) + m"
     " | +x +y +z; z up, right",
@@ -248,3 +249,58 @@ def test_a_stamp_may_say_more_than_is_understood_but_not_something_else_than_the
     assert read(tmp_path / "a.json", stamped(moon="full"), Reading()).convention == "three"
     assert read(tmp_path / "a.json", stamped(), THREE).convention == "three"
     assert "leave out --convention unreal" in refused(tmp_path / "a.json", stamped(), Reading(convention="unreal"))
+
+
+def seeds() -> dict[str, bytes]:
+    """One small file of every kind that is written here, and a bare list."""
+    from shviewer.exchange.projected import project_state
+    from shviewer.exchange.writing import FORMATS, encode
+    from shviewer.viewer.state import ViewState
+
+    found = project_state(ViewState(n_bands=2))
+    files = {f"seed.{kind}": encode(found, CONVENTIONS["three"], kind) for kind in FORMATS}
+    scipy = {f"complex.{kind}": encode(found, CONVENTIONS["scipy"], kind) for kind in ("json", "csv", "h")}
+    return files | scipy | {"bare.txt": b"(1, 2, 3); // L\n(4, 5, 6);\n7 8 9f\n-1e-3 0 .5"}
+
+
+def outcome(path: Path, reading: Reading) -> tuple[CoefficientLight | None, str]:
+    """The light, or why there is none."""
+    try:
+        light = find_light(str(path), reading)
+    except LightError as error:
+        return None, str(error)
+    assert isinstance(light, CoefficientLight)
+    return light, ""
+
+
+def test_no_mutation_of_a_file_is_anything_but_a_light_or_one_line(tmp_path: Path) -> None:
+    """Bytes changed, removed, doubled, cut off; 2500 files in all."""
+    generator = np.random.default_rng(0)
+    lights = 0
+    for name, data in seeds().items():
+        path = tmp_path / name
+        cuts = range(0, len(data), 17)
+        for attempt in range(200 + len(cuts)):
+            mutated = bytearray(data)
+            if attempt < len(cuts):
+                mutated = mutated[: cuts[attempt]]
+            else:
+                for _ in range(generator.integers(1, 4)):
+                    at = int(generator.integers(len(mutated)))
+                    match int(generator.integers(4)):
+                        case 0:
+                            mutated[at] = int(generator.integers(256))
+                        case 1:
+                            del mutated[at : at + int(generator.integers(1, 9))]
+                        case 2:
+                            mutated[at:at] = mutated[at : at + int(generator.integers(1, 30))]
+                        case 3:
+                            mutated[at] = int(generator.choice(list(b'0123456789,.-e\n{}[]"')))
+                    if not mutated:
+                        break
+            path.write_bytes(mutated)
+            light, said = outcome(path, THREE if name == "bare.txt" else Reading())
+            assert "\n" not in said
+            assert light is None or np.isfinite(light.given).all()
+            lights += light is not None
+    assert lights > 100  # many mutations only touch a comment or a digit

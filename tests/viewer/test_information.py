@@ -251,7 +251,7 @@ def test_a_coefficient_file_is_described_with_its_convention_and_where_it_comes_
         "  figures there     relative L2 error ",
     ):
         assert line in text
-    assert [need.radiance for need in found.bands_needed] == [3, 4, 4]
+    assert [need.radiance for need in found.bands_needed] == [4, 4, 4]
     assert json.loads(json.dumps(as_json_object(found)))["coefficients"]["stamp"]["light"] == "green"
 
 

@@ -122,13 +122,20 @@ def _no_constant(name: str) -> float:
 
 def _read_csv(data: bytes) -> tuple[NDArray[Any], Stamp]:
     """A header names the columns; without one there are three, red, green and blue."""
-    text = _text(data)
+    try:
+        return _csv_table(_text(data))
+    except csv.Error as error:
+        raise LightError(f"no CSV ({error}): save it again") from error
+
+
+def _csv_table(text: str) -> tuple[NDArray[Any], Stamp]:
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     if not lines:
         raise LightError("no rows; a CSV file has n^2 rows of red, green, blue")
     header = [cell.strip().lower() for cell in next(csv.reader(lines[:1]))]
     if not any(re.fullmatch(r"[A-Za-z][\w-]*", cell) and cell not in ("nan", "inf", "infinity") for cell in header):
-        return plain_numbers(text).reshape(len(lines), -1) if _even(lines) else plain_numbers(text), _comments(text)
+        numbers = plain_numbers(text)
+        return numbers.reshape(len(lines), -1) if _even(lines, numbers.size) else numbers, _comments(text)
     wanted = [name for name in header if name.removesuffix("-imaginary") in CHANNELS]
     if missing := [name for name in CHANNELS if name not in wanted]:
         raise LightError(f"no column {' and no column '.join(missing)}; the header must name red, green and blue")
@@ -148,8 +155,9 @@ def _in_order(columns: list[str]) -> list[str]:
     return [name for channel in CHANNELS for name in (channel, f"{channel}-imaginary") if name in columns]
 
 
-def _even(lines: list[str]) -> bool:
-    return len({line.count(",") for line in lines}) == 1 and "," in lines[0]
+def _even(lines: list[str], count: int) -> bool:
+    """Whether every line holds as many of the numbers as the others."""
+    return "," in lines[0] and all((line.count(",") + 1) * len(lines) == count for line in lines)
 
 
 def _read_text(data: bytes) -> tuple[NDArray[Any], Stamp]:

@@ -5,7 +5,7 @@ Schema 1. A reader needs the first three; the rest is for people, and is checked
     shviewer-coefficients   1
     convention              a text for parse_convention, such as "three" or "shviewer,y-up,no-phase"
     quantity                radiance, irradiance, or irradiance-over-pi
-    basis, phase, index, axes, normalisation, one-over-pi     what `convention` and `quantity` mean, in words; part of the schema
+    basis, phase, index, axes, normalisation, one-over-pi     what `convention` and `quantity` mean, in set words
     program, layout         who reads it, and how the program itself arranges the numbers
     bands, rows, columns    n, n^2, and what the columns are
     light, light-is, light-notes, window, muted, method, samples, seed
