@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from harmonics.test_conventions import asymmetric
+from harmonics.peer_cases import asymmetric
 from PIL import Image
 
 import shviewer

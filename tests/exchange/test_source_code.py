@@ -9,7 +9,7 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
-from harmonics.test_conventions import asymmetric
+from harmonics.peer_cases import asymmetric
 
 from shviewer.errors import UsageError
 from shviewer.exchange.projected import Projected, project_state

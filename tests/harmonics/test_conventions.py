@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from harmonics import peer_evaluators as peers
+from harmonics.peer_cases import EXACT, PEERS, asymmetric, directions_here, theirs
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, evaluate_basis
@@ -14,45 +15,8 @@ from shviewer.harmonics.conventions.programs import CONVENTIONS, convention_text
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.harmonics.rotation import rotate
 
-PEERS = {
-    "filament": (peers.filament, 3),
-    "three": (peers.three, 3),
-    "unity": (peers.unity, 3),
-    "unreal": (peers.unreal, 3),
-    "ambix": (peers.ambix, 8),
-    "sphericart": (peers.sphericart, 20),
-    "scipy": (peers.scipy, 20),
-}
-
-THEIR_DIRECTIONS = {
-    "filament": lambda x, y, z: (y, z, x),
-    "three": lambda x, y, z: (x, z, -y),
-    "unity": lambda x, y, z: (x, z, y),
-    "unreal": lambda x, y, z: (x, -y, z),
-}
-"""Ours -> theirs, written out; the others have our axes."""
-
 A = np.repeat([np.pi, 2 * np.pi / 3, np.pi / 4], [1, 3, 5])[:, None]
 """The clamped cosine's factors."""
-
-EXACT = 1e-12
-"""Of sums of up to 400 values of size 1."""
-
-
-def directions_here(count: int = 1000) -> Array:
-    vectors = np.random.default_rng(1).normal(size=(count, 3))
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
-
-
-def theirs(name: str, directions: Array) -> Array:
-    turned = THEIR_DIRECTIONS.get(name, lambda x, y, z: (x, y, z))(*directions.T)
-    return np.stack(turned, axis=1)
-
-
-def asymmetric(n_bands: int) -> Array:
-    """Every coefficient of every channel another one, falling with the degree."""
-    numbers = np.random.default_rng(0).normal(size=(n_bands**2, 3))
-    return np.asarray(numbers / (1 + peers.degree(n_bands**2)[:, None]))
 
 
 def what_it_holds(name: str, coefficients: Array, directions: Array) -> Array:
@@ -133,11 +97,14 @@ def test_the_printed_factors_of_filament_are_ours() -> None:
     [
         ("three", lambda x, y, z: (np.arctan2(z, x) / (2 * np.pi) + 0.5, 0.5 - np.arcsin(y) / np.pi)),
         ("unity", lambda x, y, z: (0.5 - np.arctan2(z, x) / (2 * np.pi), np.arccos(y) / np.pi)),
+        ("unreal", lambda x, y, z: ((1 + np.arctan2(x, -y) / np.pi) / 2, np.arccos(z) / np.pi)),
         ("filament", lambda x, y, z: ((np.arctan2(-x, z) / np.pi + 1) / 2, (1 - 2 * np.arcsin(y) / np.pi) / 2)),
     ],
 )
 def test_the_program_sees_our_image_where_its_own_loader_puts_it(name: str, look_up: object) -> None:
-    """equirectUv of three.js, ToRadialCoords of Unity's panoramic sky, equirectangularToCubemap with cmgen's mirror."""
+    """equirectUv of three.js, ToRadialCoords of Unity's panoramic sky, LookupLongLat of Unreal's importer, whose directions
+    have y and z swapped, and filament's equirectangularToCubemap with cmgen's mirror.
+    """
     u, v = np.meshgrid(np.linspace(0.05, 0.95, 13), np.linspace(0.1, 0.9, 7))
     phi, theta = np.pi * (1 - 2 * u.ravel()), np.pi * v.ravel()
     ours = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1)

@@ -6,16 +6,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from harmonics.test_conventions import asymmetric
+from harmonics.peer_cases import A, asymmetric, spoiled
 
-from shviewer.harmonics.basis import Array
 from shviewer.harmonics.conventions.axes import Axes, turn
 from shviewer.harmonics.conventions.convention import OVER_PI
-from shviewer.harmonics.conventions.programs import CONVENTIONS, parse_convention
+from shviewer.harmonics.conventions.programs import CONVENTIONS
 from shviewer.harmonics.conventions.suspects import usual_suspects
-
-A = np.repeat([np.pi, 2 * np.pi / 3, np.pi / 4], [1, 3, 5])[:, None]
-L = np.repeat([0, 1, 2], [1, 3, 5])[:, None]
 
 MISTAKES = {
     "phase": "without the Condon-Shortley phase",
@@ -31,24 +27,6 @@ MISTAKES = {
     "SN3D": "divided by sqrt(2l+1), as in SN3D",
 }
 AXES, SCALES, DEGREES = ("y-up", "y-up-left", "forward"), ("pi", "times pi", "4pi"), ("A", "no A", "SN3D")
-
-
-def spoiled(exact: Array, *names: str) -> Array:
-    """What is written by somebody with these mistakes, in the order in which a program makes them."""
-    turned = {"y-up": "y-up", "y-up-left": "y-up-left", "forward": "+y+z+x"}
-    modifiers = [turned[name] for name in names if name in turned]
-    modifiers += ["no-phase"] * ("phase" in names) + ["m-swapped"] * ("order" in names)
-    numbers = np.asarray(parse_convention(",".join(["shviewer", *modifiers])).from_ours(exact))
-    for name, factor in (
-        ("pi", 1 / np.pi),
-        ("times pi", np.pi),
-        ("4pi", 1 / np.sqrt(4 * np.pi)),
-        ("A", A),
-        ("no A", 1 / A),
-        ("SN3D", 1 / np.sqrt(2 * L + 1)),
-    ):
-        numbers = numbers * factor if name in names else numbers
-    return numbers
 
 
 @pytest.mark.parametrize("name", MISTAKES)

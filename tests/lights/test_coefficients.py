@@ -145,6 +145,8 @@ def test_a_file_of_irradiance_is_the_light_with_that_irradiance(tmp_path: Path) 
         ("a.json", '{"rows": []}', 'without "coefficients"'),
         ("a.json", '{"coefficients": "many"}', "rows of three numbers each"),
         ("a.json", "[]", "rows of three numbers each"),
+        ("a.json", '["1", "2", "3"]', "rows of three numbers each"),
+        ("a.json", "[null]", "rows of three numbers each"),
         ("a.json", b"\xff\xfe1", "no UTF-8"),
         ("a.npz", b"PK\x03\x04 nothing", "no readable NPZ"),
         ("a.npz", npz(other=ROWS), 'no array "coefficients" in it; there is: other'),
@@ -228,7 +230,7 @@ WORDS = {
     "filament": POLYNOMIALS + "+y +z +x; y up, right",
     "three": "orthonormal real spherical harmonics | no Condon-Shortley phase | l(l+1) + m | +x +z -y; y up, right",
     "unity": POLYNOMIALS + "+x +z +y; y up, left",
-    "unreal": "orthonormal real spherical harmonics | Condon-Shortley phase kept | l(l+1) + m | +x -y +z; z up, left",
+    "unreal": "orthonormal real spherical harmonics | Condon-Shortley phase kept | l(l+1) + m | -y -x +z; z up, left",
     "ambix": "SN3D real spherical harmonics; the numbers are integrals with them | no Condon-Shortley phase | l(l+1) + m"
     " | +x +y +z; z up, right",
     "sphericart": "orthonormal real spherical harmonics | no Condon-Shortley phase | l(l+1) + m | +x +y +z; z up, right",

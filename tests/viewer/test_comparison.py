@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from harmonics.test_suspects import spoiled
+from harmonics.peer_cases import spoiled
 
 from shviewer.cli import main
 from shviewer.harmonics.basis import Array

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from harmonics import peer_evaluators as peers
-from harmonics.test_conventions import EXACT, PEERS, asymmetric, directions_here, theirs
+from harmonics.peer_cases import EXACT, PEERS, asymmetric, directions_here, theirs
 
 from shviewer.exchange.projected import Projected, project_state
 from shviewer.exchange.writing import encode
