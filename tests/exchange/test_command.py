@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 
 from shviewer.cli import main
+from shviewer.exchange.command import project_lights
+from shviewer.harmonics.conventions.programs import CONVENTIONS
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.light import find_light
+from shviewer.viewer.state import ViewState
 
 Capture = pytest.CaptureFixture[str]
 
@@ -208,3 +211,33 @@ def test_a_light_cannot_break_out_of_a_comment(tmp_path: Path) -> None:
     lines = (tmp_path / "evil.h").read_text().splitlines()
     (said,) = [line for line in lines if "light-is" in line]
     assert said == "// light-is: a * / b #error c"
+
+
+def test_progress_goes_through_the_lights_and_is_cleared(tmp_path: Path, capsys: Capture) -> None:
+    shown: list[str] = []
+
+    def state_of(light: str) -> ViewState:
+        return ViewState(lights=(light,), n_bands=2)
+
+    assert (
+        project_lights(
+            ["green", "no such light", "cosine"], str(tmp_path), "csv", CONVENTIONS["three"], state_of, shown.append
+        )
+        == 1
+    )
+    assert [text[:26].count("#") for text in shown if text] == [0, 8, 16]
+    assert [text.split("] ")[1] for text in shown if text] == [
+        "1 of 3  green",
+        "2 of 3  no such light",
+        "3 of 3  cosine",
+    ]
+    assert shown[-1] == ""
+    assert shown[2] == ""  # before the error is printed
+    capsys.readouterr()
+
+
+def test_as_many_bands_as_a_tolerance_needs(tmp_path: Path, capsys: Capture) -> None:
+    assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "10%") == 0
+    assert held(tmp_path / "c.json").n_bands == 3  # 127/128 of the energy: 8.8 %
+    assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "1%", "--convention", "three") == 2
+    assert "three takes 1 to 3" in capsys.readouterr().err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata
+from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.state import ViewState, next_method, reset, with_bands
 
 VENICE = find_light("venice_sunset")
@@ -131,7 +133,10 @@ def test_the_picture_says_whose_coefficients_they_are() -> None:
     assert said["suspicion"] == picture.suspicion
 
 
-def test_the_command_compares_and_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_compares_and_says_what_is_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, renderer: Renderer
+) -> None:
+    monkeypatch.setattr("shviewer.viewer.screenshot.headless_renderer", lambda: nullcontext(renderer))
     numbers = np.asarray(CONVENTIONS["three"].from_ours(VENICE.coefficients(3)))
     (tmp_path / "theirs.json").write_text(json.dumps(numbers.tolist()))
     command = ["screenshot", str(tmp_path / "out.png"), "venice_sunset", "--compare", str(tmp_path / "theirs.json")]
