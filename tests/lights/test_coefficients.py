@@ -131,6 +131,7 @@ def test_a_file_of_irradiance_is_the_light_with_that_irradiance(tmp_path: Path) 
         ("a.json", json.dumps([[1, 2, 3]] * 8 + [[1, 2]]), "rows of three numbers each"),
         ("a.json", "[[NaN, 1, 2]]", "NaN among the coefficients"),
         ("a.json", "[[1e999, 1, 2]]", "row 0 (from 0) is not finite"),
+        ("a.txt", "1e308 1 1", "a coefficient of 1e+308; at most 1e+100 is read"),
         ("a.txt", "1 2 nan", "number 2 (from 0) is not finite"),
         ("a.csv", "red,green\n1,2\n", "no column blue"),
         ("a.csv", "l,m,red,blue\n0,0,1,2\n", "no column green"),

@@ -29,6 +29,9 @@ from shviewer.lights.radiance_files import DEFAULT_READING, Reading, naming, rea
 MAX_FILE_BYTES = 8 * 2**20
 """128 bands of three complex channels, each number with 24 characters and much punctuation, take 3 MiB."""
 
+LARGEST = 1e100
+"""Beyond it conversions and squares could leave float64; what is drawn ends at 1e30."""
+
 TABLE_BEGINS, TABLE_ENDS = "coefficients begin", "coefficients end"
 """Between comments with these words stand the numbers of a .h or .glsl file, and nothing else."""
 
@@ -88,6 +91,8 @@ def _interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> Coefficient
         raise LightError(
             f"says {stamp['bands']} bands but has {len(table)} rows; n bands have n^2: project the light again"
         )
+    if np.abs(table).max() > LARGEST:
+        raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")
     try:
         return CoefficientFile(table, convention, convention.to_ours(table), stamp)
     except ValueError as error:
