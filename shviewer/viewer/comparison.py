@@ -20,6 +20,9 @@ from shviewer.viewer.state import ViewState, with_bands
 BAD = 0.02
 """Given coefficients that are farther off than this, relative to the light's own in the same bands, are looked into."""
 
+LONGEST_NAME = 28
+"""Characters in a caption."""
+
 EXACT = 1e-6
 """What is no farther off is the same, up to six printed digits."""
 
@@ -43,7 +46,10 @@ def as_the_file_holds(state: ViewState, *, quantity: bool, bands: bool) -> ViewS
 
 def caption(state: ViewState) -> str:
     """Whose coefficients are shown, to stand before their number; "" for the light's own."""
-    return f"{state.compare.name}: " if state.compare else ""
+    if state.compare is None:
+        return ""
+    name = state.compare.name
+    return f"{name if len(name) <= LONGEST_NAME else f'{name[:11]}...{name[-14:]}'}: "
 
 
 @remember(most=4)

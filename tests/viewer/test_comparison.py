@@ -17,7 +17,7 @@ from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.light import find_light
 from shviewer.lights.radiance_files import Reading
 from shviewer.viewer.analysis import load_light
-from shviewer.viewer.comparison import as_the_file_holds, suspicion
+from shviewer.viewer.comparison import as_the_file_holds, caption, suspicion
 from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
@@ -131,6 +131,13 @@ def test_the_picture_says_whose_coefficients_they_are() -> None:
     said = json.loads(metadata(picture, compose(1280, 640, 1.0), "none"))
     assert said["compare"] == {"name": "theirs.txt", "convention": "shviewer"}
     assert said["suspicion"] == picture.suspicion
+
+
+def test_a_long_name_is_shortened_in_the_caption() -> None:
+    file = given(VENICE.coefficients(1), "environment-of-the-second-courtyard-at-noon.json")
+    assert caption(ViewState(lights=(VENICE,), compare=file)) == "environment...d-at-noon.json: "
+    assert caption(ViewState(lights=(VENICE,), compare=given(VENICE.coefficients(1)))) == "theirs.txt: "
+    assert "reconstruction" in draw_overlay(compared(file), compose(640, 320, 1.0)).boxes
 
 
 def test_the_command_compares_and_says_what_is_wrong(

@@ -9,6 +9,7 @@ import csv
 import json
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -66,8 +67,18 @@ def read_coefficients(path: Path, reading: Reading = DEFAULT_READING) -> Coeffic
     """
     with naming(str(path)):
         limits = Limits(file_bytes=min(MAX_FILE_BYTES, reading.limits.file_bytes))
+        _check_size(path)
         found = _READERS[path.suffix.lower()](read_bytes(path, limits))
         return _interpreted(*found, reading.convention)
+
+
+def _check_size(path: Path) -> None:
+    """Before a byte is read; that the path leads to a file at all is looked at next."""
+    with suppress(OSError, ValueError):
+        if (size := path.stat().st_size) > MAX_FILE_BYTES:
+            raise LightError(
+                f"{size} bytes; 128 bands, the most there can be, take less than {MAX_FILE_BYTES}: keep only those"
+            )
 
 
 def _interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientFile:
