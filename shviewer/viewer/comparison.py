@@ -14,8 +14,9 @@ from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.viewer.analysis import BEST, project, subject
+from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.memory import remember
-from shviewer.viewer.state import ViewState, with_bands
+from shviewer.viewer.state import ViewState
 
 BAD = 0.02
 """Given coefficients that are farther off than this, relative to the light's own in the same bands, are looked into."""
@@ -39,8 +40,10 @@ def as_the_file_holds(state: ViewState, *, quantity: bool, bands: bool) -> ViewS
     file = state.compare or subject(replace(state, quantity="radiance", split_sun=False)).whole
     if not isinstance(file, CoefficientLight):
         return state
-    if bands or (state.compare and state.n_bands > file.n_bands):
-        state = with_bands(state, file.n_bands if bands else state.n_bands)  # which says so if that is too many
+    if bands:
+        state = replace(state, n_bands=min(file.n_bands, MAX_SHOWN_BANDS))
+    elif state.compare and state.n_bands > file.n_bands:
+        state = replace(state, n_bands=file.n_bands, message=file.extent)
     return replace(state, quantity=file.quantity) if quantity else state
 
 

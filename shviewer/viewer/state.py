@@ -89,7 +89,7 @@ def more_bands(count: int) -> Action:
 def with_bands(state: ViewState, n_bands: int) -> ViewState:
     most = min(state.compare.n_bands, MAX_SHOWN_BANDS) if state.compare else MAX_SHOWN_BANDS
     if state.compare and n_bands > most:
-        state = replace(state, message=f"{state.compare.name} has {most} band{'s' if most > 1 else ''}")
+        state = replace(state, message=state.compare.extent)
     n_bands = min(max(n_bands, 1), most)
     return replace(state, n_bands=n_bands, cursor=min(state.cursor, n_bands - 1))
 

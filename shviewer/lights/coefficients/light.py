@@ -57,6 +57,11 @@ class CoefficientLight:
         return count_bands(self.given)
 
     @property
+    def extent(self) -> str:
+        """ "sh.txt has 3 bands": what is said where more are asked for."""
+        return f"{self.name} has {self.n_bands} band{'s' if self.n_bands > 1 else ''}"
+
+    @property
     def quantity(self) -> str:
         """Of the file's numbers: "radiance" or "irradiance"."""
         return self.file.quantity if self.file else RADIANCE
