@@ -1,3 +1,63 @@
-"""See a light beside its spherical-harmonic reconstruction, with error figures that can be trusted."""
+"""See a light beside its spherical-harmonic reconstruction, with error figures that can be trusted.
+
+    find_light(what) -> Light                        a name, a file, a function, coefficients or an image
+    project(light, bands) -> Projected               coefficients, error figures, and files with the convention stamped on them
+    reconstruct(coefficients, directions)            radiance (k, 3)
+    evaluate_basis(directions, bands)                every Y(l, m), (..., bands**2); the convention is in harmonics/basis.py
+    report(lights, folder)                           speed against error on this machine
+    screenshot(light, bands) -> (height, width, 3)   the picture of both spheres, without a window
+    view(light, bands)                               the window
+
+They are imported when they are first used: `import shviewer` alone loads neither numpy nor OpenGL. What a user can put right
+raises ShviewerError.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from shviewer.errors import ShviewerError
+    from shviewer.exchange.face import find_light, project, report, screenshot, view
+    from shviewer.exchange.projected import Projected
+    from shviewer.harmonics.basis import evaluate_basis
+    from shviewer.harmonics.synthesis import reconstruct
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Projected",
+    "ShviewerError",
+    "__version__",
+    "evaluate_basis",
+    "find_light",
+    "project",
+    "reconstruct",
+    "report",
+    "screenshot",
+    "view",
+]
+
+_HOMES = {
+    "ShviewerError": "shviewer.errors",
+    "evaluate_basis": "shviewer.harmonics.basis",
+    "reconstruct": "shviewer.harmonics.synthesis",
+    "Projected": "shviewer.exchange.projected",
+    "find_light": "shviewer.exchange.face",
+    "project": "shviewer.exchange.face",
+    "report": "shviewer.exchange.face",
+    "screenshot": "shviewer.exchange.face",
+    "view": "shviewer.exchange.face",
+}
+
+
+def __getattr__(name: str) -> object:
+    from importlib import import_module
+
+    if name not in _HOMES:
+        raise AttributeError(f"module 'shviewer' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

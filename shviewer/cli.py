@@ -22,6 +22,7 @@ from shviewer.options import (
     DEFAULT_SWEEP,
     finite,
     info_parser,
+    project_parser,
     report_parser,
     screenshot_parser,
     sweep_parser,
@@ -47,6 +48,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             return _screenshot(screenshot_parser().parse_intermixed_args(arguments[1:]))
         if arguments[:1] == ["sweep"]:
             return _sweep(sweep_parser().parse_intermixed_args(arguments[1:]))
+        if arguments[:1] == ["project"]:
+            return _project(project_parser().parse_args(arguments[1:]))
         if arguments[:1] == ["report"]:
             return _report(report_parser().parse_args(arguments[1:]))
         if arguments[:1] == ["info"]:
@@ -83,6 +86,7 @@ def _view(options: argparse.Namespace) -> int:
 
     state = _state(options, all_lights=True)
     _print_notes(subject(state))
+    _print_suspicion(state)
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
@@ -111,6 +115,7 @@ def _screenshot(options: argparse.Namespace) -> int:
     composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     _print_notes(picture.subject)
+    _print_suspicion(state)
     if options.reference is None or pixels is None:
         return 0
     difference = options.out.with_name(f"{options.out.stem}-difference.png")
@@ -193,6 +198,24 @@ def _info(options: argparse.Namespace) -> int:
     return exit_code
 
 
+def _project(options: argparse.Namespace) -> int:
+    from shviewer.exchange.command import project_lights, wanted_convention
+
+    convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
+    if convention.quantity:
+        options.quantity = convention.quantity.removesuffix("-over-pi")
+    if options.bands is None and options.tolerance is None and convention.most_bands:
+        options.bands = min(DEFAULT_BANDS, convention.most_bands)
+    line = _StatusLine() if sys.stderr.isatty() else None
+
+    def state_of(light: str) -> ViewState:
+        return _state(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+
+    return project_lights(
+        options.lights or ["green"], options.output, options.format, convention, state_of, line.show if line else None
+    )
+
+
 def _reading(options: argparse.Namespace) -> Reading:
     """How images are read. UsageError for an unknown layout."""
     from shviewer.lights.decoders.limits import Limits
@@ -209,7 +232,22 @@ def _reading(options: argparse.Namespace) -> Reading:
         "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
     }
     limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
-    return Reading(sanitize=options.sanitize, layout=options.layout, limits=limits)
+    return Reading(
+        sanitize=options.sanitize, layout=options.layout, limits=limits, convention=_input_convention(options)
+    )
+
+
+def _input_convention(options: argparse.Namespace) -> str:
+    """UsageError for one that is not known."""
+    text: str = options.input_convention
+    if text:
+        from shviewer.harmonics.conventions.programs import parse_convention
+
+        try:
+            parse_convention(text)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+    return text
 
 
 def _report(options: argparse.Namespace) -> int:
@@ -280,7 +318,7 @@ def _status_line() -> Iterator[_StatusLine | None]:
 
 def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
-    from shviewer.lights.light import built_in_lights
+    from shviewer.lights.light import COEFFICIENT_SUFFIXES, built_in_lights, split_light
     from shviewer.viewer.actions import open_light
     from shviewer.viewer.camera import IDENTITY, towards
     from shviewer.viewer.picture import check
@@ -297,7 +335,7 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         reading=_reading(options),
         n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
         muted=options.mute,
-        quantity=options.quantity,
+        quantity=options.quantity or "radiance",
         split_sun=options.split_sun,
         window=window,
         window_width=_finite_width(width) if separator else None,
@@ -322,6 +360,16 @@ def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         state = replace(state, tolerance=options.tolerance)
     check(state, tuple(options.size))
     state = open_light(state, options.light)
+    if options.compare:
+        from shviewer.lights.coefficients.light import CoefficientLight
+
+        file = Path(options.compare)
+        state = replace(state, compare=replace(CoefficientLight.read(file, state.reading), name=file.name))
+    if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.viewer.comparison import as_the_file_holds
+
+        any_bands = options.bands is None and options.tolerance is None
+        state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
     return state if options.tolerance is None else _fitted(state, options)
 
 
@@ -353,6 +401,15 @@ def _print_notes(subject: Subject) -> None:
         print(f"shviewer: note: {subject.light.name}: {note}", file=sys.stderr)
     if subject.refusal:
         print(f"shviewer: note: {subject.refusal}", file=sys.stderr)
+
+
+def _print_suspicion(state: ViewState) -> None:
+    """By which usual mistake coefficients that are compared are off."""
+    from shviewer.viewer.analysis import load_light
+    from shviewer.viewer.comparison import suspicion
+
+    if state.compare and (found := suspicion(load_light(state), state.compare)):
+        print(f"shviewer: {found}", file=sys.stderr)
 
 
 def _finite_width(text: str) -> float:

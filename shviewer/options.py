@@ -11,7 +11,7 @@ from shviewer import __version__
 
 EXIT_CODES = """exit codes:
   0    done
-  1    --reference: the picture differs; --stability: a case failed
+  1    --reference: the picture differs; --stability: a case failed; project: one of several lights failed
   2    bad arguments
   3    a light that is unknown, unreadable or damaged
   4    a file that could not be written
@@ -24,7 +24,7 @@ DEFAULT_SWEEP = (1, 16)
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
-    "or file.py:function"
+    "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl)"
 )
 
 
@@ -43,14 +43,17 @@ def view_parser() -> OneLineParser:
         "       shviewer screenshot OUT [LIGHT] [options]\n"
         "       shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]\n"
         "       shviewer info LIGHT [LIGHT ...] [options]\n"
+        "       shviewer project [LIGHT ...] -o FILE [options]\n"
         "       shviewer report [LIGHT ...] [-o DIR] [options]",
         description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
         epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
         "\nanimations: shviewer sweep --help"
-        "\nwhat a light is, in figures: shviewer info --help",
+        "\nwhat a light is, in figures: shviewer info --help"
+        "\nits coefficients as a file: shviewer project --help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     _add_view_options(parser)
+    _add_compare_option(parser)
     parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
     parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
     parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")
@@ -71,6 +74,7 @@ def screenshot_parser() -> OneLineParser:
         "out", metavar="OUT", type=Path, help="OUT.png: the picture; OUT.exr: linear float32 radiance of both spheres"
     )
     _add_view_options(parser)
+    _add_compare_option(parser)
     parser.add_argument("--no-overlay", action="store_true", help="the two spheres alone")
     parser.add_argument(
         "--timing", action="store_true", help="also say how long the projection took; then no two runs are equal"
@@ -135,6 +139,52 @@ def info_parser() -> OneLineParser:
     return parser
 
 
+PROJECT_OPTIONS = frozenset(
+    ("--bands", "--tolerance", "--for", "--split-sun", "--window", "--mute", "--method", "--samples", "--seed")
+)
+"""What `project` has in common with the window."""
+
+
+def project_parser() -> OneLineParser:
+    """shviewer project [LIGHT ...] -o FILE: coefficients as a file."""
+    parser = OneLineParser(
+        prog="shviewer project",
+        description="Write the coefficients of LIGHT, with the convention stamped on them. Several lights go into a folder.",
+        epilog=f"{EXIT_CODES}\n\nOf several lights those that can be projected are written, whatever becomes of the others.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("lights", metavar="LIGHT", nargs="*", help=f"{LIGHT_HELP} (default green)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        required=True,
+        help="FILE.json, .csv, .npz, .h or .glsl; - is stdout; a folder if there are several lights",
+    )
+    parser.add_argument("--format", metavar="F", help="json, csv, npz, h or glsl, where FILE does not say it")
+    parser.add_argument(
+        "--convention",
+        metavar="C",
+        default="shviewer",
+        help="whose: shviewer (default), filament, three, unity, unreal, ambix, sphericart or scipy; after commas what differs,"
+        " such as shviewer,no-phase,4pi",
+    )
+    parser.add_argument(
+        "--axes",
+        metavar="A",
+        help="y-up or z-up (right-handed), y-up-left or z-up-left, or which of our axes x, y and z are, such as +x+z-y",
+    )
+    parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
+    donor = OneLineParser(add_help=False)
+    _add_view_options(donor)
+    for action in donor._actions:
+        if PROJECT_OPTIONS.intersection(action.option_strings):
+            parser._add_action(action)
+    _add_reading_options(parser, convention="--input-convention")
+    parser.set_defaults(compare=None, camera=None, rotate_light=None, zoom=1.0, exposure=None, size=(1280, 640))
+    return parser
+
+
 def report_parser() -> OneLineParser:
     """shviewer report [LIGHT ...]: speed against error, measured on this machine."""
     parser = OneLineParser(
@@ -173,6 +223,14 @@ def report_parser() -> OneLineParser:
     return parser
 
 
+def _add_compare_option(parser: OneLineParser) -> None:
+    parser.add_argument(
+        "--compare",
+        metavar="FILE",
+        help="show the coefficients in FILE instead of the light's own, and say by which usual mistake they are off",
+    )
+
+
 def _add_view_options(parser: OneLineParser) -> None:
     parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
     parser.add_argument("--bands", metavar="N", type=int, help="number of bands, 1 to 128 (default 5)")
@@ -186,7 +244,6 @@ def _add_view_options(parser: OneLineParser) -> None:
         "--for",
         metavar="WHAT",
         dest="quantity",
-        default="radiance",
         help="radiance (default), or irradiance: what a white Lambertian surface receives",
     )
     parser.add_argument(
@@ -255,8 +312,15 @@ def _add_view_options(parser: OneLineParser) -> None:
     _add_reading_options(parser)
 
 
-def _add_reading_options(parser: OneLineParser) -> None:
-    """How an image is read."""
+def _add_reading_options(parser: OneLineParser, convention: str = "--convention") -> None:
+    """How an image is read, and coefficients that do not say their convention."""
+    parser.add_argument(
+        convention,
+        metavar="C",
+        dest="input_convention",
+        default="",
+        help="of a bare list of coefficients: shviewer, filament, three, unity, unreal, ambix, sphericart or scipy",
+    )
     parser.add_argument(
         "--sanitize",
         action="store_true",

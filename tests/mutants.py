@@ -132,6 +132,24 @@ MUTANTS = (
         "(first * first).sum(axis=1)",
     ),
     Mutant(
+        "phase kept for programs without",
+        "shviewer/harmonics/conventions/convention.py",
+        "            found = found * alternating(orders(n_bands))\n        found = found * SCALES",
+        "            found = found * 1.0\n        found = found * SCALES",
+    ),
+    Mutant(
+        "axes the other way",
+        "shviewer/harmonics/conventions/axes.py",
+        "(directions @ matrix).T",
+        "matrix @ directions.T",
+    ),
+    Mutant(
+        "1/pi forgotten",
+        "shviewer/harmonics/conventions/convention.py",
+        "np.pi if held == OVER_PI else 1 / np.pi",
+        "np.pi if held == OVER_PI else 1",
+    ),
+    Mutant(
         "rotation the other way", "shviewer/harmonics/rotation.py", "here @ matrix, n_bands", "here @ matrix.T, n_bands"
     ),
     Mutant(

@@ -265,7 +265,7 @@ LOBE = '[[lobe]]\nprofile = "gaussian"\naxis = [0, 0, 1]\nradiance = 1\n'
         ("picture.exr", b"\x89PNG\r\n\x1a\n", ["holds PNG", "rename"]),
         ("picture.exr:layer", b"\x89PNG\r\n\x1a\n", ["picture.exr: ", "holds PNG"]),
         ("missing.exr:layer", None, ["missing.exr: ", "no such file"]),
-        ("light.txt", b"hello", ["must end in .toml"]),
+        ("light.tif", b"hello", ["must end in .toml"]),
         ("syntax.toml", "[[lobe]\n", ["not valid TOML"]),
         ("key.toml", LOBE + "sharpnes = 3\n", ["lobe 1", "sharpnes"]),
         ("number.toml", LOBE + 'sharpness = "high"\n', ["lobe 1", "sharpness", "'high'", "number"]),

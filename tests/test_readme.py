@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 import re
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
+from shviewer.harmonics.conventions.programs import CONVENTIONS
 from shviewer.lights.scene import PROFILES, read_scene
-from shviewer.options import EXIT_CODES, info_parser, report_parser, screenshot_parser, sweep_parser, view_parser
+from shviewer.options import (
+    EXIT_CODES,
+    info_parser,
+    project_parser,
+    report_parser,
+    screenshot_parser,
+    sweep_parser,
+    view_parser,
+)
 from shviewer.viewer.keys import key_table
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.state import METHODS, ViewState
@@ -32,8 +42,8 @@ def test_the_exit_codes_are_those_of_the_help() -> None:
 
 @pytest.mark.parametrize(
     "parser",
-    [view_parser(), screenshot_parser(), sweep_parser(), info_parser(), report_parser()],
-    ids=["view", "screenshot", "sweep", "info", "report"],
+    [view_parser(), screenshot_parser(), sweep_parser(), info_parser(), project_parser(), report_parser()],
+    ids=["view", "screenshot", "sweep", "info", "project", "report"],
 )
 def test_every_option_is_explained(parser: object) -> None:
     options = [text for action in parser._actions for text in action.option_strings if text.startswith("--")]  # type: ignore[attr-defined]
@@ -75,3 +85,32 @@ def test_the_python_example_prints_what_it_says(capsys: pytest.CaptureFixture[st
     promised = re.search(r"# (0\.\d+)\.\.\.", example)
     assert promised is not None
     assert printed.startswith(promised[1])
+
+
+def test_the_tutorial_prints_what_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], session_renderer: object
+) -> None:
+    """Every print of "From Python", in one session, in an empty folder; the picture is drawn as the tests draw."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("shviewer.viewer.screenshot.headless_renderer", lambda: nullcontext(session_renderer))
+    section = README[README.index("## From Python") : README.index("## Conventions")]
+    blocks = re.findall(r"^```python\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)
+    names: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), names)
+    promised = re.findall(r"^ *print\(.*\)  # (.*)$", section, flags=re.MULTILINE)
+    assert len(promised) > 10
+    assert capsys.readouterr().out.splitlines() == promised
+
+
+def test_the_table_of_conventions_is_that_of_the_code() -> None:
+    rows = dict(re.findall(r"^\| `(\w+)` \| (?:kept|none) \| .* \| (.*) \|$", README, flags=re.MULTILINE))
+    bands = {
+        name: ("1 to 3" if not convention.filled_up else "3") if convention.most_bands else "1 to 128"
+        for name, convention in CONVENTIONS.items()
+    }
+    assert rows == bands
+    for name, convention in CONVENTIONS.items():
+        (row,) = re.findall(rf"^\| `{name}` \| (kept|none) \| ([-xyz, ]+).*$", README, flags=re.MULTILINE)
+        assert row[0] == ("kept" if convention.phase else "none")
+        assert row[1].strip(" ").rstrip(";") == ", ".join(re.findall("-?[xyz]", convention.axes.text.replace("+", "")))

@@ -53,7 +53,7 @@ def check_bands(n_bands: int, most: int = MAX_BANDS) -> None:
         raise ValueError(f"{n_bands} bands: there must be 1 to {most}")
 
 
-def count_bands(coefficients: NDArray[np.floating]) -> int:
+def count_bands(coefficients: NDArray[np.generic]) -> int:
     """The number of bands n that `coefficients`, shape (n**2, ...), hold. ValueError if the length is no square."""
     n_bands = isqrt(len(coefficients))
     if n_bands**2 != len(coefficients) or not n_bands:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from copy import copy
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.basis import Array, count_bands, normalise
 from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
 from shviewer.harmonics.theta_series import azimuth_functions, theta_series
 
@@ -19,6 +19,17 @@ STEP = 768
 
 FEWEST_BANDS = 8
 """Products of fewer than four rows are slower than these."""
+
+
+def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
+    """The function with the coefficients (n**2, 3) of basis.py in directions (..., 3) of any length: (..., 3), float64.
+
+    ValueError if n**2 is no square, or for a direction that is zero or not finite.
+    """
+    unit = normalise(directions)
+    x, y, z = unit.reshape(-1, 3).T
+    values = Synthesis(np.asarray(coefficients, dtype=np.float64)).at(np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+    return values.reshape(unit.shape)
 
 
 class Synthesis:

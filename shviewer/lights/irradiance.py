@@ -18,6 +18,7 @@ from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, gegenbauer_ratios
+from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight, angle_between
@@ -89,6 +90,8 @@ class IrradianceLight:
 
     def radiance(self, directions: Array) -> Array:
         """Irradiance (k, 3) on surfaces that face `directions` (k, 3)."""
+        if isinstance(self.source, CoefficientLight):
+            return self._band_limited.radiance(directions)
         if not isinstance(self.source, LobeLight):
             return self.radiance_map().sample(directions)
         total = np.zeros((len(directions), 3))
@@ -99,6 +102,12 @@ class IrradianceLight:
 
     def radiance_map(self) -> LatLongMap:
         return self._map
+
+    @cached_property
+    def _band_limited(self) -> CoefficientLight:
+        """Of coefficients, the irradiance is a finite sum, too."""
+        assert isinstance(self.source, CoefficientLight)
+        return CoefficientLight(self.coefficients(self.source.n_bands))
 
     @cached_property
     def _tables(self) -> list[tuple[Array, Array]]:

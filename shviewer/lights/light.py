@@ -13,6 +13,7 @@ from shviewer.lights.radiance_files import DEFAULT_READING, Reading
 from shviewer.resources import resource_folder
 
 IMAGE_SUFFIXES = (".hdr", ".pic", ".rgbe", ".exr", ".png", ".jpg", ".jpeg")
+COEFFICIENT_SUFFIXES = (".json", ".csv", ".txt", ".h", ".glsl", ".npz", ".npy")
 
 
 class Light(Protocol):
@@ -83,9 +84,9 @@ def split_light(text: str) -> tuple[Path, str]:
 
 
 def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
-    """The light that `text` names: a built-in, a .toml scene, an image, a "file.exr:layer" or a "file.py:function".
+    """The light that `text` names: a built-in, a scene, an image, coefficients, a "file.exr:layer" or a "file.py:function".
 
-    `reading` says how an image is read.
+    `reading` says how an image is read, and which convention numbers have that do not say it.
     LightError if there is no such light or its file is bad.
     """
     from shviewer.lights.environment import EnvironmentLight
@@ -97,6 +98,10 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
         return read_scene(path)
     if path.suffix.lower() in IMAGE_SUFFIXES:
         return EnvironmentLight.read(path, reading, part)
+    if path.suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.lights.coefficients.light import CoefficientLight
+
+        return CoefficientLight.read(path, reading)
     if part:
         return load_function(path, part)
     raise LightError(_unknown(text))
@@ -118,7 +123,8 @@ def _what_it_is(text: str) -> str:
         return "a directory; name one file in it"
     if path.suffix == ".py":
         return f"a Python file; name a function in it, such as {path.name}:light"
-    return f"a file must end in .toml, {', '.join(IMAGE_SUFFIXES[:-1])} or {IMAGE_SUFFIXES[-1]}: convert it"
+    known = (".toml", *IMAGE_SUFFIXES, *COEFFICIENT_SUFFIXES)
+    return f"a file must end in {', '.join(known[:-1])} or {known[-1]}: convert it"
 
 
 def _what_the_colon_is(text: str) -> str:

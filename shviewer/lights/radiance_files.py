@@ -41,6 +41,8 @@ class Reading:
     layout: str = "auto"
     """"auto" or a name of lights/layouts."""
     limits: Limits = DEFAULT_LIMITS
+    convention: str = ""
+    """Of coefficient files that do not say theirs: a text for parse_convention (harmonics/conventions/programs.py)."""
     isolated: bool = field(default=False, compare=False)
     """Decode OpenEXR files in a child process, which a broken file may kill without harm. It changes no value."""
 
@@ -90,14 +92,14 @@ def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: s
     layer: of an OpenEXR file, such as "diffuse"; "" for the plain or only one.
     Raises LightError, one line with file, finding, rule and next step, for whatever is wrong with the file.
     """
-    with _naming(str(path)):
-        data = _read_bytes(path, reading.limits)
+    with naming(str(path)):
+        data = read_bytes(path, reading.limits)
     return decode_radiance_image(data, str(path), reading, layer)
 
 
 def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
     """`read_radiance_image` of a file that is in memory already; `name` is the path it has or might have."""
-    with _naming(name):
+    with naming(name):
         decode = _decoder(data, Path(name).suffix.lower())
         if reading.isolated and decode is decode_openexr:
             decode = decode_isolated
@@ -107,7 +109,7 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
 
 
 @contextlib.contextmanager
-def _naming(name: str) -> Iterator[None]:
+def naming(name: str) -> Iterator[None]:
     """Errors begin with the name; quoted and escaped if it holds a line break or bytes that are no text."""
     shown = name if name.isprintable() else ascii(name)
     try:
@@ -118,7 +120,7 @@ def _naming(name: str) -> Iterator[None]:
         raise LightError(f"{shown}: not enough memory to decode it; close something or make it smaller") from None
 
 
-def _read_bytes(path: Path, limits: Limits) -> bytes:
+def read_bytes(path: Path, limits: Limits) -> bytes:
     """The whole file, read once. Looks before it opens, so that no pipe or device can block or be disturbed."""
     try:
         _check_is_small_file(os.stat(path), limits)

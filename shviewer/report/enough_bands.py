@@ -40,7 +40,7 @@ def where_bands_stop_paying(rows: Sequence[Measurement]) -> str:
 def _direct_sum(direct: list[Measurement]) -> list[str]:
     """Up to where the direct sum pays."""
     steps = list(pairwise(direct))
-    paying = [_number(a.total_error) / _number(b.total_error) > _slowdown(a, b) for a, b in steps]
+    paying = [_number(a.total_error) > _slowdown(a, b) * _number(b.total_error) for a, b in steps]
     stop = max((number + 1 for number, pays in enumerate(paying) if pays), default=0)
     if stop == len(steps):
         return [f"summed in the shader they pay up to {_bands(direct[-1])}, {direct[-1].milliseconds:.0f} ms a frame"]
@@ -48,7 +48,7 @@ def _direct_sum(direct: list[Measurement]) -> list[str]:
     return [
         f"summed in the shader they stop paying at {_bands(here)}: {after.n_bands} take "
         f"{_number(after.milliseconds) / _number(here.milliseconds):.2f} times as long and leave "
-        f"{_number(after.total_error) / _number(here.total_error):.2f} of the error"
+        f"{_number(after.total_error) / max(_number(here.total_error), PARSEVAL_FLOOR):.2f} of the error"
     ]
 
 

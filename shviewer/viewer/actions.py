@@ -36,7 +36,10 @@ def more_bands(count: int) -> Action:
 
 def with_bands(state: ViewState, n_bands: int) -> ViewState:
     """So many bands, as far as they can be shown; a basis function above them is left."""
-    n_bands = min(max(n_bands, 1), MAX_SHOWN_BANDS)
+    most = min(state.compare.n_bands, MAX_SHOWN_BANDS) if state.compare else MAX_SHOWN_BANDS
+    if state.compare and n_bands > most:
+        state = replace(state, message=state.compare.extent)
+    n_bands = min(max(n_bands, 1), most)
     basis = state.basis if state.basis is not None and state.basis[0] < n_bands else None
     return replace(state, n_bands=n_bands, cursor=min(state.cursor, n_bands - 1), basis=basis, sweep_to=None)
 
@@ -104,6 +107,8 @@ def toggle_split(state: ViewState) -> ViewState:
 
 
 def next_method(state: ViewState) -> ViewState:
+    if state.compare:
+        return replace(state, message=f"the coefficients are those of {state.compare.name}, and no method's")
     return replace(state, method=_after(state.method, METHODS))
 
 
@@ -171,8 +176,9 @@ def step_sweep(state: ViewState) -> ViewState:
     """One band more; the last one ends the sweep."""
     if state.sweep_to is None:
         return state
-    stepped = replace(with_bands(state, state.n_bands + 1), sweep_to=state.sweep_to, message="")
-    return stepped if stepped.n_bands < state.sweep_to else replace(stepped, sweep_to=None)
+    stepped = with_bands(replace(state, message=""), state.n_bands + 1)
+    going_on = state.n_bands < stepped.n_bands < state.sweep_to
+    return replace(stepped, sweep_to=state.sweep_to if going_on else None)
 
 
 def reset(state: ViewState) -> ViewState:
@@ -181,6 +187,7 @@ def reset(state: ViewState) -> ViewState:
         lights=state.lights,
         light_index=state.light_index,
         reading=state.reading,
+        compare=state.compare,
         reloads=state.reloads,
         fullscreen=state.fullscreen,
         screenshots=state.screenshots,

@@ -35,6 +35,7 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
+from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light, built_in_lights, find_light
 from shviewer.lights.sun import Split, Sun, split_suns
@@ -130,8 +131,18 @@ class Figures:
         return self.channels["all"].relative_l2
 
 
-def sampling_of(state: ViewState) -> tuple[str, int, int]:
-    """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them."""
+def sampling_of(state: ViewState) -> tuple[str | CoefficientLight, int, int]:
+    """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them.
+
+    Coefficients that are given are a method, too: that of the file they come from.
+    """
+    return way_of(state) if state.compare is None else (state.compare, 0, 0)
+
+
+def way_of(state: ViewState) -> tuple[str, int, int]:
+    """The same by name; coefficients that are given are no way to project, and nothing is measured of them."""
+    if state.compare is not None:
+        return "given", 0, 0
     return BEST if state.method == "best" else (state.method, state.samples, state.seed)
 
 
@@ -230,8 +241,13 @@ def estimate_from_samples(state: ViewState) -> SampleEstimate:
     return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
 
 
-def project(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project a light; the irradiance of a sampled light comes from the samples of the light itself."""
+def project(light: Light, method: str | CoefficientLight, samples: int, seed: int, n_bands: int) -> Projection:
+    """Project a light; the irradiance of a sampled light comes from the samples of the light itself.
+
+    method: "best", "jittered" or "gauss-legendre"; or given coefficients, which are taken instead.
+    """
+    if isinstance(method, CoefficientLight):
+        return _given_projection(light, method, n_bands)
     found = _measured_projection(light, method, samples, seed, n_bands)
     _known(light, n_bands).move_to_end((method, samples, seed))
     return found
@@ -264,6 +280,14 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
         known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
     if len(known) > MOST_MEASUREMENTS:
         known.popitem(last=False)
+
+
+@remember(most=8)
+def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Projection:
+    coefficients = given.coefficients(n_bands)
+    if isinstance(light, IrradianceLight):
+        coefficients = coefficients * per_coefficient(irradiance_factors(n_bands))
+    return Projection(coefficients, f"read as {given.convention}", None, 0.0)
 
 
 @remember(most=16)
@@ -314,7 +338,7 @@ def _irradiance(light: Light) -> Light:
 
 
 @remember(most=16)
-def errors_of(light: Light, method: str, samples: int, seed: int) -> Array:
+def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
     """The relative L2 error for every band count that is searched, (MAX_SHOWN_BANDS,) or (MAX_DIRECT_BANDS,) of samples."""
     exact = project(light, *BEST, MAX_SHOWN_BANDS).coefficients
     n_bands = MAX_SHOWN_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
@@ -375,4 +399,4 @@ def grid_rows(n_bands: int) -> int:
 @remember(most=8)
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
-    return ErrorGrid(light.radiance, light.landmarks(), rows)
+    return ErrorGrid(light.radiance, light.landmarks(), rows, getattr(light, "on_rows", None))

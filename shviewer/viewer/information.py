@@ -15,6 +15,11 @@ from shviewer.lights.light import IMAGE_SUFFIXES, Light, split_light
 from shviewer.lights.radiance_files import Reading
 from shviewer.lights.sun import Sun
 from shviewer.viewer.analysis import error_grid, grid_rows, load_light, needs, subject
+from shviewer.viewer.coefficient_information import (
+    CoefficientInformation,
+    coefficient_rows,
+    describe_coefficients,
+)
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.watching import stamp
@@ -111,6 +116,8 @@ class Information:
     """What --split-sun takes out, the greatest flux first."""
     bands_needed_without_suns: tuple[BandsNeeded, ...]
     """By the rest; none if there are no suns."""
+    coefficients: CoefficientInformation | None = None
+    """Of a coefficient file, its convention and where it comes from."""
 
 
 def describe(text: str, reading: Reading) -> Information:
@@ -141,6 +148,8 @@ def as_text(information: Information) -> str:
         rows.append(("encoding", information.encoding))
     if size and information.layout:
         rows.append(("layout", f"{information.layout}, {size[0]} x {size[1]}"))
+    if information.coefficients:
+        rows += coefficient_rows(information.coefficients)
     if information.refused:
         rows += [("refused", information.refused), ("", "what follows is said of the image as --sanitize repairs it")]
     rows += [("note", note) for note in information.notes]
@@ -199,6 +208,7 @@ def _describe(text: str, reading: Reading) -> Information:
         bands_needed=_needed(state),
         suns=tuple(_sun(sun, total) for sun in split.suns),
         bands_needed_without_suns=_needed(replace(state, split_sun=True)) if split.suns else (),
+        coefficients=describe_coefficients(light),
     )
 
 

@@ -17,6 +17,7 @@ from shviewer.harmonics.basis import index
 from shviewer.harmonics.extremes import LUMINANCE
 from shviewer.viewer.band_axis import band_slots, band_step
 from shviewer.viewer.colour_bar import draw_colour_bar
+from shviewer.viewer.comparison import caption
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.convergence import Convergence, draw_convergence
 from shviewer.viewer.help_sheet import draw_help
@@ -143,7 +144,7 @@ class _Painter:
         left, right = (sphere.x for sphere in at.spheres[:2])
         muted = describe_muted(state)
         plural = "s" if state.n_bands > 1 else ""
-        bands = f"{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
+        bands = f"{caption(state)}{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
         original = "Original" if state.quantity == "radiance" else "Irradiance"
         if picture.surfaces and picture.surfaces[0].clipped:
             original = f"{original}, cut at the circle"
@@ -168,8 +169,8 @@ class _Painter:
         far, below = at.width - at.margin, y + at.px(20)
         if state.error != "off":
             error = at.spheres[-1]
-            caption = "Error" if state.lobe_view else f"{state.error.capitalize()} error"
-            self.text("error", error.x, error.caption_y, caption, 17, INK, "mm")
+            kind = "Error" if state.lobe_view else f"{state.error.capitalize()} error"
+            self.text("error", error.x, error.caption_y, kind, 17, INK, "mm")
         names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
         words, said = describe_light(picture), False
         if any(self.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):
@@ -277,7 +278,7 @@ class _Painter:
         """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
         at, state = self.at, picture.state
         y = at.hairline_y + at.px(104)
-        message = state.message or remark or picture.subject.refusal.partition(";")[0]
+        message = state.message or remark or picture.suspicion or picture.subject.refusal.partition(";")[0]
         if message:
             face = self.face(13)
             text = message

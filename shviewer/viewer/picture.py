@@ -31,6 +31,7 @@ from shviewer.viewer.analysis import (
     sampling_of,
     subject,
 )
+from shviewer.viewer.comparison import suspicion
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.error_view import ERRORS, ErrorScale, automatic_range, error_values
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS, map_size
@@ -103,6 +104,8 @@ class Picture:
     needs: Needs
     needs_unsplit: Needs | None
     """What the light would need with its suns; None if none were split off."""
+    suspicion: str = ""
+    """What is wrong with coefficients that are compared and do not fit."""
 
     @property
     def light(self) -> Light:
@@ -156,6 +159,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         figures=figures,
         needs=needs(state),
         needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
+        suspicion=suspicion(light, state.compare) if state.compare else "",
     )
 
 

@@ -42,6 +42,8 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
         "bands": state.n_bands,
         "muted": list(state.muted_shown),
         "quantity": state.quantity,
+        "compare": state.compare and {"name": state.compare.name, "convention": state.compare.convention},
+        "suspicion": picture.suspicion,
         "split_sun": state.split_sun,
         "suns": [_described(sun) for sun in picture.subject.suns],
         "window": state.window,

@@ -14,7 +14,7 @@ from itertools import pairwise
 from PIL import Image
 
 from shviewer.harmonics.metrics import pareto_front
-from shviewer.viewer.analysis import BEST, Measurement, measurements, sampling_of
+from shviewer.viewer.analysis import BEST, Measurement, measurements, way_of
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.lettering import (
     ACCENT,
@@ -108,7 +108,7 @@ class _Drawing:
         }
         keys = list(places)
         best = pareto_front([(self.times[key], self.errors[key]) for key in keys])
-        present = sampling_of(picture.state)
+        present = way_of(picture.state)
         front = [keys[i] for i in best]
         self.plane = Plane(box, milliseconds, error, floor, present, places, front, sheet.boxes)
 

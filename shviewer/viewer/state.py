@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.layouts.recognise import LAYOUTS
 from shviewer.lights.light import Light
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading
@@ -36,6 +37,8 @@ class ViewState:
     cursor: int = 0
     cursor_visible: bool = False
     quantity: str = "radiance"
+    compare: CoefficientLight | None = None
+    """Given coefficients, shown instead of the light's own; no more bands than they have are shown."""
     split_sun: bool = False
     """Take compact sources out of the light as discs, where it has any, and project the rest."""
     window: str = "none"

@@ -117,7 +117,11 @@ def test_missing_and_damaged_files_are_one_line(tmp_path):
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("picture.tif", "a file must end in .toml, .hdr, .pic, .rgbe, .exr, .png, .jpg or .jpeg: convert it"),
+        (
+            "picture.tif",
+            "a file must end in .toml, .hdr, .pic, .rgbe, .exr, .png, .jpg, .jpeg, .json, .csv, .txt, .h, .glsl, .npz or .npy:"
+            " convert it",
+        ),
         ("light.py", "a Python file; name a function in it, such as light.py:light"),
         ("folder", "a directory; name one file in it"),
     ],

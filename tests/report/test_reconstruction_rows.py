@@ -159,3 +159,11 @@ def test_without_opengl_the_sentence_is_about_the_map(green: Subject) -> None:
     rows = reconstruction_rows(green, NO_OPENGL, budget=0, bands=(1, 5), at_least=1)
     assert "up to the 5 measured, where 28 % is left out" in where_bands_stop_paying(rows)
     assert where_bands_stop_paying([]) == ""
+
+
+def test_a_light_that_its_bands_hold_whole_has_no_error_to_divide_by() -> None:
+    """Coefficients as a light: from their own number of bands on nothing is left out."""
+    text = where_bands_stop_paying(made_up([0.5, 0.0, 0.0], [20, 21, 22], [23, 23, 23], arithmetic=0.0))
+    assert "more than 2 bands bring nothing" in text
+    assert "stop paying at 2 bands" in text
+    assert where_bands_stop_paying(made_up([0.0, 0.0, 0.0], [20, 21, 22], [23, 23, 23], arithmetic=0.0))

@@ -12,6 +12,7 @@ import pytest
 from lights.hdr_files import exr_file, hdr_file, radiance_of, random_texels
 from numpy.typing import NDArray
 
+import shviewer
 from shviewer.errors import LightError
 from shviewer.lights.light import built_in_lights
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading
@@ -229,3 +230,36 @@ def test_the_json_says_what_the_text_says(tmp_path: Path, pixels: Pixels) -> Non
     assert said["size"] == [64, 32]
     assert [need["tolerance"] for need in said["bands_needed"]] == [0.1, 0.05, 0.01]
     assert set(said) == set(asdict(found))
+
+
+# --- coefficient files
+
+
+def test_a_coefficient_file_is_described_with_its_convention_and_where_it_comes_from(tmp_path: Path) -> None:
+    shviewer.project("green", 4, window="hann", method="jittered", samples=64).save(tmp_path / "g.csv", "ambix,y-up")
+    found = describe(str(tmp_path / "g.csv"), Reading())
+    assert found.coefficients is not None
+    said = found.coefficients
+    assert (said.bands, said.quantity, said.convention, said.stamped) == (4, "radiance", "ambix,y-up", True)
+    assert said.axes == "x y z are our +x +z -y; y up, right-handed"
+    text = as_text(found)
+    for line in (
+        "  coefficients      4 bands, 16 rows, radiance",
+        "  convention        ambix,y-up (ambiX (ACN, SN3D)), as the file says",
+        "no Condon-Shortley phase; index l(l+1) + m",
+        "  origin            green (two soft lobes (Green 2003)), jittered, samples 64, seed 0, window hann of 4 bands, ",
+        "  figures there     relative L2 error ",
+    ):
+        assert line in text
+    assert [need.radiance for need in found.bands_needed] == [4, 4, 4]
+    assert json.loads(json.dumps(as_json_object(found)))["coefficients"]["stamp"]["light"] == "green"
+
+
+def test_a_bare_list_is_described_as_what_it_was_said_to_be(tmp_path: Path) -> None:
+    (tmp_path / "sh.txt").write_text("1 2 3  0 0 0  0.5 0.5 0.5  0 0 0")
+    found = describe(str(tmp_path / "sh.txt"), Reading(convention="filament"))
+    text = as_text(found)
+    assert "as named on the command line; the file does not say" in text
+    assert "  coefficients      2 bands, 4 rows, irradiance over pi" in text
+    assert "origin" not in text
+    assert describe("cosine", Reading()).coefficients is None

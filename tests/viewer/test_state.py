@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.radiance_files import Reading
 from shviewer.viewer import camera
@@ -188,6 +189,9 @@ def test_exposure_goes_by_half_stops_and_n_makes_it_automatic() -> None:
     assert (again.exposure_stops, again.exposure_offset) == (None, 0.0)
 
 
+GIVEN = CoefficientLight(np.ones((4, 3)))
+
+
 def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
     changed = ViewState(
         lights=LIGHTS,
@@ -198,6 +202,7 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         cursor=3,
         cursor_visible=True,
         quantity="irradiance",
+        compare=GIVEN,
         split_sun=True,
         window="hann",
         window_width=3.0,
@@ -229,8 +234,8 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
     )
     assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
     after = press(changed, "R")
-    kept = {"light_index": 2, "reading": Reading(sanitize=True), "tolerance": 0.1, "evaluate": "map", "reloads": 5}
-    assert after == ViewState(lights=LIGHTS, **kept)  # type: ignore[arg-type]
+    kept = {"light_index": 2, "reading": Reading(sanitize=True), "compare": GIVEN, "tolerance": 0.1, "evaluate": "map"}
+    assert after == ViewState(lights=LIGHTS, reloads=5, **kept)  # type: ignore[arg-type]
     assert after.fullscreen
     assert after.screenshots == 3
     assert after.layout_tried == "cube"

@@ -1,0 +1,193 @@
+"""`shviewer project`: one light into one file or onto stdout, or many into a folder, where one that fails stops no other."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from shviewer.errors import OutputError, ShviewerError, UsageError
+from shviewer.exchange.projected import Projected, project_state
+from shviewer.exchange.writing import FORMATS, encode
+from shviewer.harmonics.conventions.convention import OVER_PI, Convention
+from shviewer.harmonics.conventions.programs import parse_convention
+from shviewer.lights.light import split_light
+from shviewer.viewer.analysis import subject
+from shviewer.viewer.picture_files import write_atomically
+from shviewer.viewer.state import ViewState
+
+STDOUT = "-"
+BATCH_FAILED = 1
+
+StateOf = Callable[[str], ViewState]
+"""The state that the options ask for, of one LIGHT. It raises what reading the light raises."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Of the summary: what became of one light."""
+
+    light: str
+    file: str
+    projected: Projected | None = None
+    error: str = ""
+
+
+def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
+    """What --convention, --axes, --no-phase and --for ask for together. UsageError if they contradict each other."""
+    try:
+        convention = parse_convention(",".join([text, *([axes] if axes else []), *(["no-phase"] if no_phase else [])]))
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    held = "irradiance" if convention.quantity == OVER_PI else convention.quantity
+    if held is not None and quantity not in (None, held):
+        raise UsageError(f"--for {quantity} contradicts --convention {text}, which takes {convention.quantity}")
+    return convention
+
+
+def project_lights(
+    lights: Sequence[str],
+    out: str,
+    kind: str | None,
+    convention: Convention,
+    state_of: StateOf,
+    status: Callable[[str], None] | None = None,
+) -> int:
+    """Project and write; the exit code. status: shows what is at work, "" clears it.
+
+    One light: `out` is a file, a folder that exists, or "-". Several: `out` is a folder, made if need be; the code is
+    BATCH_FAILED if any of them failed. ShviewerError for one light that fails, or arguments that fit no light.
+    """
+    if kind is not None and kind not in FORMATS:
+        raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
+    if len(lights) > 1:
+        return _batch(lights, out, kind or "json", convention, state_of, status)
+    (light,) = lights
+    if out == STDOUT:
+        if kind is None:
+            raise UsageError(f"-o -: stdout has no suffix to go by; name a format: --format {', '.join(FORMATS)}")
+        data = encode(_noted(light, state_of), convention, kind)
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+        return 0
+    path = Path(out)
+    if path.is_dir():
+        projected = _noted(light, state_of)
+        path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
+    else:
+        kind = _kind_of(path, kind)
+        _check_is_not_read(path, light)
+        projected = _noted(light, state_of)
+    write_atomically(path, encode(projected, convention, kind or "json"))
+    print(f"wrote {path}: {_bands(projected)}, relative L2 error {_percent(projected)}")
+    return 0
+
+
+def _batch(
+    lights: Sequence[str],
+    out: str,
+    kind: str,
+    convention: Convention,
+    state_of: StateOf,
+    status: Callable[[str], None] | None,
+) -> int:
+    folder = Path(out)
+    if out == STDOUT or folder.suffix[1:] in FORMATS:
+        raise UsageError(f"-o {out}: {len(lights)} lights are written into a folder, one file each; name a folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: no folder can be made: {error.strerror}; choose another place") from error
+    rows: list[Row] = []
+    for number, light in enumerate(lights):
+        if status:
+            filled = round(24 * number / len(lights))
+            status(f"[{'#' * filled}{'.' * (24 - filled)}] {number + 1} of {len(lights)}  {light[:60]}")
+        rows.append(_one_of_many(light, folder, kind, convention, state_of, {row.file for row in rows}))
+        if rows[-1].error:
+            if status:
+                status("")
+            print(f"shviewer: {rows[-1].error}", file=sys.stderr)
+    if status:
+        status("")
+    print(summary(rows))
+    return BATCH_FAILED if any(row.error for row in rows) else 0
+
+
+def _one_of_many(
+    light: str, folder: Path, kind: str, convention: Convention, state_of: StateOf, taken: set[str]
+) -> Row:
+    """One light of a batch, written under a name of its own."""
+    try:
+        projected = _noted(light, state_of)
+        stem = file_stem(projected.name)
+        names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
+        path = next(folder / name for name in names if str(folder / name) not in taken)
+        _check_is_not_read(path, light)
+        write_atomically(path, encode(projected, convention, kind))
+    except ShviewerError as error:
+        return Row(light, "", error=str(error))
+    return Row(light, str(path), projected)
+
+
+def _noted(light: str, state_of: StateOf) -> Projected:
+    """Projected; what was done to the light, and why no sun was split off, is said on stderr."""
+    state = state_of(light)
+    projected = project_state(state)
+    shown = subject(state)
+    for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else [])):
+        print(f"shviewer: note: {shown.light.name}: {note}", file=sys.stderr)
+    return projected
+
+
+def _kind_of(path: Path, kind: str | None) -> str:
+    """By the suffix, which must not contradict `kind`."""
+    suffix = path.suffix.lower()[1:]
+    if kind is None and suffix not in FORMATS:
+        raise UsageError(f"{path}: FILE must end in .{', .'.join(FORMATS)}, or name a format: --format json")
+    if kind is not None and suffix in FORMATS and suffix != kind:
+        raise UsageError(f"{path} and --format {kind} contradict each other; leave out --format")
+    return kind or suffix
+
+
+def _check_is_not_read(path: Path, light: str) -> None:
+    source = split_light(light)[0]
+    try:
+        same = path.exists() and source.exists() and path.samefile(source)
+    except OSError:
+        same = False
+    if same:
+        raise UsageError(f"{path}: the light is read from this file; write another one")
+
+
+def file_stem(name: str) -> str:
+    """What a light is called, fit for a file's name everywhere."""
+    return re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "light"
+
+
+def summary(rows: Sequence[Row]) -> str:
+    """A table: light, bands, errors as radiance or irradiance of what was projected, and the file."""
+    width = max(len("light"), *(min(len(row.light), 40) for row in rows))
+    lines = [f"{'light':<{width}}  bands  relative L2     minimum  file"]
+    for row in rows:
+        label = row.light if len(row.light) <= 40 else f"...{row.light[-37:]}"
+        if row.projected is None:
+            lines.append(f"{label:<{width}}  failed")
+            continue
+        figures = row.projected.figures
+        numbers = f"{row.projected.n_bands:>5}  {_percent(row.projected):>11}  {figures.extremes.minimum:>10.4g}"
+        lines.append(f"{label:<{width}}  {numbers}  {row.file}")
+    failed = sum(1 for row in rows if row.error)
+    return "\n".join([*lines, f"{len(rows) - failed} of {len(rows)} written"])
+
+
+def _bands(projected: Projected) -> str:
+    return f"{projected.n_bands} band{'s' if projected.n_bands > 1 else ''}"
+
+
+def _percent(projected: Projected) -> str:
+    """The relative L2 error, or the floor below which it cannot be told from rounding."""
+    error, floor = projected.figures.relative_l2, projected.figures.floor
+    return f"{100 * error:.3g} %" if error >= floor else f"< {100 * floor:.0e} %"

@@ -1,0 +1,178 @@
+"""The functions of `import shviewer`, each of which does what the command of its name does.
+
+A light is what `find_light` takes: a text that the command line would take for LIGHT, a path, a function of directions, an
+array, or a Light. `options` are those of the window, by their names in ViewState:
+
+    quantity        "radiance" (default) or "irradiance"
+    window          "none", "hann", "lanczos", "gauss" or "dering"; window_width in bands, as many as are shown unless given
+    muted           bands to leave out
+    method          "best" (default, the light's own), "jittered" or "gauss-legendre", with `samples` and `seed`
+    split_sun       take suns out of the light
+    exposure_stops  fixed, instead of chosen from the light
+    camera          azimuth and elevation, degrees
+    zoom            0.25 to 16
+
+ShviewerError, with one line that says what to do, where an argument is out of range or a light is bad.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from shviewer.errors import UsageError
+from shviewer.exchange.projected import Projected, project_state
+from shviewer.harmonics.basis import count_bands
+from shviewer.lights import light as lights
+from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.function import FunctionLight
+from shviewer.lights.light import Light
+from shviewer.lights.radiance_files import Reading
+from shviewer.viewer.picture import check, prepare
+from shviewer.viewer.state import ViewState
+
+if TYPE_CHECKING:
+    from shviewer.report.run import Summary
+
+LightLike: TypeAlias = str | os.PathLike[str] | Light | Callable[[Any], ArrayLike] | NDArray[np.generic]
+
+OPTIONS = frozenset(
+    (
+        "quantity",
+        "window",
+        "window_width",
+        "muted",
+        "method",
+        "samples",
+        "seed",
+        "split_sun",
+        "exposure_stops",
+        "camera",
+        "zoom",
+    )
+)
+
+
+def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False, layout: str = "auto") -> Light:
+    """The light that `what` is.
+
+    A text or a path is read as on the command line. A function takes unit directions (k, 3) and returns radiance (k, 3), or
+    (k,) for grey, linear RGB. An array (n**2, 3) is coefficients in our convention, one of (height, width, 3) a lat-long image
+    of linear radiance with +z on top and +x in the middle.
+    convention: of a file that does not say its own, such as "three"; sanitize, layout: of an image.
+    LightError if there is no such light or its file is bad.
+    """
+    if isinstance(what, str | os.PathLike):
+        return lights.find_light(os.fspath(what), Reading(sanitize=sanitize, layout=layout, convention=convention))
+    if isinstance(what, np.ndarray):
+        return _array_light(what)
+    if hasattr(what, "integrand"):
+        return cast(Light, what)
+    if callable(what):
+        return FunctionLight(what, getattr(what, "__name__", "function"))
+    raise UsageError(f"a light of type {type(what).__name__}: give a name, a path, a function, an array or a Light")
+
+
+def _array_light(array: NDArray[np.generic]) -> Light:
+    if not np.isfinite(array).all():
+        raise UsageError("an array with NaN or infinite values is no light; radiance and coefficients are finite")
+    if array.ndim == 3 and array.shape[2] == 3 and array.size:
+        return EnvironmentLight(np.ascontiguousarray(array, dtype=np.float32))
+    if array.ndim == 2 and array.shape[1] == 3 and not np.iscomplexobj(array):
+        try:
+            count_bands(array)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+        return CoefficientLight(np.array(array, dtype=np.float64))
+    raise UsageError(
+        f"an array of shape {array.shape}: coefficients are (n**2, 3), a lat-long image is (height, width, 3)"
+    )
+
+
+def _state(light: LightLike, bands: int | None, options: dict[str, Any]) -> ViewState:
+    """The state of the window with these options. UsageError for an unknown one."""
+    if unknown := sorted(set(options) - OPTIONS):
+        raise UsageError(
+            f"option {unknown[0]!r}: there is {', '.join(field.name for field in fields(ViewState) if field.name in OPTIONS)}"
+        )
+    if "muted" in options:
+        options = {**options, "muted": frozenset(cast(Iterable[int], options["muted"]))}
+    found = find_light(light)
+    if bands is None:
+        bands = found.n_bands if isinstance(found, CoefficientLight) else ViewState.n_bands
+    state = ViewState(lights=(found,), n_bands=bands, **options)
+    check(state)
+    return state
+
+
+def project(light: LightLike, bands: int | None = None, **options: Any) -> Projected:
+    """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
+
+    `Projected.coefficients` is (bands**2, 3) float64 in the convention of harmonics/basis.py, row l(l+1) + m; `save` writes a
+    file and `numbers` converts, both for other programs, too. options: see above.
+    """
+    return project_state(_state(light, bands, options))
+
+
+def screenshot(
+    light: LightLike,
+    bands: int | None = None,
+    *,
+    size: tuple[int, int] = (1280, 640),
+    overlay: bool = True,
+    **options: Any,
+) -> NDArray[np.uint8]:
+    """The picture of both spheres: (height, width, 3) uint8, sRGB, top row first. size: width and height in pixels.
+
+    overlay: with captions and figures. GraphicsError where there is no OpenGL 3.3. options: see above.
+    """
+    from shviewer.viewer.composition import compose
+    from shviewer.viewer.screenshot import headless_renderer, render_rgb
+
+    state = _state(light, bands, options)
+    check(state, size)
+    picture = prepare(state)
+    with headless_renderer() as renderer:
+        return render_rgb(renderer, picture, compose(*size, state.zoom), overlay=overlay)
+
+
+def view(
+    light: LightLike = "green", bands: int | None = None, *, size: tuple[int, int] = (1280, 640), **options: Any
+) -> None:
+    """Open the window and stay until it is closed. size: width and height in screen coordinates.
+
+    NoDisplayError without a display, GraphicsError without OpenGL 3.3. options: see above.
+    """
+    from shviewer.viewer import window
+
+    state = _state(light, bands, options)
+    check(state, size)
+    window.run(state, size)
+
+
+def report(
+    of: LightLike | Iterable[LightLike] = (),
+    folder: str | os.PathLike[str] = "shviewer-report",
+    *,
+    quick: bool = False,
+    budget: float | None = None,
+) -> Summary:
+    """Measure speed against error on this machine and write report.md, .json, .csv and plots into `folder`.
+
+    of: a light or several; none for the built-in choice. budget: seconds of measuring, 120 unless given; quick: 15 s in all.
+    OutputError if nothing can be written there.
+    """
+    from shviewer.report.options import DEFAULT_BUDGET, Options
+    from shviewer.report.run import write_report
+
+    several = isinstance(of, Iterable) and not isinstance(of, str | os.PathLike | np.ndarray)
+    chosen = [find_light(one) for one in (cast(Iterable[LightLike], of) if several else [cast(LightLike, of)])]
+    wanted = Options(budget=DEFAULT_BUDGET if budget is None else budget, quick=quick, command="shviewer.report(...)")
+    return write_report(chosen, Path(folder), wanted)

@@ -1,0 +1,243 @@
+"""`shviewer project` from the command line to the files."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from shviewer.cli import main
+from shviewer.exchange.command import project_lights
+from shviewer.harmonics.conventions.programs import CONVENTIONS
+from shviewer.harmonics.metrics import errors_by_band_count
+from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.light import find_light
+from shviewer.viewer.state import ViewState
+
+Capture = pytest.CaptureFixture[str]
+
+
+def project(*arguments: object) -> int:
+    return main(["project", *map(str, arguments)])
+
+
+def held(path: Path) -> CoefficientLight:
+    light = find_light(str(path))
+    assert isinstance(light, CoefficientLight)
+    return light
+
+
+def test_the_file_holds_the_light_and_says_everything_about_it(tmp_path: Path) -> None:
+    out = tmp_path / "green.json"
+    assert project("-o", out) == 0
+    said = json.loads(out.read_text())
+    green = find_light("green")
+    np.testing.assert_array_equal(said["coefficients"], green.coefficients(5))
+    assert said["shviewer-coefficients"] == 1
+    words = {key: said[key] for key in ("basis", "phase", "index", "axes", "normalisation", "one-over-pi")}
+    assert words == {
+        "basis": "orthonormal real spherical harmonics",
+        "phase": "Condon-Shortley phase kept",
+        "index": "l(l+1) + m",
+        "axes": "x y z are our +x +y +z; z up, right-handed",
+        "normalisation": "orthonormal",
+        "one-over-pi": "not divided by pi",
+    }
+    exact = green.coefficients(5)
+    assert said["relative-l2"] == pytest.approx(errors_by_band_count(green.products(), exact, exact)[-1], rel=1e-12)
+    assert (said["light"], said["quantity"], said["window"], said["muted"], said["method"]) == (
+        "green",
+        "radiance",
+        "none",
+        "none",
+        "closed form",
+    )
+    assert "samples" not in said
+    assert "seed" not in said
+
+
+def test_window_mutes_method_samples_and_seed_are_applied_and_said(tmp_path: Path) -> None:
+    out = tmp_path / "green.csv"
+    options = [
+        "--bands",
+        6,
+        "--window",
+        "hann",
+        "--mute",
+        "1,3",
+        "--method",
+        "jittered",
+        "--samples",
+        1024,
+        "--seed",
+        7,
+    ]
+    assert project("green", "-o", out, *options) == 0
+    text = out.read_text()
+    for line in ("window: hann of 6 bands", "muted: 1 3", "method: jittered", "samples: 1024", "seed: 7", "bands: 6"):
+        assert f"# {line}\n" in text
+    rows = held(out).coefficients(6)
+    assert not rows[1:4].any()
+    assert not rows[9:16].any()
+    assert rows[0].any()
+    first = text
+    assert project("green", "-o", out, *options) == 0
+    assert out.read_text() == first  # nothing depends on the clock
+
+
+def test_a_program_gets_what_it_takes_without_being_asked_for_it(tmp_path: Path) -> None:
+    assert project("venice_sunset", "--convention", "filament", "-o", tmp_path / "sh.glsl") == 0
+    text = (tmp_path / "sh.glsl").read_text()
+    assert "// quantity: irradiance-over-pi\n" in text
+    assert "// bands: 3\n" in text
+    assert "vec3 sh_venice_sunset_irradiance_over_pi(vec3 direction)" in text
+    mean = find_light("venice_sunset").coefficients(1)[0] / (2 * np.sqrt(np.pi))
+    assert held(tmp_path / "sh.glsl").file is not None
+    np.testing.assert_allclose(held(tmp_path / "sh.glsl").file.numbers[0], mean, rtol=1e-12)  # type: ignore[union-attr]
+
+
+def test_axes_and_phase_are_options_and_axes_may_begin_with_a_minus(tmp_path: Path) -> None:
+    assert project("-o", tmp_path / "a.json", "--axes", "y-up", "--no-phase") == 0
+    assert json.loads((tmp_path / "a.json").read_text())["convention"] == "shviewer,y-up,no-phase"
+    assert project("-o", tmp_path / "b.json", "--axes=-y+x+z") == 0
+    assert json.loads((tmp_path / "b.json").read_text())["axes"] == "x y z are our -y +x +z; z up, right-handed"
+    for name in "ab":
+        np.testing.assert_allclose(
+            held(tmp_path / f"{name}.json").given, find_light("green").coefficients(5), rtol=0, atol=1e-14
+        )
+
+
+def test_a_coefficient_file_is_converted_with_all_its_bands_and_its_own_quantity(tmp_path: Path) -> None:
+    assert project("studio", "--bands", 7, "--for", "irradiance", "-o", tmp_path / "a.json") == 0
+    assert project(tmp_path / "a.json", "--convention", "sphericart", "-o", tmp_path / "b.csv") == 0
+    first, second = json.loads((tmp_path / "a.json").read_text()), (tmp_path / "b.csv").read_text()
+    assert "# bands: 7\n" in second
+    assert "# quantity: irradiance\n" in second
+    assert held(tmp_path / "b.csv").file is not None
+    np.testing.assert_allclose(held(tmp_path / "b.csv").file.coefficients, first["coefficients"], rtol=0, atol=1e-13)  # type: ignore[union-attr]
+
+
+def test_a_bare_list_is_converted_when_its_convention_is_named(tmp_path: Path) -> None:
+    """What filament's list is in one direction, Unity's is in the same one, each in its own axes."""
+    filament = np.random.default_rng(0).normal(size=(9, 3))
+    (tmp_path / "sh.txt").write_text("\n".join(f"({r!r}, {g!r}, {b!r}); // L" for r, g, b in filament.tolist()))
+    conventions = ["--input-convention", "filament", "--convention", "unity"]
+    assert project(tmp_path / "sh.txt", *conventions, "-o", tmp_path / "u.json") == 0
+    unity = np.array(json.loads((tmp_path / "u.json").read_text())["coefficients"])
+    ours = np.array([0.6, 0.48, 0.64])
+
+    def polynomials(x: float, y: float, z: float) -> list[float]:
+        return [1, y, z, x, x * y, y * z, 3 * z * z - 1, x * z, x * x - y * y]
+
+    wanted = polynomials(*ours[[1, 2, 0]]) @ filament
+    np.testing.assert_allclose(polynomials(*ours[[0, 2, 1]]) @ unity, wanted, rtol=0, atol=1e-13)
+
+
+def test_stdout_holds_the_file_and_nothing_else(capsysbinary: pytest.CaptureFixture[bytes]) -> None:
+    assert project("-o", "-", "--format", "json") == 0
+    assert json.loads(capsysbinary.readouterr().out)["light"] == "green"
+
+
+def test_of_several_lights_every_one_that_can_be_is_written(tmp_path: Path, capsys: Capture) -> None:
+    (tmp_path / "green.toml").write_text((Path(__file__).parents[2] / "assets/scenes/studio.toml").read_text())
+    (tmp_path / "broken.csv").write_text("red,green\n1,2\n")
+    out = tmp_path / "new" / "folder"
+    lights = ["green", tmp_path / "green.toml", "nothing", tmp_path / "broken.csv", "cosine"]
+    assert project(*lights, "-o", out, "--format", "csv", "--bands", 4) == 1
+    captured = capsys.readouterr()
+    assert sorted(path.name for path in out.iterdir()) == ["cosine.csv", "green-2.csv", "green.csv"]
+    assert captured.out.splitlines()[-1] == "3 of 5 written"
+    assert re.search(r"^green +4 +51\.2 % +-0\.1844 +.*green\.csv$", captured.out, flags=re.MULTILINE)
+    assert re.search(r"^nothing +failed$", captured.out, flags=re.MULTILINE)
+    assert [line for line in captured.err.splitlines() if line.startswith("shviewer: unknown light 'nothing'")]
+    assert "no column blue" in captured.err
+
+
+def test_a_batch_without_failures_is_done(tmp_path: Path, capsys: Capture) -> None:
+    assert project("green", "cosine", "-o", tmp_path) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cosine.json", "green.json"]
+    assert "2 of 2 written" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        (("-o", "x.png"), 2, "FILE must end in .json, .csv, .npz, .h, .glsl"),
+        (("-o", "x.json", "--format", "csv"), 2, "contradict each other"),
+        (("-o", "-"), 2, "name a format"),
+        (("-o", "-", "--format", "exr"), 2, "format 'exr'"),
+        (("green", "cosine", "-o", "-", "--format", "csv"), 2, "name a folder"),
+        (("green", "cosine", "-o", "x.json"), 2, "name a folder"),
+        (("-o", "x.json", "--convention", "blender"), 2, "must be one of shviewer"),
+        (("-o", "x.json", "--convention", "three", "--for", "irradiance"), 2, "which takes radiance"),
+        (("-o", "x.json", "--convention", "filament", "--for", "radiance"), 2, "which takes irradiance-over-pi"),
+        (("-o", "x.json", "--convention", "unreal", "--no-phase"), 2, "not be what that program expects"),
+        (("-o", "x.json", "--axes", "up"), 2, "such as +x+z-y"),
+        (("-o", "x.json", "--convention", "unity", "--bands", "4"), 2, "4 bands: unity takes 1 to 3"),
+        (("-o", "x.glsl", "--convention", "scipy"), 2, "complex coefficients"),
+        (("-o", "x.json", "--input-convention", "maya"), 2, "must be one of shviewer"),
+        (("nothing", "-o", "x.json"), 3, "unknown light 'nothing'"),
+        (("-o", "missing/x.json"), 4, "no such folder"),
+    ],
+)
+def test_what_cannot_be_is_one_line_and_leaves_no_file(
+    arguments: tuple[str, ...], code: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert project(*arguments) == code
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1
+    assert os.listdir() == []
+
+
+def test_the_file_that_is_read_is_not_written(tmp_path: Path, capsys: Capture) -> None:
+    assert project("-o", tmp_path / "a.json") == 0
+    before = (tmp_path / "a.json").read_bytes()
+    assert project(tmp_path / "a.json", "-o", tmp_path / "a.json") == 2
+    assert "read from this file" in capsys.readouterr().err
+    assert (tmp_path / "a.json").read_bytes() == before
+
+
+def test_a_light_cannot_break_out_of_a_comment(tmp_path: Path) -> None:
+    scene = tmp_path / "evil.toml"
+    text = (Path(__file__).parents[2] / "assets/scenes/constant.toml").read_text()
+    scene.write_text(re.sub(r"description = .*", r'description = "a */ b\\n#error c"', text))
+    assert project(scene, "-o", tmp_path / "evil.h") == 0
+    lines = (tmp_path / "evil.h").read_text().splitlines()
+    (said,) = [line for line in lines if "light-is" in line]
+    assert said == "// light-is: a * / b #error c"
+
+
+def test_progress_goes_through_the_lights_and_is_cleared(tmp_path: Path, capsys: Capture) -> None:
+    shown: list[str] = []
+
+    def state_of(light: str) -> ViewState:
+        return ViewState(lights=(light,), n_bands=2)
+
+    assert (
+        project_lights(
+            ["green", "no such light", "cosine"], str(tmp_path), "csv", CONVENTIONS["three"], state_of, shown.append
+        )
+        == 1
+    )
+    assert [text[:26].count("#") for text in shown if text] == [0, 8, 16]
+    assert [text.split("] ")[1] for text in shown if text] == [
+        "1 of 3  green",
+        "2 of 3  no such light",
+        "3 of 3  cosine",
+    ]
+    assert shown[-1] == ""
+    assert shown[2] == ""  # before the error is printed
+    capsys.readouterr()
+
+
+def test_as_many_bands_as_a_tolerance_needs(tmp_path: Path, capsys: Capture) -> None:
+    assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "10%") == 0
+    assert held(tmp_path / "c.json").n_bands == 3  # 127/128 of the energy: 8.8 %
+    assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "1%", "--convention", "three") == 2
+    assert "three takes 1 to 3" in capsys.readouterr().err
