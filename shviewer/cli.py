@@ -10,17 +10,15 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer.errors import LightError, ShviewerError, UsageError
+from shviewer.from_options import reading_from, state_from
 from shviewer.options import (
     DEFAULT_BANDS,
     DEFAULT_SWEEP,
-    finite,
     info_parser,
     project_parser,
     report_parser,
@@ -28,9 +26,9 @@ from shviewer.options import (
     sweep_parser,
     view_parser,
 )
+from shviewer.status_line import status_line
 
 if TYPE_CHECKING:
-    from shviewer.lights.radiance_files import Reading
     from shviewer.viewer.analysis import Subject
     from shviewer.viewer.state import ViewState
 
@@ -82,15 +80,16 @@ def _view(options: argparse.Namespace) -> int:
     from shviewer.viewer.composition import compose
     from shviewer.viewer.glfw_window import NoDisplayError
     from shviewer.viewer.picture import prepare
+    from shviewer.viewer.picture_files import file_stem
     from shviewer.viewer.screenshot import save_picture
 
-    state = _state(options, all_lights=True)
+    state = state_from(options, all_lights=True)
     _print_notes(subject(state))
     _print_suspicion(state)
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
-        out = Path(f"shviewer-{window.file_stem(subject(state).light.name)}.png")
+        out = Path(f"shviewer-{file_stem(subject(state).light.name)}.png")
         save_picture(
             prepare(state), compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres), out
         )
@@ -110,7 +109,7 @@ def _screenshot(options: argparse.Namespace) -> int:
         raise UsageError(f"{options.out}: --reference compares PNG pictures; let OUT end in .png")
     if options.reference and options.reference.resolve() == options.out.resolve():
         raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
-    state = _state(options, all_lights=False)
+    state = state_from(options, all_lights=False)
     picture = prepare(state)
     composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
@@ -133,7 +132,7 @@ def _sweep(options: argparse.Namespace) -> int:
 
     if options.out.suffix.lower() not in ENCODERS:
         raise UsageError(f"{options.out}: OUT must end in {' or '.join(ENCODERS)}")
-    state = _state(options, all_lights=False)
+    state = state_from(options, all_lights=False)
     if options.turntable:
         frames = TURN_FRAMES if options.frames is None else options.frames
         animation = turntable(state, frames, TURN_SECONDS if options.seconds is None else options.seconds)
@@ -142,7 +141,7 @@ def _sweep(options: argparse.Namespace) -> int:
         last = DEFAULT_SWEEP[1] if options.last is None else options.last
         animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
     composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
-    with _status_line() as line:
+    with status_line() as line:
         picture = save_animation(
             animation,
             composition,
@@ -175,7 +174,7 @@ def _info(options: argparse.Namespace) -> int:
     """Every light that can be read is described; the exit code is that of the first that cannot."""
     from shviewer.viewer.information import as_json_object, as_text, describe
 
-    reading = _reading(options)
+    reading = reading_from(options)
     exit_code = 0
     objects: list[dict[str, object]] = []
     for number, text in enumerate(options.lights):
@@ -206,48 +205,14 @@ def _project(options: argparse.Namespace) -> int:
         options.quantity = convention.quantity.removesuffix("-over-pi")
     if options.bands is None and options.tolerance is None and convention.most_bands:
         options.bands = min(DEFAULT_BANDS, convention.most_bands)
-    line = _StatusLine() if sys.stderr.isatty() else None
 
     def state_of(light: str) -> ViewState:
-        return _state(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+        return state_from(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
 
-    return project_lights(
-        options.lights or ["green"], options.output, options.format, convention, state_of, line.show if line else None
-    )
-
-
-def _reading(options: argparse.Namespace) -> Reading:
-    """How images are read. UsageError for an unknown layout."""
-    from shviewer.lights.decoders.limits import Limits
-    from shviewer.lights.radiance_files import Reading
-
-    if options.layout != "auto":
-        from shviewer.lights.layouts.recognise import LAYOUTS
-
-        if options.layout not in LAYOUTS:
-            raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
-    chosen = {
-        "side": options.max_side,
-        "texels": options.max_megatexels and int(options.max_megatexels * 2**20),
-        "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
-    }
-    limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
-    return Reading(
-        sanitize=options.sanitize, layout=options.layout, limits=limits, convention=_input_convention(options)
-    )
-
-
-def _input_convention(options: argparse.Namespace) -> str:
-    """UsageError for one that is not known."""
-    text: str = options.input_convention
-    if text:
-        from shviewer.harmonics.conventions.programs import parse_convention
-
-        try:
-            parse_convention(text)
-        except ValueError as error:
-            raise UsageError(str(error)) from error
-    return text
+    lights = options.lights or ["green"]
+    with status_line() as line:
+        show = line.show if line else None
+        return project_lights(lights, options.output, options.format, convention, state_of, show)
 
 
 def _report(options: argparse.Namespace) -> int:
@@ -266,10 +231,10 @@ def _report(options: argparse.Namespace) -> int:
         peers=options.peers,
         seed=options.seed,
         methods=tuple(options.methods.split(",")) if options.methods else (),
-        reading=_reading(options),
+        reading=reading_from(options),
         shader=not options.no_shader,
     )
-    with _status_line() as line:
+    with status_line() as line:
         summary = write_report(
             options.lights,
             options.output or Path("shviewer-report"),
@@ -284,116 +249,10 @@ def _report(options: argparse.Namespace) -> int:
 def _stability(options: argparse.Namespace) -> int:
     from shviewer import stability
 
-    with _status_line() as line:
+    with status_line() as line:
         outcomes = stability.run(progress=line.show if line else None, shader=not options.no_shader)
     print(stability.as_text(outcomes))
     return 0 if all(outcome.passed for outcome in outcomes) else 1
-
-
-class _StatusLine:
-    """What is at work, on one line of the terminal."""
-
-    def show(self, text: str) -> None:
-        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
-
-    def fraction(self, done: float, seconds_left: float, what: str) -> None:
-        """done: 0 to 1."""
-        filled = round(24 * done)
-        self.show(f"[{'#' * filled}{'.' * (24 - filled)}] {seconds_left:4.0f} s left  {what[:60]}")
-
-    def clear(self) -> None:
-        self.show("")
-
-
-@contextmanager
-def _status_line() -> Iterator[_StatusLine | None]:
-    """One on stderr where that is a terminal, wiped at the end whatever happens; else none."""
-    line = _StatusLine() if sys.stderr.isatty() else None
-    try:
-        yield line
-    finally:
-        if line:
-            line.clear()
-
-
-def _state(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
-    """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
-    from shviewer.lights.light import COEFFICIENT_SUFFIXES, built_in_lights, split_light
-    from shviewer.viewer.actions import open_light
-    from shviewer.viewer.camera import IDENTITY, towards
-    from shviewer.viewer.picture import check
-    from shviewer.viewer.state import ViewState
-
-    elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
-    if any(abs(elevation) > 90 for elevation in elevations):
-        raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
-    window, separator, width = options.window.partition(":")
-    if separator and window in ("none", "dering"):
-        raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
-    state = ViewState(
-        lights=tuple(built_in_lights()) if all_lights else (options.light,),
-        reading=_reading(options),
-        n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
-        muted=options.mute,
-        quantity=options.quantity or "radiance",
-        split_sun=options.split_sun,
-        window=window,
-        window_width=_finite_width(width) if separator else None,
-        method=options.method,
-        samples=options.samples,
-        seed=options.seed,
-        exposure_stops=options.exposure,
-        error=options.error,
-        error_range=options.error_range,
-        tone=options.tone,
-        marks=not options.no_marks,
-        lobe_view=options.lobes or options.basis is not None,
-        basis=options.basis and (options.basis[0], options.basis[1]),
-        evaluate=options.evaluate,
-        sheet="convergence" if options.convergence else "",
-        light_rotation=towards(*options.rotate_light) if options.rotate_light else IDENTITY,
-        zoom=options.zoom,
-    )
-    if options.camera:
-        state = replace(state, camera=(options.camera[0] % 360, options.camera[1]))
-    if options.tolerance is not None:
-        state = replace(state, tolerance=options.tolerance)
-    check(state, tuple(options.size))
-    state = open_light(state, options.light)
-    if options.compare:
-        from shviewer.lights.coefficients.light import CoefficientLight
-
-        file = Path(options.compare)
-        state = replace(state, compare=replace(CoefficientLight.read(file, state.reading), name=file.name))
-    if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
-        from shviewer.viewer.comparison import as_the_file_holds
-
-        any_bands = options.bands is None and options.tolerance is None
-        state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
-    return state if options.tolerance is None else _fitted(state, options)
-
-
-def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:
-    """As many bands as the tolerance needs, said on stderr; where none are enough, the best there is."""
-    from shviewer.viewer.analysis import estimate_from_samples, needs
-
-    if options.bands is not None:
-        raise UsageError(f"--bands {options.bands} and --tolerance {options.tolerance:g}: give one of them")
-    found = needs(state)
-    counts = {"radiance": found.radiance, "irradiance": found.irradiance}
-    says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
-    print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
-    wanted = counts[state.quantity]
-    if wanted is None:
-        print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
-    if state.method == "jittered":
-        guess = estimate_from_samples(state)
-        if guess.decided:
-            says = f"{guess.likely} bands" if guess.likely else "no count up to 32"
-        else:
-            says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
-        print(f"shviewer: the samples alone say {says}", file=sys.stderr)
-    return replace(state, n_bands=wanted or found.best_bands)
 
 
 def _print_notes(subject: Subject) -> None:
@@ -410,10 +269,3 @@ def _print_suspicion(state: ViewState) -> None:
 
     if state.compare and (found := suspicion(load_light(state), state.compare)):
         print(f"shviewer: {found}", file=sys.stderr)
-
-
-def _finite_width(text: str) -> float:
-    try:
-        return finite(text)
-    except argparse.ArgumentTypeError as error:
-        raise UsageError(f"window width {error}") from error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from shviewer.harmonics.conventions.convention import OVER_PI, Convention
 from shviewer.harmonics.conventions.programs import parse_convention
 from shviewer.lights.light import split_light
 from shviewer.viewer.analysis import subject
-from shviewer.viewer.picture_files import write_atomically
+from shviewer.viewer.picture_files import file_stem, write_atomically
 from shviewer.viewer.state import ViewState
 
 STDOUT = "-"
@@ -160,11 +159,6 @@ def _check_is_not_read(path: Path, light: str) -> None:
         same = False
     if same:
         raise UsageError(f"{path}: the light is read from this file; write another one")
-
-
-def file_stem(name: str) -> str:
-    """What a light is called, fit for a file's name everywhere."""
-    return re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "light"
 
 
 def summary(rows: Sequence[Row]) -> str:

@@ -7,6 +7,7 @@ import io
 import json
 import math
 import os
+import re
 import tempfile
 import warnings
 from contextlib import suppress
@@ -190,6 +191,11 @@ def _place_exclusively(name: str, path: Path, data: bytes) -> None:
     except OSError:  # a file system without links
         with path.open("xb") as file:
             file.write(data)
+
+
+def file_stem(name: str) -> str:
+    """What a light is called, fit for a file's name everywhere."""
+    return re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "light"
 
 
 def write_numbered(stem: str, pixels: NDArray[np.uint8], text: str) -> Path:

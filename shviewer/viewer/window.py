@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -26,7 +25,7 @@ from shviewer.viewer.glfw_window import key_name, open_window
 from shviewer.viewer.keys import press
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.picture_files import metadata, write_numbered
+from shviewer.viewer.picture_files import file_stem, metadata, write_numbered
 from shviewer.viewer.playing import Metronome
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState, describe_sanitizing
@@ -363,8 +362,3 @@ def _reading_news(before: ViewState, after: ViewState) -> str:
     if before.reading.sanitize != after.reading.sanitize:
         return f"bad values {describe_sanitizing(after)}"
     return ""
-
-
-def file_stem(name: str) -> str:
-    """A light's name as part of a file name."""
-    return "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in Path(name).name) or "light"

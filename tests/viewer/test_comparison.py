@@ -16,6 +16,7 @@ from shviewer.harmonics.conventions.programs import CONVENTIONS
 from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.light import find_light
 from shviewer.lights.radiance_files import Reading
+from shviewer.viewer.actions import next_method, reset, with_bands
 from shviewer.viewer.analysis import load_light
 from shviewer.viewer.comparison import as_the_file_holds, caption, suspicion
 from shviewer.viewer.composition import compose
@@ -23,7 +24,7 @@ from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata
 from shviewer.viewer.renderer import Renderer
-from shviewer.viewer.state import ViewState, next_method, reset, with_bands
+from shviewer.viewer.state import ViewState
 
 VENICE = find_light("venice_sunset")
 

@@ -1,0 +1,138 @@
+"""From the options of a command line to how files are read and what is shown."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shviewer.errors import UsageError
+from shviewer.option_groups import finite
+from shviewer.options import DEFAULT_BANDS
+
+if TYPE_CHECKING:
+    from shviewer.lights.radiance_files import Reading
+    from shviewer.viewer.state import ViewState
+
+
+def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
+    """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
+    from shviewer.lights.light import COEFFICIENT_SUFFIXES, built_in_lights, split_light
+    from shviewer.viewer.actions import open_light
+    from shviewer.viewer.camera import IDENTITY, towards
+    from shviewer.viewer.picture import check
+    from shviewer.viewer.state import ViewState
+
+    elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
+    if any(abs(elevation) > 90 for elevation in elevations):
+        raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
+    window, separator, width = options.window.partition(":")
+    if separator and window in ("none", "dering"):
+        raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
+    state = ViewState(
+        lights=tuple(built_in_lights()) if all_lights else (options.light,),
+        reading=reading_from(options),
+        n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
+        muted=options.mute,
+        quantity=options.quantity or "radiance",
+        split_sun=options.split_sun,
+        window=window,
+        window_width=_finite_width(width) if separator else None,
+        method=options.method,
+        samples=options.samples,
+        seed=options.seed,
+        exposure_stops=options.exposure,
+        error=options.error,
+        error_range=options.error_range,
+        tone=options.tone,
+        marks=not options.no_marks,
+        lobe_view=options.lobes or options.basis is not None,
+        basis=options.basis and (options.basis[0], options.basis[1]),
+        evaluate=options.evaluate,
+        sheet="convergence" if options.convergence else "",
+        light_rotation=towards(*options.rotate_light) if options.rotate_light else IDENTITY,
+        zoom=options.zoom,
+    )
+    if options.camera:
+        state = replace(state, camera=(options.camera[0] % 360, options.camera[1]))
+    if options.tolerance is not None:
+        state = replace(state, tolerance=options.tolerance)
+    check(state, tuple(options.size))
+    state = open_light(state, options.light)
+    if options.compare:
+        from shviewer.lights.coefficients.light import CoefficientLight
+
+        file = Path(options.compare)
+        state = replace(state, compare=replace(CoefficientLight.read(file, state.reading), name=file.name))
+    if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.viewer.comparison import as_the_file_holds
+
+        any_bands = options.bands is None and options.tolerance is None
+        state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
+    return state if options.tolerance is None else _fitted(state, options)
+
+
+def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:
+    """As many bands as the tolerance needs, said on stderr; where none are enough, the best there is."""
+    from shviewer.viewer.analysis import estimate_from_samples, needs
+
+    if options.bands is not None:
+        raise UsageError(f"--bands {options.bands} and --tolerance {options.tolerance:g}: give one of them")
+    found = needs(state)
+    counts = {"radiance": found.radiance, "irradiance": found.irradiance}
+    says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
+    print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
+    wanted = counts[state.quantity]
+    if wanted is None:
+        print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
+    if state.method == "jittered":
+        guess = estimate_from_samples(state)
+        if guess.decided:
+            says = f"{guess.likely} bands" if guess.likely else "no count up to 32"
+        else:
+            says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
+        print(f"shviewer: the samples alone say {says}", file=sys.stderr)
+    return replace(state, n_bands=wanted or found.best_bands)
+
+
+def reading_from(options: argparse.Namespace) -> Reading:
+    """How images are read. UsageError for an unknown layout."""
+    from shviewer.lights.decoders.limits import Limits
+    from shviewer.lights.radiance_files import Reading
+
+    if options.layout != "auto":
+        from shviewer.lights.layouts.recognise import LAYOUTS
+
+        if options.layout not in LAYOUTS:
+            raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
+    chosen = {
+        "side": options.max_side,
+        "texels": options.max_megatexels and int(options.max_megatexels * 2**20),
+        "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
+    }
+    limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
+    return Reading(
+        sanitize=options.sanitize, layout=options.layout, limits=limits, convention=_input_convention(options)
+    )
+
+
+def _input_convention(options: argparse.Namespace) -> str:
+    """UsageError for one that is not known."""
+    text: str = options.input_convention
+    if text:
+        from shviewer.harmonics.conventions.programs import parse_convention
+
+        try:
+            parse_convention(text)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+    return text
+
+
+def _finite_width(text: str) -> float:
+    try:
+        return finite(text)
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"window width {error}") from error
