@@ -2,8 +2,9 @@
 
 uniform float exposure;         // 2^stops
 
-// The tone curves of shviewer/viewer/tone.py, from exposed radiance >= 0 to [0, 1] or, without one, beyond.
+// The tone curves of shviewer/viewer/tone.py, of exposed radiance >= 0. What is far beyond white stays finite when squared.
 vec3 toned(vec3 x) {
+    x = min(x, BRIGHTEST_EXPOSED);
 #if TONE == TONE_REINHARD
     return x / (1.0 + x);
 #elif TONE == TONE_ACES
@@ -16,12 +17,16 @@ vec3 toned(vec3 x) {
 }
 
 // What the eye gets of a radiance, linear in [0, 1]. A negative luminance has a hue of its own, which grows from black with
-// the magnitude, fast at first so that faint ringing shows, and never saturates.
+// the magnitude, fast at first so that faint ringing shows, and never saturates. Where channels of both signs nearly cancel,
+// the colour fades to the black that parts the two: no light has a luminance below 0.0722 of its largest channel.
 vec3 visible(vec3 radiance) {
-    vec3 exposed = exposure * radiance;
+    vec3 exposed = clamp(exposure * radiance, -BRIGHTEST_EXPOSED, BRIGHTEST_EXPOSED);
     float luminance = dot(exposed, vec3(0.2126, 0.7152, 0.0722));
-    vec3 shown = luminance < 0.0 ? luminance / (luminance - NEGATIVE_KNEE) * NEGATIVE_HUE : toned(max(exposed, 0.0));
-    return clamp(shown, 0.0, 1.0);
+    float magnitude = toned(vec3(abs(luminance))).r;
+    vec3 negative = magnitude / (magnitude + NEGATIVE_KNEE) * NEGATIVE_HUE;
+    float largest = max(max(exposed.r, exposed.g), exposed.b);
+    vec3 positive = toned(max(exposed, 0.0)) * min(1.0, luminance / max(0.0722 * largest, 1e-30));
+    return clamp(luminance < 0.0 ? negative : positive, 0.0, 1.0);
 }
 
 // IEC 61966-2-1 (sRGB), from linear in [0, 1].

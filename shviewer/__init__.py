@@ -5,7 +5,7 @@
     reconstruct(coefficients, directions)            radiance (k, 3)
     evaluate_basis(directions, bands)                every Y(l, m), (..., bands**2); the convention is in harmonics/basis.py
     report(lights, folder)                           speed against error on this machine
-    screenshot(light, bands) -> (height, width, 3)   the picture of both spheres, without a window
+    screenshot(light, bands) -> (height, width, 3)   the picture, without a window
     view(light, bands)                               the window
 
 They are imported when they are first used: `import shviewer` alone loads neither numpy nor OpenGL. What a user can put right

@@ -110,6 +110,10 @@ def _screenshot(options: argparse.Namespace) -> int:
     if options.reference and options.reference.resolve() == options.out.resolve():
         raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
     state = state_from(options, all_lights=False)
+    if state.lobe_view and options.out.suffix.lower() == ".exr":
+        raise UsageError(
+            f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
+        )
     picture = prepare(state)
     composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
@@ -160,6 +164,10 @@ def _check_sweep(options: argparse.Namespace) -> None:
             if value is not None:
                 raise UsageError(f"{name} {value} with --turntable: a turn has one number of bands; give --bands")
         return
+    if options.basis is not None:
+        raise UsageError(
+            "--basis: a sweep shows what each number of bands makes of the light; give --turntable, or --lobes"
+        )
     if options.frames is not None:
         raise UsageError(f"--frames {options.frames}: a sweep has one for each band count; give --from and --to")
     if options.bands is not None:

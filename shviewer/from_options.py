@@ -22,8 +22,8 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     from shviewer.lights.light import COEFFICIENT_SUFFIXES, built_in_lights, split_light
     from shviewer.viewer.actions import open_light
     from shviewer.viewer.camera import IDENTITY, towards
-    from shviewer.viewer.picture import check
     from shviewer.viewer.state import ViewState
+    from shviewer.viewer.view_limits import check
 
     elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
     if any(abs(elevation) > 90 for elevation in elevations):
@@ -45,11 +45,10 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         seed=options.seed,
         exposure_stops=options.exposure,
         error=options.error,
-        error_range=options.error_range,
+        error_range=_error_range(options),
         tone=options.tone,
         marks=not options.no_marks,
         lobe_view=options.lobes or options.basis is not None,
-        basis=options.basis and (options.basis[0], options.basis[1]),
         evaluate=options.evaluate,
         sheet="convergence" if options.convergence else "",
         light_rotation=towards(*options.rotate_light) if options.rotate_light else IDENTITY,
@@ -71,7 +70,26 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
 
         any_bands = options.bands is None and options.tolerance is None
         state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
-    return state if options.tolerance is None else _fitted(state, options)
+    if options.tolerance is not None:
+        state = _fitted(state, options)
+    if options.basis is not None:
+        state = replace(state, basis=(options.basis[0], options.basis[1]))
+        check(state)  # now that its bands are known
+    return state
+
+
+def _error_range(options: argparse.Namespace) -> float | None:
+    """A radiance; of the relative error a share of 1, which may be said in percent."""
+    text = options.error_range
+    if text is None:
+        return None
+    share = text.endswith("%")
+    if share and options.error != "relative":
+        raise UsageError(f"error range {text}: a share is for --error relative; give a radiance, such as 0.5")
+    try:
+        return finite(text.removesuffix("%")) / (100 if share else 1)
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"error range {error}") from error
 
 
 def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:

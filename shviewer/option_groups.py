@@ -84,7 +84,6 @@ def add_picture_options(parser: OneLineParser) -> None:
     parser.add_argument(
         "--error-range",
         metavar="R",
-        type=_error_range,
         help="where its colours end: a radiance, or for the relative error such as 20%%; chosen from the light unless given",
     )
     parser.add_argument("--no-marks", action="store_true", help="do not mark the minimum and the largest error")
@@ -197,13 +196,6 @@ def finite(text: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
-    return value
-
-
-def _error_range(text: str) -> float:
-    value = finite(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
-    if not value > 0:
-        raise argparse.ArgumentTypeError(f"{text!r}: an error range is positive, such as 0.5 or 20%")
     return value
 
 

@@ -66,10 +66,10 @@ def screenshot_parser() -> OneLineParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "out", metavar="OUT", type=Path, help="OUT.png: the picture; OUT.exr: linear float32 radiance of both spheres"
+        "out", metavar="OUT", type=Path, help="OUT.png: the picture; OUT.exr: linear float32 radiance of the spheres"
     )
     add_view_options(parser)
-    parser.add_argument("--no-overlay", action="store_true", help="the two spheres alone")
+    parser.add_argument("--no-overlay", action="store_true", help="the spheres alone")
     parser.add_argument(
         "--timing", action="store_true", help="also say how long the projection took; then no two runs are equal"
     )
@@ -113,7 +113,7 @@ def sweep_parser() -> OneLineParser:
         type=finite,
         help="that a frame is shown, 0.02 to 60 (default 0.7, the last band three times as long; --turntable 0.08)",
     )
-    parser.add_argument("--no-overlay", action="store_true", help="the two spheres alone")
+    parser.add_argument("--no-overlay", action="store_true", help="the spheres alone")
     add_view_options(parser)
     return parser
 

@@ -135,6 +135,17 @@ def test_the_lists_are_those_of_the_program(capsys: pytest.CaptureFixture[str]) 
         (["--camera", "inf", "1"], 2, ["'inf'", "finite"]),
         (["--rotate-light", "10", "-90.5"], 2, ["elevation -90.5", "-90 to 90"]),
         (["--zoom", "99"], 2, ["zoom 99", "0.25 to 16"]),
+        (["--tone", "film"], 2, ["'film'", "none, reinhard, aces, log"]),
+        (["--error", "some"], 2, ["'some'", "off, signed, absolute, relative"]),
+        (["--error-range", "wide"], 2, ["error range", "'wide'", "finite"]),
+        (["--error-range", "inf"], 2, ["error range", "'inf'", "finite"]),
+        (["--error-range", "-1"], 2, ["error range -1", "1e-30 to 1e+30"]),
+        (["--error", "signed", "--error-range", "20%"], 2, ["error range 20%", "--error relative"]),
+        (["--evaluate", "gpu"], 2, ["'gpu'", "auto, direct, map"]),
+        (["--evaluate", "direct", "--bands", "33"], 2, ["33 bands", "at most 32 are summed directly"]),
+        (["--basis", "2", "3"], 2, ["(2, 3)", "m -l to l"]),
+        (["--basis", "9", "0", "--bands", "5"], 2, ["(9, 0)", "l must be 0 to 4"]),
+        (["--basis", "1", "x"], 2, ["--basis", "'x'"]),
         (["--max-side", "0"], 2, ["--max-side", "'0'", "not positive"]),
         (["--max-side", "1.5"], 2, ["--max-side", "'1.5'", "whole number"]),
         (["--max-megatexels", "-1"], 2, ["--max-megatexels", "'-1'", "not positive"]),
@@ -192,6 +203,7 @@ def test_a_bad_screenshot_argument_exits_2(
         (["a"], 2, ["a: OUT must end in .gif or .webp"]),
         ([], 2, ["OUT"]),
         (["a.gif", "--from", "5", "--to", "4"], 2, ["--from 5 --to 4", "at most --to"]),
+        (["a.gif", "--basis", "2", "0"], 2, ["--basis", "--turntable, or --lobes"]),
         (["a.gif", "--from", "17"], 2, ["--from 17 --to 16"]),
         (["a.gif", "--from", "0"], 2, ["--from 0", "1 to 128"]),
         (["a.gif", "--to", "129"], 2, ["--to 129", "1 to 128"]),
@@ -606,3 +618,14 @@ def test_nobody_reading_on_is_no_error() -> None:
         f"{sys.executable} -m shviewer --list-lights | true", shell=True, capture_output=True, text=True, check=False
     )
     assert done.stderr == ""
+
+
+def test_a_basis_function_may_be_in_the_bands_that_the_tolerance_asks_for(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["screenshot", "a.exr", "green", "--tolerance", "5%", "--basis", "14", "3"]) == 2
+    told, wrong = capsys.readouterr().err.splitlines()
+    assert "radiance 15" in told
+    assert "surfaces hold no radiance" in wrong  # what is wrong is the file, and not the function
+    assert list(tmp_path.iterdir()) == []

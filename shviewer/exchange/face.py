@@ -11,6 +11,12 @@ array, or a Light. `options` are those of the window, by their names in ViewStat
     exposure_stops  fixed, instead of chosen from the light
     camera          azimuth and elevation, degrees
     zoom            0.25 to 16
+    tone            "none" (default), "reinhard", "aces" or "log"
+    error           "off" (default), "signed", "absolute" or "relative": a third sphere; error_range ends its colours
+    marks           False: no rings at the minimum and the largest error
+    lobe_view       surfaces whose radius is the magnitude; basis, such as (2, -1): one function as the second of them
+    sheet           "convergence": the error against the number of bands
+    evaluate        "direct", "map" or "auto" (default): how the reconstruction is drawn
 
 ShviewerError, with one line that says what to do, where an argument is out of range or a light is bad.
 """
@@ -35,8 +41,9 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.lights.radiance_files import Reading
-from shviewer.viewer.picture import check, prepare
+from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.view_limits import check
 
 if TYPE_CHECKING:
     from shviewer.report.run import Summary
@@ -56,6 +63,14 @@ OPTIONS = frozenset(
         "exposure_stops",
         "camera",
         "zoom",
+        "tone",
+        "error",
+        "error_range",
+        "marks",
+        "lobe_view",
+        "basis",
+        "sheet",
+        "evaluate",
     )
 )
 
@@ -129,7 +144,7 @@ def screenshot(
     overlay: bool = True,
     **options: Any,
 ) -> NDArray[np.uint8]:
-    """The picture of both spheres: (height, width, 3) uint8, sRGB, top row first. size: width and height in pixels.
+    """The picture of the window: (height, width, 3) uint8, sRGB, top row first. size: width and height in pixels.
 
     overlay: with captions and figures. GraphicsError where there is no OpenGL 3.3. options: see above.
     """
@@ -140,7 +155,7 @@ def screenshot(
     check(state, size)
     picture = prepare(state)
     with headless_renderer() as renderer:
-        return render_rgb(renderer, picture, compose(*size, state.zoom), overlay=overlay)
+        return render_rgb(renderer, picture, compose(*size, state.zoom, n_spheres=state.n_spheres), overlay=overlay)
 
 
 def view(

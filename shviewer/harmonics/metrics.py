@@ -41,14 +41,17 @@ def band_weights(n_bands: int, muted: frozenset[int]) -> Array:
     return np.isin(degrees(n_bands), list(muted), invert=True).astype(np.float64)[:, None]
 
 
-def squared_error(norm_squared: Array, exact: Array, shown: Array) -> tuple[float, float]:
+def squared_error(
+    norm_squared: Array, exact: Array, shown: Array, magnitude: Array | None = None
+) -> tuple[float, float]:
     """(left-out, added) squared L2 error over all channels: the two terms of the module docstring.
 
-    norm_squared: (k,) for k channels; exact, shown: (n**2, k). ValueError if `exact` holds more energy than the light:
-    then the two come from different quadratures and no error can be read off them.
+    norm_squared: (k,) for k channels; exact, shown: (n**2, k); magnitude: (k,), what norm_squared was rounded at, if it is a
+    sum that may cancel. ValueError if `exact` holds more energy than the light: then the two come from different
+    quadratures and no error can be read off them.
     """
     missing = norm_squared - (exact**2).sum(axis=0)
-    if (missing < -ROUNDING * norm_squared).any():
+    if (missing < -ROUNDING * (norm_squared if magnitude is None else magnitude)).any():
         raise ValueError(f"coefficients hold {-missing.min():.3g} more energy than the light: mixed quadratures")
     return float(missing.clip(min=0).sum()), float(((exact - shown) ** 2).sum())
 
@@ -85,7 +88,8 @@ def channel_figures(products: Array, exact: Array, shown: Array, peak: float) ->
     figures = {}
     for name, mix in mixes.items():
         norm = np.maximum(np.einsum("ik,ij,jk->k", mix, products, mix), 0)
-        left_out, added = squared_error(norm, exact @ mix, shown @ mix)
+        magnitude = np.einsum("ik,ij,jk->k", np.abs(mix), np.abs(products), np.abs(mix))
+        left_out, added = squared_error(norm, exact @ mix, shown @ mix, magnitude)
         mean = (left_out + added) / (4 * np.pi * mix.shape[1])
         psnr = 10 * np.log10(peak**2 / mean) if mean > 0 and peak > 0 else np.inf if mean == 0 else -np.inf
         figures[name] = ChannelFigures(

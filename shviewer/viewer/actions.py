@@ -213,7 +213,7 @@ def escape(state: ViewState) -> ViewState:
 
 
 def orbit(state: ViewState, right: float, up: float) -> ViewState:
-    """Turn both spheres as if their front was dragged, in radii of a sphere."""
+    """Turn all spheres as if their front was dragged, in radii of a sphere."""
     azimuth, elevation = state.camera
     azimuth = (azimuth - right * 180 / math.pi) % 360
     elevation = min(max(elevation - up * 180 / math.pi, -90.0), 90.0)

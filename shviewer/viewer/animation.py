@@ -135,16 +135,18 @@ def save_animation(
             tell(number)
             return render_rgb(renderer, prepare(animation.states[number]), composition, overlay=overlay)
 
-        text = describe(animation, portrait, composition, renderer.version)
+        text = describe(animation, portrait, composition, renderer.version, overlay=overlay)
         data = encode(draw, animation.milliseconds, text)
     write_atomically(out, data)
     return portrait
 
 
-def describe(animation: Animation, portrait: Picture, composition: Composition, opengl: str) -> str:
+def describe(
+    animation: Animation, portrait: Picture, composition: Composition, opengl: str, *, overlay: bool = True
+) -> str:
     """JSON: the description of one picture, the last of a band sweep or the first of a turn, and of the animation."""
     frames = {"frames": len(animation.states), "milliseconds": list(animation.milliseconds)}
-    described = json.loads(metadata(portrait, composition, opengl))
+    described = json.loads(metadata(portrait, composition, opengl, overlay=overlay))
     return json.dumps({**described, "animation": {**animation.about, **frames}}, allow_nan=False)
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from time import perf_counter
 
 import moderngl
 
+from shviewer.errors import ShviewerError
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.evaluation import Evaluation
 from shviewer.viewer.layers import Layer
@@ -32,7 +34,8 @@ class Canvas:
 
     def by_map(self, state: ViewState, composition: Composition) -> bool:
         """Whether the reconstruction is to be drawn from a map, where that is left to the time that frames take."""
-        return state.evaluate == "auto" and self._evaluation.choose(state.n_bands, summed_pixels(composition))
+        pixels = summed_pixels(composition)
+        return state.evaluate == "auto" and self._evaluation.choose(state.n_bands, pixels, perf_counter())
 
     def show(self, picture: Picture, composition: Composition) -> None:
         """Upload and write what has changed. GraphicsError for a map that this OpenGL cannot hold."""
@@ -57,15 +60,21 @@ class Canvas:
         if not timed:
             return False
         self.renderer.context.finish()
-        milliseconds, pixels = 1000 * (perf_counter() - start), summed_pixels(composition)
-        again = self._evaluation.drawn(picture.state.n_bands, pixels, milliseconds)
-        return again or self._evaluation.choose(picture.state.n_bands, pixels)
+        now, pixels, n_bands = perf_counter(), summed_pixels(composition), picture.state.n_bands
+        again = self._evaluation.drawn(n_bands, pixels, 1000 * (now - start), now)
+        return again or self._evaluation.choose(n_bands, pixels, now)
 
     def layers(self, composition: Composition, pointer: Point | None = None) -> tuple[Layer, ...]:
         """Marks, what is written, and the values under the pointer."""
         picture = self._picture
-        layers = (*mark_layers(picture, composition), *(self.overlay.layers if self.overlay else ()))
-        if pointer is not None and not picture.state.help_visible:
+        written = self.overlay
+        if written is None:
+            return mark_layers(picture, composition)
+        layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
+        covered = written.sheet is not None and pointer is not None and written.sheet.contains(*pointer)
+        if pointer is None or covered or picture.state.help_visible:
+            return layers
+        with suppress(ShviewerError):  # a light that cannot be evaluated there has no values to show
             found = probe(picture, composition, *pointer)
             if found is not None:
                 layers += probe_layers(found, composition, *pointer)
@@ -96,9 +105,9 @@ def summed_pixels(composition: Composition) -> float:
 
 
 def _overlay_key(picture: Picture, composition: Composition) -> object:
-    """Equal as long as nothing that is written changes: turning and zooming write nothing unless the help shows them.
+    """Equal as long as nothing that is written changes: turning writes nothing unless the help shows it.
 
-    The time-error plane also changes with what has been measured.
+    Zooming may, since text gives way to spheres; and the time-error plane changes with what has been measured.
     """
     state = picture.state
     if not state.help_visible:

@@ -33,14 +33,15 @@ def round_ticks(low: float, high: float, most: int) -> list[float]:
 def tick_text(value: float, ticks: list[float], *, percent: bool) -> str:
     """All ticks with the same decimals; a share in percent. Where numbers get long, as a power of ten."""
     scale = 100.0 if percent else 1.0
+    unit = " %" if percent else ""
     largest = max(abs(tick) * scale for tick in ticks)
     if value == 0:
-        return "0 %" if percent else "0"
-    if not percent and not 1e-3 <= largest < 1e5:
-        mantissa, exponent = f"{value:.2e}".split("e")
-        return f"{float(mantissa):g}e{int(exponent)}"
+        return f"0{unit}"
+    if not 1e-3 <= largest < 1e5:
+        mantissa, exponent = f"{value * scale:.2e}".split("e")
+        return f"{float(mantissa):g}e{int(exponent)}{unit}"
     decimals = max(len(f"{abs(tick) * scale:.6f}".rstrip("0").partition(".")[2]) for tick in ticks)
-    return f"{value * scale:.{decimals}f}{' %' if percent else ''}"
+    return f"{value * scale:.{decimals}f}{unit}"
 
 
 def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Composition) -> dict[str, Box]:

@@ -22,6 +22,10 @@ class Box(NamedTuple):
     def contains(self, x: float, y: float) -> bool:
         return self.left <= x < self.right and self.top <= y < self.bottom
 
+    def overlaps(self, other: Box) -> bool:
+        across = self.left < other.right and other.left < self.right
+        return across and self.top < other.bottom and other.top < self.bottom
+
 
 class Sphere(NamedTuple):
     """Centre and radius, the box it is cut to when zoomed in, and how high its caption stands."""

@@ -19,6 +19,9 @@ ERRORS = ("off", "signed", "absolute", "relative")
 QUIET, SPIKE = 0.95, 2.5
 """The colours end at SPIKE times what this share of the sphere stays below: beyond, an error leaves no colours to the rest."""
 
+NOISE = 1e-6
+"""Of the light's peak: smaller errors are rounding, which a range of its own would blow up to colours."""
+
 MOST_RELATIVE = 1.0
 """Colours of the relative error end at 100 % or before."""
 
@@ -36,6 +39,12 @@ class ErrorScale:
     """There, (3,), in the frame of the light."""
     end: float
     """Where the colours end."""
+    noise: float
+    """Errors below this are what float32 makes of none."""
+
+    @property
+    def worth_showing(self) -> bool:
+        return abs(self.largest) > self.noise
 
     @property
     def beyond(self) -> bool:
@@ -55,17 +64,17 @@ def error_values(kind: str, original: Array, reconstruction: Array, floor: float
     return np.asarray(worst if kind == "signed" else np.abs(worst))
 
 
-def automatic_range(kind: str, errors: Array, shares: Array, largest: float) -> float:
-    """Where the colours end: at the largest error, unless it is a spike.
+def automatic_range(kind: str, errors: Array, shares: Array, largest: float, noise: float = 0.0) -> float:
+    """Where the colours end: at the largest error, unless it is a spike; and far enough above noise not to show that.
 
-    errors: on a grid, (k,); shares: of the sphere that each stands for, (k,), sum 1; largest: what the metrics found, in
-    the unit of the errors. Never 0, so that it can be divided by.
+    errors: on a grid, (k,); shares: of the sphere that each stands for, (k,), sum 1; largest: what the metrics found, and
+    noise: both in the unit of the errors. Never 0, so that it can be divided by.
     """
     magnitude = np.abs(errors)
     order = np.argsort(magnitude)
     place = min(int(np.searchsorted(np.cumsum(shares[order]), QUIET)), len(order) - 1)
     quiet = float(magnitude[order[place]])
-    end = min(largest, SPIKE * quiet) if quiet > 0 else largest
+    end = max(min(largest, SPIKE * quiet) if quiet > 0 else largest, 10 * noise)
     if kind == "relative":
         end = min(end, MOST_RELATIVE)
     return end if end > 0 else 1.0

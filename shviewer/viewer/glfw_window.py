@@ -11,7 +11,7 @@ import glfw
 from shviewer.errors import GraphicsError
 from shviewer.viewer.renderer import GL_VERSIONS
 
-SMALLEST_WINDOW = (400, 300)
+SMALLEST_WINDOW = (600, 320)
 """Screen coordinates in which the help can still be read."""
 
 SPECIAL_KEYS = {
@@ -41,7 +41,7 @@ class NoDisplayError(GraphicsError):
 
 
 def key_name(code: int, scancode: int, modifiers: int) -> str:
-    """The name under which state.py binds a key: letters by what they type, so that the keyboard's layout is respected."""
+    """The name under which keys.py binds a key: letters by what they type, so that the keyboard's layout is respected."""
     name = SPECIAL_KEYS.get(code)
     if name is None:
         typed = glfw.get_key_name(code, scancode)

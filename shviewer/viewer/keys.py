@@ -185,7 +185,7 @@ BINDINGS = (
         {"Tab": step_basis(1), "Shift+Tab": step_basis(-1)},
         lambda s: describe_basis(s) or "none",
     ),
-    Binding("drag", PICTURE, "turn both spheres", {}, lambda s: f"{s.camera[0]:z.0f}, {s.camera[1]:z.0f} deg"),
+    Binding("drag", PICTURE, "turn the spheres", {}, lambda s: f"{s.camera[0]:z.0f}, {s.camera[1]:z.0f} deg"),
     Binding("scroll", PICTURE, "zoom", {}, lambda s: f"{s.zoom:.2f} x"),
     Binding("F", PICTURE, "camera back", {"F": lambda s: replace(s, camera=CAMERA_HOME, zoom=1.0)}),
     Binding("R", PICTURE, "reset all but the light", {"R": reset}),

@@ -14,7 +14,7 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.compact_sources import MOST as MAX_SUNS
 from shviewer.lights.lobes import MAX_LOBES, Lobe
 from shviewer.viewer.error_view import ERRORS
-from shviewer.viewer.tone import ACES, LOG_RANGE, TONES
+from shviewer.viewer.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE, TONES
 
 MAX_DIRECT_BANDS = 32
 """The most bands the fragment shader sums: 32**2 vec4 fill the 16 KiB that every driver grants a uniform block."""
@@ -46,7 +46,7 @@ NEGATIVE_KNEE = 0.3
 SH_TERMS = MAX_DIRECT_BANDS**2
 LOBE_SLOTS = 2 * MAX_LOBES + MAX_SUNS
 ERROR_KINDS = tuple(kind.upper() for kind in ERRORS[1:])
-FLOATS = {"NEGATIVE_KNEE": NEGATIVE_KNEE, "LOG_RANGE": LOG_RANGE}
+FLOATS = {"NEGATIVE_KNEE": NEGATIVE_KNEE, "LOG_RANGE": LOG_RANGE, "BRIGHTEST_EXPOSED": BRIGHTEST_EXPOSED}
 VECTORS = {"BACKGROUND": BACKGROUND, "NEGATIVE_HUE": NEGATIVE_HUE}
 
 

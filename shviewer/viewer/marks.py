@@ -5,6 +5,7 @@ Marks move with the spheres, so they are layers of their own: turning draws no t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -60,47 +61,46 @@ def marks_of(picture: Picture) -> list[Mark]:
     if extremes.minimum < 0 and lowest != "0":
         marks.append(Mark("minimum", RECONSTRUCTION, np.array(extremes.minimum_direction), f"minimum {lowest}"))
     scale = picture.error_scale
-    if scale is not None and scale.largest:
+    if scale is not None and scale.worth_showing:
         value = percent(scale.largest) if scale.kind == "relative" else radiance(scale.largest, extremes.peak)
         sign = "+" if scale.kind == "signed" and scale.largest > 0 else ""
         marks.append(Mark("largest", ERROR, scale.direction, f"largest {sign}{value}"))
     return marks
 
 
-def place_marks(picture: Picture, composition: Composition) -> dict[str, Placed]:
-    """The marks that are in sight, by name."""
+def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[Box] = ()) -> dict[str, Placed]:
+    """The marks that are in sight, by name; their words keep clear of the obstacles."""
     placed = {}
     for mark in marks_of(picture):
         sphere = composition.spheres[mark.sphere]
         right, up, towards = mark.direction @ picture.light_from_world @ picture.world_from_view
         x, y = sphere.x + sphere.radius * right, sphere.y - sphere.radius * up
         if sphere.clip.contains(x, y):
-            placed[mark.name] = _place(mark.text, x, y, bool(towards < 0), sphere, composition)
+            placed[mark.name] = _place(mark.text, x, y, bool(towards < 0), sphere, composition, obstacles)
     return placed
 
 
-def mark_layers(picture: Picture, composition: Composition) -> tuple[Layer, ...]:
-    return tuple(mark.layer for mark in place_marks(picture, composition).values())
+def mark_layers(picture: Picture, composition: Composition, obstacles: Sequence[Box] = ()) -> tuple[Layer, ...]:
+    return tuple(mark.layer for mark in place_marks(picture, composition, obstacles).values())
 
 
-def _place(text: str, x: float, y: float, behind: bool, sphere: Sphere, composition: Composition) -> Placed:
-    """With the longest words that fit into the cell, to the right of the ring or else to its left."""
+def _place(
+    text: str, x: float, y: float, behind: bool, sphere: Sphere, composition: Composition, obstacles: Sequence[Box]
+) -> Placed:
+    """With the longest words that find room in the cell, to the right of the ring or to its left; or with none."""
     size = max(round(composition.px(12)), MIN_TYPE)
     scale = max(composition.scale, MIN_TYPE / 12)
     half = round(scale * (RING + THICKNESS + SHADOW)) + 1
     gap = round(4 * scale)
-    words, leftwards = "", False
-    for candidate in (f"{text}, behind" if behind else text, text):
-        reach = half + 2 * gap + round(font(size).getlength(candidate)) + 2
-        if x + reach <= sphere.clip.right or x - reach >= sphere.clip.left:
-            words, leftwards = candidate, x + reach > sphere.clip.right
+    choices = [(words, left) for words in (f"{text}, behind" if behind else text, text) for left in (False, True)]
+    for words, leftwards in (*choices, ("", False)):
+        image, label = _image(words, size, scale, half, gap, behind, leftwards)
+        left = round(x - 0.5) - (image.shape[1] - half - 1 if leftwards else half)
+        top = round(y - 0.5) - image.shape[0] // 2
+        box = Box(left + label[0], top + label[1], left + label[2], top + label[3])
+        within = sphere.clip.left <= box.left - gap and box.right + gap <= sphere.clip.right
+        if not words or (within and not any(box.overlaps(other) for other in obstacles)):
             break
-    image, label = _image(words, size, scale, half, gap, behind, leftwards)
-    left, top = (
-        round(x - 0.5) - (image.shape[1] - half - 1 if leftwards else half),
-        round(y - 0.5) - image.shape[0] // 2,
-    )
-    box = Box(left + label[0], top + label[1], left + label[2], top + label[3])
     return Placed(x, y, behind, box, Layer(image, left, top))
 
 

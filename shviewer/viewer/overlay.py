@@ -64,6 +64,18 @@ class Overlay:
     plane: Plane | None = None
     """The time-error plane, if it is shown; what is written in it is among the boxes, too."""
     convergence: Convergence | None = None
+
+    @property
+    def sheet(self) -> Box | None:
+        """Where a sheet lies over the spheres."""
+        shown = self.plane or self.convergence
+        return shown.box if shown else None
+
+    @property
+    def obstacles(self) -> tuple[Box, ...]:
+        """What is written, and the sheet: what else is laid over the spheres keeps clear of."""
+        return (*self.boxes.values(), *((self.sheet,) if self.sheet else ()))
+
     """Likewise."""
 
 
@@ -146,16 +158,18 @@ class _Painter:
         plural = "s" if state.n_bands > 1 else ""
         bands = f"{caption(state)}{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
         original = "Original" if state.quantity == "radiance" else "Irradiance"
+        suns = len(picture.subject.suns)
+        if picture.surfaces and suns:
+            original = f"{original} without sun{'s' if suns > 1 else ''}"
         if picture.surfaces and picture.surfaces[0].clipped:
             original = f"{original}, cut at the circle"
         self.text("original", left, y, original, 17, INK, "mm")
-        suns = len(picture.subject.suns)
         apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
         changes = [change for change in (apart, describe_window(state), muted) if change]
         if picture.surfaces and picture.surfaces[1].clipped:
             changes.append("cut at the circle")
         if state.basis is not None:
-            value = float(picture.coefficients[index(*state.basis)] @ LUMINANCE)
+            value = float(picture.projection.coefficients[index(*state.basis)] @ LUMINANCE)
             bands, changes = describe_basis(state), [f"coefficient {radiance(value, picture.figures.extremes.peak)}"]
         captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
         any(self.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
@@ -170,6 +184,8 @@ class _Painter:
         if state.error != "off":
             error = at.spheres[-1]
             kind = "Error" if state.lobe_view else f"{state.error.capitalize()} error"
+            if picture.surfaces and picture.surfaces[2].clipped:
+                kind = f"{kind}, cut at the circle"
             self.text("error", error.x, error.caption_y, kind, 17, INK, "mm")
         names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
         words, said = describe_light(picture), False
@@ -307,6 +323,8 @@ def describe_light(picture: Picture) -> list[str]:
 
 def describe_evaluation(picture: Picture, timing: bool) -> str:
     """How the reconstruction is drawn; in a picture that does not depend on the machine only if it is not the sum."""
+    if picture.surfaces:
+        return ""
     if picture.reconstruction_map is None:
         return "summed per pixel" if timing else ""
     height, width = picture.reconstruction_map.shape[:2]

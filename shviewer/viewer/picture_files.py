@@ -31,7 +31,7 @@ PIXEL_STEP = 2
 """Two pixels differ if any channel does by more than this many of 255: rounding differs by 1 between drivers."""
 
 
-def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
+def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
     """Everything that made the picture, as one JSON text; equal arguments give equal text."""
     state, figures, projection = picture.state, picture.figures, picture.projection
     extremes, scale = figures.extremes, picture.error_scale
@@ -69,6 +69,9 @@ def metadata(picture: Picture, composition: Composition, opengl: str) -> str:
             "largest_direction_in_light": scale.direction.tolist(),
             "colour_map": map_of(scale.kind),
         },
+        "overlay": overlay,
+        "marks": state.marks,
+        "sheet": state.sheet,
         "lobe_view": state.lobe_view,
         "basis": state.basis,
         "evaluated": "direct" if picture.reconstruction_map is None else "map",

@@ -31,7 +31,7 @@ def save_picture(
     GraphicsError, ShaderError or OutputError if that is impossible; then `out` is what it was.
     """
     with headless_renderer() as renderer:
-        text = metadata(picture, composition, renderer.version)
+        text = metadata(picture, composition, renderer.version, overlay=overlay)
         if out.suffix.lower() == ".exr":
             write_exr(out, render_linear(renderer, picture, composition), text)
             return None
@@ -79,7 +79,7 @@ def render_rgb(
     layers: tuple[Layer, ...] = ()
     if overlay:
         written = draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
-        layers = (*mark_layers(picture, composition), *written.layers)
+        layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
     renderer.show(picture)
     return read_rgb(renderer, composition, layers)
 
@@ -91,7 +91,10 @@ def read_rgb(renderer: Renderer, composition: Composition, layers: Sequence[Laye
 
 
 def render_linear(renderer: Renderer, picture: Picture, composition: Composition) -> NDArray[np.float32]:
-    """Scene-linear radiance of both spheres, negative where it is, 0 around them: (height, width, 3), top row first."""
+    """Scene-linear radiance of the spheres, of the third one its error: (height, width, 3), top row first.
+
+    Negative where it is, 0 around them.
+    """
     renderer.show(picture)
     data = np.frombuffer(_read(renderer, composition, "f4"), dtype=np.float32)
     return data.reshape(_shape(composition))[::-1, :, :3].copy()

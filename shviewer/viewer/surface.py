@@ -113,7 +113,7 @@ def surface(values: Floats, scale: Scale) -> Surface:
     return Surface(np.clip(scaled, -1, 1), longest > 1 + 1e-5)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=8)
 def basis_surface(l: int, m: int, rows: int) -> Surface:
     """Y(l, m), its largest magnitude being the radius 1."""
     values = sample_basis(l, m, rows)

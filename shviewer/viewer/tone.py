@@ -1,7 +1,7 @@
 """Tone curves: what becomes of an exposed radiance before sRGB. shaders/display.glsl has the same formulas.
 
-A curve takes [0, infinity) to [0, 1], without one to itself. Automatic exposure needs the way back: which radiance is shown at
-a given level.
+A curve lifts the dark and bends towards white, or a little beyond it, where colours are cut; without one nothing is bent.
+Automatic exposure needs the way back: which radiance is shown at a given level.
 """
 
 from __future__ import annotations
@@ -25,9 +25,13 @@ LOG_RANGE = 1000.0
 """log(1 + k x) / log(1 + k): ten stops below white are told apart."""
 
 
+BRIGHTEST_EXPOSED = 1e6
+"""What is brighter counts as this: it is white under every curve, and its square is finite in float32."""
+
+
 def toned(exposed: NDArray[np.floating], tone: str) -> Array:
     """What is shown of exposed radiance >= 0, any shape, by one of the TONES."""
-    x = np.asarray(exposed, dtype=np.float64)
+    x: Array = np.minimum(exposed, BRIGHTEST_EXPOSED).astype(np.float64)
     if tone == "reinhard":  # [E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, eq. 3]
         return np.asarray(x / (1 + x))
     if tone == "aces":

@@ -6,6 +6,7 @@ that Ctrl-C in the terminal is heard at once; a watched file is looked at then, 
 
 from __future__ import annotations
 
+import math
 import sys
 from dataclasses import replace
 from time import perf_counter
@@ -298,7 +299,8 @@ class Window:
         The place comes with the event: asking for it would give where the mouse is by now, events later.
         """
         window_size, pixels = glfw.get_window_size(self.handle), glfw.get_framebuffer_size(self.handle)
-        self.mouse = x * pixels[0] / max(window_size[0], 1), y * pixels[1] / max(window_size[1], 1)
+        scale = pixels[0] / max(window_size[0], 1), pixels[1] / max(window_size[1], 1)
+        self.mouse = math.floor(x * scale[0]) + 0.5, math.floor(y * scale[1]) + 0.5  # the middle of a pixel
         composition = self.composition()
         if composition is None:
             return
@@ -318,6 +320,7 @@ class Window:
     def _hover(self, composition: Composition) -> None:
         """Show the values under the mouse, or show them no more."""
         over = any(sphere.position(*self.mouse) is not None for sphere in composition.spheres)
+        over = over and not self.state.lobe_view and not self.state.help_visible
         if over or self.hovering:
             self.hovering = over
             self.frames_due = max(self.frames_due, 1)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
+from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobes import Lobe
 from shviewer.viewer.colour_maps import map_of, table
 from shviewer.viewer.composition import Box, Composition, Sphere
@@ -107,6 +108,20 @@ def test_an_exact_reconstruction_has_no_colour_but_that_of_zero(renderer: Render
     assert (np.abs(drawn.astype(int) - middle[0]) <= 2).all()
 
 
+@pytest.mark.parametrize("error", ["signed", "absolute", "relative"])
+def test_what_float32_makes_of_no_error_is_not_blown_up_to_colours(renderer: Renderer, error: str) -> None:
+    """128 bands hold all of the studio: what is left is rounding, in float64 of 1e-15 and in the shader of 1e-7."""
+    frame = three_spheres()
+    picture = picture_of("studio", n_bands=128, error=error)
+    assert picture.error_scale is not None
+    assert not picture.error_scale.worth_showing
+    seen = picture_view(frame, ERROR, picture)
+    drawn = render_rgb(renderer, picture, frame, overlay=False)[seen.mask][seen.facing > 0.2].astype(int)
+    colours = table(map_of(error)).astype(int)
+    zero = colours[127] if error == "signed" else colours[0]
+    assert np.median(np.abs(drawn - zero).max(axis=1)) < 30
+
+
 def test_where_a_sun_was_split_off_the_error_is_that_of_the_rest(renderer: Renderer) -> None:
     frame = three_spheres()
     sun = Lobe(Disc(0.04), [0.3, 0.9, 0.3], [400.0, 300.0, 200.0])
@@ -191,6 +206,37 @@ def test_negative_radiance_has_its_hue_under_every_curve(renderer: Renderer) -> 
         blue = drawn[(value < -0.05) & (seen.facing > 0.2)]
         assert (blue[:, 2] > blue[:, 1]).all()
         assert (blue[:, 1] > blue[:, 0]).all()
+
+
+@pytest.mark.parametrize("tone", TONES)
+@pytest.mark.parametrize("stops", [-64.0, 64.0])
+def test_no_exposure_makes_anything_but_black_or_white_of_a_grey_light(
+    renderer: Renderer, tone: str, stops: float
+) -> None:
+    frame = three_spheres()
+    picture = picture_of("constant", tone=tone, exposure_stops=stops)
+    seen = picture_view(frame, ORIGINAL, picture)
+    drawn = render_rgb(renderer, picture, frame, overlay=False)[seen.mask][seen.facing > 0.2]
+    assert (drawn == (255 if stops > 0 else 0)).all()
+
+
+@pytest.mark.parametrize("tone", TONES)
+def test_the_border_of_what_is_negative_is_black_on_both_sides(renderer: Renderer, tone: str) -> None:
+    """Channels of both signs whose luminance is just above or below zero: neither may look like light or like ringing."""
+    frame = three_spheres()
+    for luminance in (-1e-5, 1e-5):
+        red = (luminance - 0.7152 * 0.1 - 0.0722 * 0.1) / 0.2126
+        colour = np.array([red, 0.1, 0.1])
+        light = FunctionLight(lambda directions, colour=colour: np.tile(colour, (len(directions), 1)), "border")
+        picture = picture_of(light, tone=tone, exposure_stops=0.0)
+        seen = picture_view(frame, ORIGINAL, picture)
+        drawn = render_rgb(renderer, picture, frame, overlay=False)[seen.mask][seen.facing > 0.2]
+        assert drawn.max() < 40
+    plain = picture_of(
+        FunctionLight(lambda directions: np.tile([0.0, 0.0, 0.5], (len(directions), 1)), "blue"), exposure_stops=0.0
+    )
+    seen = picture_view(frame, ORIGINAL, plain)
+    assert render_rgb(renderer, plain, frame, overlay=False)[seen.mask][:, 2].max() >= 187  # no light is faded
 
 
 def test_pixels_and_positions_agree(renderer: Renderer) -> None:

@@ -11,6 +11,7 @@ from shviewer.harmonics.extremes import ErrorGrid
 from shviewer.harmonics.metrics import (
     band_power,
     band_weights,
+    channel_figures,
     relative,
     squared_error,
 )
@@ -290,3 +291,14 @@ def test_a_landmark_that_is_not_the_worst_place_changes_nothing():
 def test_the_peak_is_the_largest_magnitude_of_the_original():
     negative = LobeLight((Lobe(Constant(), np.array([0, 0, 1.0]), np.array([-3.0, 1.0, 2.0])),))
     assert ErrorGrid(negative.radiance, NOWHERE, 8).compare(np.zeros((1, 3))).peak == 3
+
+
+def test_a_colour_whose_luminance_cancels_has_figures() -> None:
+    """Its luminance is 1e-5 of its channels, and rounding is that of the channels."""
+    red = (1e-5 - 0.7152 * 0.1 - 0.0722 * 0.1) / 0.2126
+    exact = np.sqrt(4 * np.pi) * np.array([[red, 0.1, 0.1]])
+    products = exact.T @ exact * (1 - 1e-15)
+    figures = channel_figures(products, exact, exact, 0.4)
+    assert figures["all"].relative_l2 < 1e-7
+    with pytest.raises(ValueError, match="more energy than the light"):
+        channel_figures(products * 0.99, exact, exact, 0.4)

@@ -8,6 +8,7 @@ import pytest
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.marks import mark_layers, marks_of, place_marks
+from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
@@ -47,7 +48,9 @@ def test_the_value_at_the_pixel_of_the_mark_is_the_figure() -> None:
     for light_rotation in ((0.0, 0.0, 0.0, 1.0), (0.5, 0.1, 0.3, np.sqrt(0.65))):
         shown = picture(lights=("studio",), n_bands=6, error="absolute", light_rotation=light_rotation)
         composition = frame(shown)
-        for name, mark in place_marks(shown, composition).items():
+        placed = place_marks(shown, composition)
+        assert set(placed) == {"minimum", "largest"}
+        for name, mark in placed.items():
             sphere = composition.spheres[1 if name == "minimum" else 2]
             right, up = (mark.x - sphere.x) / sphere.radius, (sphere.y - mark.y) / sphere.radius
             towards = np.sqrt(max(0.0, 1 - right**2 - up**2)) * (-1 if mark.behind else 1)
@@ -90,7 +93,13 @@ def test_there_are_no_marks_where_none_are_wanted(changes: dict[str, object]) ->
 def test_the_words_of_a_mark_stay_in_the_cell_of_its_sphere(size: tuple[int, int], camera: tuple[float, float]) -> None:
     shown = picture(error="signed", camera=camera)
     composition = frame(shown, *size)
-    for name, mark in place_marks(shown, composition).items():
+    obstacles = draw_overlay(shown, composition).obstacles
+    placed = place_marks(shown, composition, obstacles)
+    assert set(placed) == {"minimum", "largest"}
+    for name, mark in placed.items():
+        if mark.label.right - mark.label.left < 3:
+            continue  # no room for words, and none written
+        assert not any(mark.label.overlaps(other) for other in obstacles)
         cell = composition.spheres[1 if name == "minimum" else 2].clip
         assert cell.left <= mark.label.left
         assert mark.label.right <= cell.right

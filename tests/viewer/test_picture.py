@@ -15,10 +15,11 @@ from shviewer.lights.light import find_light
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import compose
 from shviewer.viewer.layout import map_size
-from shviewer.viewer.picture import Picture, check, prepare
+from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.view_limits import check
 
 
 def picture(light: object = "green", **changes: object) -> Picture:

@@ -17,14 +17,16 @@ def picture(**changes: object) -> Picture:
 
 
 def test_at_the_marks_the_probe_reads_the_figures() -> None:
-    shown = picture(error="signed", camera=(100.0, 20.0))
     composition = compose(1280, 640, n_spheres=3)
-    for name, mark in place_marks(shown, composition).items():
-        if mark.behind:
-            continue
+    extremes = picture().figures.extremes
+    for name, direction in (("minimum", extremes.minimum_direction), ("largest", extremes.max_error_direction)):
+        x, y, z = direction
+        camera = float(np.degrees(np.arctan2(y, x))) % 360 + 5, float(np.degrees(np.arcsin(z))) * 0.9
+        shown = picture(error="signed", camera=camera)
+        mark = place_marks(shown, composition)[name]
+        assert not mark.behind
         found = probe(shown, composition, mark.x, mark.y)
         assert found is not None
-        extremes = shown.figures.extremes
         if name == "minimum":
             assert found.reconstruction.min() == pytest.approx(extremes.minimum, abs=1e-9)
             np.testing.assert_allclose(found.direction, extremes.minimum_direction, atol=1e-6)

@@ -17,7 +17,6 @@ from shviewer.viewer import camera
 from shviewer.viewer.actions import open_light, orbit, rotate_light, step_sweep, zoom
 from shviewer.viewer.keys import ACTIONS, BINDINGS, key_table, press
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
-from shviewer.viewer.picture import check
 from shviewer.viewer.state import (
     CAMERA_HOME,
     METHODS,
@@ -25,6 +24,7 @@ from shviewer.viewer.state import (
     describe_exposure,
     describe_muted,
 )
+from shviewer.viewer.view_limits import check
 
 LIGHTS = ("green", "studio", "sun-sky")
 START = ViewState(lights=LIGHTS)

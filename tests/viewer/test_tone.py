@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from shviewer.viewer.picture import WHITE_LEVEL, prepare
+from shviewer.viewer.derived import WHITE_LEVEL
+from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.tone import TONES, exposed_for, toned
 

@@ -1,0 +1,125 @@
+"""What is drawn of a projection beside its coefficients, each computed once: map, surfaces, scale of the error, exposure."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes import DISPLAY_ROUNDS, at_directions, climb
+from shviewer.harmonics.quadrature import directions_from_angles
+from shviewer.harmonics.synthesis import Synthesis
+from shviewer.lights.light import Light
+from shviewer.viewer.analysis import BEST, Projection, error_grid, grid_rows, project, reconstruct
+from shviewer.viewer.error_view import NOISE, ErrorScale, automatic_range, error_values
+from shviewer.viewer.layout import map_size
+from shviewer.viewer.memory import remember
+from shviewer.viewer.state import ViewState
+from shviewer.viewer.surface import (
+    LIGHT_ROWS,
+    Surface,
+    basis_surface,
+    common_scale,
+    rows_for,
+    sample_light,
+    sample_reconstruction,
+    surface,
+)
+from shviewer.viewer.tone import TONES, exposed_for
+from shviewer.viewer.view_limits import DIMMEST
+
+WHITE_PERCENTILE = 0.99
+"""Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
+
+WHITE_LEVEL = 0.8
+"""What is shown of it, linear: the brightest hundredth still stands out above it."""
+
+SURFACE_RADIUS = 222.0
+"""Pixels at zoom 1 for which surfaces are made fine enough: those of the 1280 x 640 design."""
+
+Shape = tuple[int, tuple[int, ...], str, float | None]
+"""What of a projection is shown: bands, those muted, the window and its width."""
+
+
+def exposure_stops(state: ViewState, light: Light) -> float:
+    """The exposure in use: fixed by the state, or such that 99 % of the original stays just below white."""
+    base = _automatic_exposure(light, state.tone) if state.exposure_stops is None else state.exposure_stops
+    return base + state.exposure_offset
+
+
+def surfaces(state: ViewState, light: Light, projection: Projection, shape: Shape) -> tuple[Surface, ...]:
+    """Of the light, its reconstruction or a basis function in place of it, and their difference."""
+    radius = SURFACE_RADIUS * state.zoom
+    original, reconstruction, error = _compared_surfaces(
+        light, projection, shape, max(LIGHT_ROWS, rows_for(state.n_bands, radius))
+    )
+    if state.basis is not None:
+        l, m = state.basis
+        reconstruction = basis_surface(l, m, rows_for(l + 1, radius))
+    return (original, reconstruction, error)[: state.n_spheres]
+
+
+@remember(most=2)
+def reconstruction_map(light: Light, projection: Projection, shape: Shape) -> NDArray[np.float32]:
+    shown, _ = reconstruct(light, projection, *shape)
+    return Synthesis(shown).spline_map(*map_size(shape[0]))
+
+
+@remember(most=4)
+def _compared_surfaces(
+    light: Light,
+    projection: Projection,
+    shape: Shape,
+    rows: int,
+) -> tuple[Surface, Surface, Surface]:
+    shown, _ = reconstruct(light, projection, *shape)
+    original, reconstruction = sample_light(light, rows), sample_reconstruction(shown, rows)
+    scale = common_scale(original, reconstruction)
+    values = original, reconstruction, reconstruction - original
+    return surface(values[0], scale), surface(values[1], scale), surface(values[2], scale)
+
+
+@remember(most=16)
+def error_scale(
+    light: Light,
+    projection: Projection,
+    shape: Shape,
+    kind: str,
+) -> ErrorScale:
+    """From the grid on which the figures are found; the largest relative error, which is no figure, is climbed to there.
+
+    The floor of the relative error is the light's mean.
+    """
+    shown, figures = reconstruct(light, projection, *shape)
+    exact = project(light, *BEST, projection.n_bands).coefficients
+    floor = max(float(np.abs(exact[0]).mean()) / (2 * np.sqrt(np.pi)), DIMMEST)
+    grid, synthesis = error_grid(light, grid_rows(shape[0])), Synthesis(shown)
+    values = synthesis.on_rows(grid.theta, len(grid.phi))
+    original, reconstruction = (part.transpose(0, 2, 1).reshape(-1, 3) for part in (grid.original, values))
+    errors = error_values(kind, original, reconstruction, floor)
+
+    def error_at(directions: Array) -> Array:
+        return error_values(kind, light.radiance(directions), at_directions(synthesis, directions), floor)
+
+    direction = np.array(figures.extremes.max_error_direction)
+    if kind == "relative":
+        row, column = divmod(int(errors.argmax()), len(grid.phi))
+        start = directions_from_angles(grid.theta[[row]], grid.phi[[column]])
+        direction = climb(error_at, start, np.pi / len(grid.theta), DISPLAY_ROUNDS)[1][0]
+    largest = float(error_at(direction[None])[0])
+    noise = NOISE * figures.extremes.peak / (floor if kind == "relative" else 1.0)
+    end = automatic_range(kind, errors, np.repeat(grid.row_share, len(grid.phi)), abs(largest), noise)
+    return ErrorScale(kind, floor, largest, direction, max(end, DIMMEST), noise)
+
+
+@remember(most=len(TONES))
+def _automatic_exposure(light: Light, tone: str) -> float:
+    grid = error_grid(light, grid_rows(1))
+    brightest = grid.original.max(axis=1)
+    order = np.argsort(brightest, axis=None)
+    share = np.cumsum(np.broadcast_to(grid.row_share[:, None], brightest.shape).ravel()[order])
+    position = min(int(np.searchsorted(share, WHITE_PERCENTILE)), len(order) - 1)
+    level = float(brightest.ravel()[order[position]])
+    if level <= 0:
+        level = grid.peak
+    return float(np.log2(exposed_for(WHITE_LEVEL, tone) / level)) if level > 0 else 0.0
