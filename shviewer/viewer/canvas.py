@@ -9,11 +9,12 @@ from time import perf_counter
 import moderngl
 
 from shviewer.errors import ShviewerError
+from shviewer.viewer.captions import describe_evaluation
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.evaluation import Evaluation
 from shviewer.viewer.layers import Layer
 from shviewer.viewer.marks import mark_layers
-from shviewer.viewer.overlay import Overlay, describe_evaluation, draw_overlay
+from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.plane import measured
 from shviewer.viewer.probe import probe, probe_layers

@@ -62,7 +62,8 @@ def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Compositi
             [(base, top), (point, top + (height - 1) / 2), (base, top + height - 1)],
             fill=(*map(int, colours[colour]), 255),
         )
-    boxes = {"colour_bar": Box(left - tip, top, right + tip, top + height)}
+    notch_end = top + height + max(1, round(composition.px(2)))
+    boxes = {"colour_bar": Box(left - tip, top, right + tip, notch_end)}
     face = font(max(round(composition.px(12)), MIN_TYPE))
     low = -scale.end if signed else 0.0
     for most in (9, 7, 5, 3, 2):
@@ -80,9 +81,7 @@ def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Compositi
     else:
         return boxes
     for number, (notch, x, text) in enumerate(zip(notches, places, texts, strict=True)):
-        draw.line(
-            (round(notch), top + height, round(notch), top + height + max(1, round(composition.px(2)))), fill=GREY
-        )
+        draw.line((round(notch), top + height, round(notch), notch_end), fill=GREY)
         draw.text((x, y), text, GREY, face, anchor="ma")
         boxes[f"error_tick_{number}"] = found[number]
     return boxes

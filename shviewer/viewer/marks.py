@@ -119,9 +119,7 @@ def _image(
     image.paste((GREY if behind else INK), place, ring)
     draw = ImageDraw.Draw(image)
     x, y = (1 if leftwards else side + gap), height / 2
-    draw.text(
-        (x, y), text, GREY if behind else INK, face, anchor="lm", stroke_width=max(1, round(scale)), stroke_fill=DARK
-    )
+    draw.text((x, y), text, INK, face, anchor="lm", stroke_width=max(1, round(scale)), stroke_fill=DARK)
     pixels = np.asarray(image)
     pixels.flags.writeable = False
     left, top, right, bottom = draw.textbbox((x, y), text, font=face, anchor="lm")

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.band_axis import SLOT_COUNTS
+from shviewer.viewer.captions import describe_light
 from shviewer.viewer.composition import Box, compose
 from shviewer.viewer.lettering import ACCENT, WARNING, percent, radiance
-from shviewer.viewer.overlay import Overlay, describe_light, draw_overlay
+from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
