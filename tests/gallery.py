@@ -29,8 +29,9 @@ def commands() -> list[list[str]]:
 
 
 def pictures() -> list[str]:
-    """The paths of the pictures that stand there."""
-    return re.findall(r"!\[[^\]]+\]\(([^)]+)\)", section())
+    """The paths of the pictures that the README shows up to there, but for those of the report."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8").partition(section())
+    return re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text[0] + text[1])
 
 
 if __name__ == "__main__":

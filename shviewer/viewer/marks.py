@@ -69,13 +69,13 @@ def marks_of(picture: Picture) -> list[Mark]:
 
 
 def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[Box] = ()) -> dict[str, Placed]:
-    """The marks that are in sight, by name; their words keep clear of the obstacles."""
+    """The marks that are in sight, by name: under an obstacle there is none, and their words keep clear of them."""
     placed = {}
     for mark in marks_of(picture):
         sphere = composition.spheres[mark.sphere]
         right, up, towards = mark.direction @ picture.light_from_world @ picture.world_from_view
         x, y = sphere.x + sphere.radius * right, sphere.y - sphere.radius * up
-        if sphere.clip.contains(x, y):
+        if sphere.clip.contains(x, y) and not any(other.contains(x, y) for other in obstacles):
             placed[mark.name] = _place(mark.text, x, y, bool(towards < 0), sphere, composition, obstacles)
     return placed
 
