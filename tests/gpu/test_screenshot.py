@@ -169,7 +169,7 @@ def test_the_screenshot_mode_needs_no_glfw(tmp_path: Path) -> None:
 def test_no_overlay_leaves_the_spheres_alone(tmp_path: Path, renderer: Renderer) -> None:
     picture, frame = picture_of("green"), compose(640, 320)
     plain = render_rgb(renderer, picture, frame, overlay=False)
-    full = render_rgb(renderer, picture, frame)
+    full = render_rgb(renderer, picture_of("green", marks=False), frame)
     assert screenshot("a.png", "--no-overlay", "--size", 640, 320, cwd=tmp_path).returncode == 0
     with Image.open(tmp_path / "a.png") as image:
         np.testing.assert_array_equal(np.asarray(image), plain)
@@ -177,7 +177,7 @@ def test_no_overlay_leaves_the_spheres_alone(tmp_path: Path, renderer: Renderer)
     assert changed.any()
     top, bottom = frame.spheres[0].y - frame.spheres[0].radius, frame.spheres[0].y + frame.spheres[0].radius
     inside = changed[int(top) + 25 : int(bottom) - 25]
-    assert not inside.any()  # what is written stands above and below
+    assert not inside.any()  # what is written stands above and below, but for marks
 
 
 # --- comparing with a reference
@@ -342,7 +342,7 @@ def draw_anew(renderer: Renderer) -> None:
     ("file", "old", "new"),
     [
         ("sh.glsl", "int i = 0;", "int i = oops;"),
-        ("display.glsl", "return clamp(shown", "return shown +"),
+        ("display.glsl", "return clamp(luminance", "return luminance +"),
         ("sphere.frag", "colour = vec4(encode", "color = vec4(encode"),
         ("screen.vert", "gl_Position = ", "gl_Place = "),
         ("layer.frag", "texelFetch(", "texelFish("),
