@@ -29,8 +29,8 @@ from shviewer.options import (
 from shviewer.status_line import status_line
 
 if TYPE_CHECKING:
-    from shviewer.viewer.analysis import Subject
     from shviewer.viewer.state import ViewState
+    from shviewer.viewer.subjects import Subject
 
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
@@ -76,12 +76,12 @@ def _view(options: argparse.Namespace) -> int:
             print(f"{name:<20}{find_light(name).description}")
         return 0
     from shviewer.viewer import window
-    from shviewer.viewer.analysis import subject
     from shviewer.viewer.composition import compose
     from shviewer.viewer.glfw_window import NoDisplayError
     from shviewer.viewer.picture import prepare
     from shviewer.viewer.picture_files import file_stem
     from shviewer.viewer.screenshot import save_picture
+    from shviewer.viewer.subjects import subject
 
     state = state_from(options, all_lights=True)
     _print_notes(subject(state))
@@ -272,8 +272,8 @@ def _print_notes(subject: Subject) -> None:
 
 def _print_suspicion(state: ViewState) -> None:
     """By which usual mistake coefficients that are compared are off."""
-    from shviewer.viewer.analysis import load_light
     from shviewer.viewer.comparison import suspicion
+    from shviewer.viewer.subjects import load_light
 
     if state.compare and (found := suspicion(load_light(state), state.compare)):
         print(f"shviewer: {found}", file=sys.stderr)

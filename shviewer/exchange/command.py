@@ -13,9 +13,9 @@ from shviewer.exchange.writing import FORMATS, encode
 from shviewer.harmonics.conventions.convention import OVER_PI, Convention
 from shviewer.harmonics.conventions.programs import parse_convention
 from shviewer.lights.light import split_light
-from shviewer.viewer.analysis import subject
 from shviewer.viewer.picture_files import file_stem, write_atomically
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import subject
 
 STDOUT = "-"
 BATCH_FAILED = 1

@@ -15,10 +15,12 @@ from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.conventions.convention import IRRADIANCE, Convention
 from shviewer.harmonics.conventions.programs import parse_convention
 from shviewer.lights.coefficients.stamp import Value, stamp_of
-from shviewer.viewer.analysis import Figures, Subject, project, reconstruct, sampling_of, subject
+from shviewer.viewer.analysis import Figures, reconstruct
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.picture_files import write_atomically
+from shviewer.viewer.projections import project, sampling_of
 from shviewer.viewer.state import ViewState, light_name
+from shviewer.viewer.subjects import Subject, subject
 from shviewer.viewer.view_limits import check
 
 ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")

@@ -48,7 +48,8 @@ def black(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
 
 def figures_of(light: Light) -> list[float]:
     """What a picture of 5 bands says: relative L2 error, and the energy of each band."""
-    from shviewer.viewer.analysis import BEST, project, reconstruct
+    from shviewer.viewer.analysis import reconstruct
+    from shviewer.viewer.projections import BEST, project
 
     figures = reconstruct(light, project(light, *BEST, 32), 5, (), "none", None)[1]
     return [figures.relative_l2, *figures.energy_share]

@@ -1,20 +1,15 @@
-"""What is known of a light: its projections, the figures of a reconstruction, the band counts it needs.
+"""What is known of a light and its reconstruction: figures, and the band counts that a tolerance needs.
 
-What is expensive is remembered (memory.py): a light is read once, projected once per method to at least MAX_DIRECT_BANDS
-bands, and sampled once for its error figures. A band key then costs a sum of what is there.
+What is expensive is remembered (memory.py): a light is sampled once for its error figures.
 """
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from collections.abc import Hashable
-from dataclasses import dataclass, field, replace
-from time import perf_counter
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shviewer.errors import LightError, UsageError
+from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
 from shviewer.harmonics.extremes import ErrorGrid, Extremes
@@ -32,68 +27,22 @@ from shviewer.harmonics.metrics import (
     split_half_estimate,
     squared_error,
 )
-from shviewer.harmonics.projection import project_product
-from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.irradiance import IrradianceLight
-from shviewer.lights.light import Light, built_in_lights, find_light
-from shviewer.lights.sun import Split, Sun, split_suns
+from shviewer.lights.light import Light
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
-from shviewer.viewer.memory import MEMORY, remember
+from shviewer.viewer.memory import remember
+from shviewer.viewer.projections import BEST, Projection, project, sampling_of
 from shviewer.viewer.state import QUANTITIES, ViewState
-from shviewer.viewer.watching import Stamp, stamp
-
-BEST = ("best", 0, 0)
-"""Method, samples and seed of the best way, to which the last two do not matter."""
+from shviewer.viewer.subjects import irradiance_of, load_light
 
 MIN_ESTIMATE = 256
 """Fewer samples than this do not even tell how noisy they are."""
 
 HALF_SEED = 2**31
 """Added to the seed for the second, independent set of samples."""
-
-MOST_MEASUREMENTS = 128
-"""Per light, quantity and bands: more than the keys reach, of at most 1 KiB each."""
-
-
-@dataclass(frozen=True, eq=False)
-class Projection:
-    """Coefficients (n**2, 3) of all bands computed, by which method, from how many evaluations, in what time."""
-
-    coefficients: Array
-    method: str
-    evaluations: int | None
-    milliseconds: float
-
-    @property
-    def n_bands(self) -> int:
-        return count_bands(self.coefficients)
-
-    @property
-    def evaluation_noun(self) -> str:
-        """What its evaluations are called."""
-        return "samples" if self.method == "jittered" else "points"
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """What one way to project a light cost, and how good it is: a few numbers, kept longer than the projection itself."""
-
-    method: str
-    samples: int
-    seed: int
-    words: str
-    """The method as `Projection` names it."""
-    milliseconds: float
-    """The least of all repetitions."""
-    repetitions: int
-    errors: Array = field(compare=False)
-    """Relative L2 error with the first n = 1 ... N bands, (N,); it follows from the other fields and the light."""
-
-    @property
-    def sampling(self) -> tuple[str, int, int]:
-        return self.method, self.samples, self.seed
 
 
 @dataclass(frozen=True)
@@ -131,84 +80,6 @@ class Figures:
         return self.channels["all"].relative_l2
 
 
-def sampling_of(state: ViewState) -> tuple[str | CoefficientLight, int, int]:
-    """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them.
-
-    Coefficients that are given are a method, too: that of the file they come from.
-    """
-    return way_of(state) if state.compare is None else (state.compare, 0, 0)
-
-
-def way_of(state: ViewState) -> tuple[str, int, int]:
-    """The same by name; coefficients that are given are no way to project, and nothing is measured of them."""
-    if state.compare is not None:
-        return "given", 0, 0
-    return BEST if state.method == "best" else (state.method, state.samples, state.seed)
-
-
-@dataclass(frozen=True, eq=False)
-class Subject:
-    """What is shown as the original, and what is projected: the same, unless suns are split off."""
-
-    whole: Light
-    light: Light
-    """What the figures are of."""
-    suns: tuple[Sun, ...] = ()
-    refusal: str = ""
-    """Why nothing was split off although it was asked for."""
-
-
-def subject(state: ViewState) -> Subject:
-    """Of the state's light, or of its irradiance; a light named by text is read once."""
-    light = state.light
-    if isinstance(light, str):
-        light = MEMORY.named(_name(state)) or read_again(state)
-    found = Subject(light, light)
-    if state.split_sun:
-        split = _split(light)
-        found = replace(found, refusal=split) if isinstance(split, str) else Subject(light, split.rest, split.suns)
-    if state.quantity == "irradiance":
-        return replace(found, whole=_irradiance(found.whole), light=_irradiance(found.light))
-    return found
-
-
-def load_light(state: ViewState) -> Light:
-    """The light that is projected."""
-    return subject(state).light
-
-
-def read_again(state: ViewState) -> Light:
-    """The light that the state names, read anew. LightError leaves what was known of it as it was.
-
-    A light that is not named by a text is what it is.
-    """
-    if not isinstance(state.light, str):
-        return state.light
-    read = stamp(state.light)  # before: what is written during the reading is a later change
-    safe = state.light in built_in_lights()
-    light = find_light(state.light, replace(state.reading, isolated=False) if safe else state.reading)
-    MEMORY.name(_name(state), light)
-    MEMORY.results(light, stamp)[None] = read
-    return light
-
-
-def keep_light(state: ViewState, light: Light) -> None:
-    """Let the state's text go on meaning `light`, whatever its file holds by now."""
-    if isinstance(state.light, str):
-        MEMORY.name(_name(state), light)
-
-
-def stamp_read(state: ViewState) -> Stamp | None:
-    """The stamp that the file of the state's light had when it was read; None if that is not known."""
-    light = MEMORY.named(_name(state))
-    found: Stamp | None = MEMORY.results(light, stamp).get(None) if light is not None else None
-    return found
-
-
-def _name(state: ViewState) -> Hashable:
-    return state.light, state.reading
-
-
 def needs(state: ViewState) -> Needs:
     """How many bands the state's light needs for its tolerance, by the best way and for both quantities.
 
@@ -241,102 +112,6 @@ def estimate_from_samples(state: ViewState) -> SampleEstimate:
     return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
 
 
-def project(light: Light, method: str | CoefficientLight, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project a light; the irradiance of a sampled light comes from the samples of the light itself.
-
-    method: "best", "jittered" or "gauss-legendre"; or given coefficients, which are taken instead.
-    """
-    if isinstance(method, CoefficientLight):
-        return _given_projection(light, method, n_bands)
-    found = _measured_projection(light, method, samples, seed, n_bands)
-    _known(light, n_bands).move_to_end((method, samples, seed))
-    return found
-
-
-def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
-    """What this session knows of the cost of projecting the light to `n_bands` bands, by method, samples and seed."""
-    return tuple(found for _, found in sorted(_known(light, n_bands).items())) if light in MEMORY else ()
-
-
-def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Measurement]:
-    known: OrderedDict[Any, Measurement] = MEMORY.results(
-        light, (Measurement, isinstance(light, IrradianceLight), n_bands)
-    )
-    return known
-
-
-def _measure(light: Light, sampling: tuple[str, int, int], projection: Projection) -> None:
-    """Add to what is known of the cost of this way to project."""
-    n_bands, shown = projection.n_bands, projection.coefficients
-    exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
-    errors = errors_by_band_count(light.products(), exact / light.unit, shown / light.unit)
-    known = _known(light, n_bands)
-    if isinstance(light, IrradianceLight) and sampling != BEST:  # the only time spent was that on the light itself
-        known[sampling] = replace(_known(light.source, n_bands)[sampling], errors=errors)
-    else:
-        before = known.get(sampling)
-        least = min(projection.milliseconds, before.milliseconds if before else np.inf)
-        repetitions = 1 + (before.repetitions if before else 0)
-        known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
-    if len(known) > MOST_MEASUREMENTS:
-        known.popitem(last=False)
-
-
-@remember(most=8)
-def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Projection:
-    coefficients = given.coefficients(n_bands)
-    if isinstance(light, IrradianceLight):
-        coefficients = coefficients * per_coefficient(irradiance_factors(n_bands))
-    return Projection(coefficients, f"read as {given.convention}", None, 0.0)
-
-
-@remember(most=16)
-def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """A projection made, timed and measured."""
-    projection = _timed_projection(light, method, samples, seed, n_bands)
-    _measure(light, (method, samples, seed), projection)
-    return projection
-
-
-def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """A projection made and timed."""
-    start = perf_counter()
-    if isinstance(light, IrradianceLight) and method != "best":
-        source = project(light.source, method, samples, seed, n_bands)
-        return replace(source, coefficients=source.coefficients * per_coefficient(irradiance_factors(n_bands)))
-    evaluations = None
-    if method == "jittered":
-        directions = jittered(samples, seed)
-        evaluations = len(directions.weights)
-        coefficients = project_samples(light.integrand, directions, n_bands)
-        words = "jittered"
-    elif method == "gauss-legendre":
-        rule = gauss_legendre(samples)
-        evaluations = len(rule.theta) * rule.n_columns
-        coefficients = project_product(light.integrand, rule, n_bands)[0]
-        words = "Gauss-Legendre"
-    else:
-        coefficients = light.coefficients(n_bands)
-        words = light.best_method
-    return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))
-
-
-@remember(most=1)
-def _split(light: Light) -> Split | str:
-    """The light and its suns apart, or why it has none."""
-    try:
-        split = split_suns(light)
-    except LightError as error:
-        return str(error)
-    MEMORY.belongs(split.rest, light)
-    return split
-
-
-@remember(most=2)
-def _irradiance(light: Light) -> Light:
-    return IrradianceLight(light)
-
-
 @remember(most=16)
 def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
     """The relative L2 error for every band count that is searched, (MAX_SHOWN_BANDS,) or (MAX_DIRECT_BANDS,) of samples."""
@@ -358,7 +133,7 @@ def reconstruct(
     total = float(np.trace(light.products()))
     power = band_power(exact / light.unit).sum(axis=1)
     extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
-    irradiance = light if isinstance(light, IrradianceLight) else _irradiance(light)
+    irradiance = light if isinstance(light, IrradianceLight) else irradiance_of(light)
     cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
     shaded = squared_error(
         irradiance.products().diagonal(), cosine * exact[: n_bands**2] / light.unit, cosine * shown / light.unit

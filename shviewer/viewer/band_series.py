@@ -8,9 +8,10 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count
-from shviewer.viewer.analysis import BEST, errors_of, project, sampling_of
+from shviewer.viewer.analysis import errors_of
 from shviewer.viewer.band_axis import band_slots
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.projections import BEST, project, sampling_of
 
 
 @dataclass(frozen=True)

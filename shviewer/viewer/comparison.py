@@ -13,10 +13,11 @@ from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
-from shviewer.viewer.analysis import BEST, project, subject
 from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.memory import remember
+from shviewer.viewer.projections import BEST, project
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import subject
 
 BAD = 0.02
 """Given coefficients that are farther off than this, relative to the light's own in the same bands, are looked into."""

@@ -10,10 +10,11 @@ from shviewer.harmonics.extremes import DISPLAY_ROUNDS, at_directions, climb
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
-from shviewer.viewer.analysis import BEST, Projection, error_grid, grid_rows, project, reconstruct
+from shviewer.viewer.analysis import error_grid, grid_rows, reconstruct
 from shviewer.viewer.error_view import NOISE, ErrorScale, automatic_range, error_values
 from shviewer.viewer.layout import map_size
 from shviewer.viewer.memory import remember
+from shviewer.viewer.projections import BEST, Projection, project
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.surface import (
     LIGHT_ROWS,

@@ -14,7 +14,7 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.light import IMAGE_SUFFIXES, Light, split_light
 from shviewer.lights.radiance_files import Reading
 from shviewer.lights.sun import Sun
-from shviewer.viewer.analysis import error_grid, grid_rows, load_light, needs, subject
+from shviewer.viewer.analysis import error_grid, grid_rows, needs
 from shviewer.viewer.coefficient_information import (
     CoefficientInformation,
     coefficient_rows,
@@ -22,6 +22,7 @@ from shviewer.viewer.coefficient_information import (
 )
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import load_light, subject
 from shviewer.viewer.watching import stamp
 
 TOLERANCES = (0.10, 0.05, 0.01)

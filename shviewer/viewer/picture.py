@@ -14,24 +14,14 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer import camera
-from shviewer.viewer.analysis import (
-    Figures,
-    Needs,
-    Projection,
-    Subject,
-    error_grid,
-    grid_rows,
-    needs,
-    project,
-    reconstruct,
-    sampling_of,
-    subject,
-)
+from shviewer.viewer.analysis import Figures, Needs, error_grid, grid_rows, needs, reconstruct
 from shviewer.viewer.comparison import suspicion
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.error_view import ErrorScale
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.projections import Projection, project, sampling_of
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import Subject, subject
 from shviewer.viewer.surface import Surface
 from shviewer.viewer.view_limits import BRIGHTEST, DIMMEST, check
 

@@ -14,7 +14,6 @@ from itertools import pairwise
 from PIL import Image
 
 from shviewer.harmonics.metrics import pareto_front
-from shviewer.viewer.analysis import BEST, Measurement, measurements, way_of
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.lettering import (
     ACCENT,
@@ -30,6 +29,7 @@ from shviewer.viewer.lettering import (
 from shviewer.viewer.log_axis import Axis, padded_axis
 from shviewer.viewer.markers import LOOKS, Place
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.projections import BEST, Measurement, measurements, way_of
 from shviewer.viewer.sheet import Entry, Sheet, Size, place
 
 MOST, LEAST = Size(440, 270), Size(380, 190)

@@ -19,7 +19,7 @@ from shviewer.errors import ShviewerError
 from shviewer.lights.light import Light, split_light
 from shviewer.lights.radiance_files import Reading
 from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, step_sweep, toggle_band, with_bands, zoom
-from shviewer.viewer.analysis import keep_light, needs, read_again, stamp_read
+from shviewer.viewer.analysis import needs
 from shviewer.viewer.canvas import Canvas
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.glfw_window import key_name, open_window
@@ -30,6 +30,7 @@ from shviewer.viewer.picture_files import file_stem, metadata, write_numbered
 from shviewer.viewer.playing import Metronome
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState, describe_sanitizing
+from shviewer.viewer.subjects import keep_light, read_again, stamp_read
 from shviewer.viewer.watching import Watch
 
 IDLE_SECONDS = 0.25

@@ -18,8 +18,8 @@ from shviewer.harmonics.conventions.programs import CONVENTIONS
 from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.light import find_light
 from shviewer.lights.radiance_files import Reading
-from shviewer.viewer.analysis import load_light
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import load_light
 
 OVER_PI = ("filament", "unity")
 """They hold irradiance over pi; the others here hold radiance."""

@@ -25,7 +25,8 @@ from shviewer.report.reconstruction_rows import (
 )
 from shviewer.report.subjects import Subject, subject_of
 from shviewer.stability.shader import Shader
-from shviewer.viewer.analysis import BEST, errors_of
+from shviewer.viewer.analysis import errors_of
+from shviewer.viewer.projections import BEST
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import offscreen
 

@@ -17,7 +17,6 @@ from shviewer.lights.coefficients.light import CoefficientLight
 from shviewer.lights.light import find_light
 from shviewer.lights.radiance_files import Reading
 from shviewer.viewer.actions import next_method, reset, with_bands
-from shviewer.viewer.analysis import load_light
 from shviewer.viewer.comparison import as_the_file_holds, caption, suspicion
 from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay import draw_overlay
@@ -25,6 +24,7 @@ from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import load_light
 
 VENICE = find_light("venice_sunset")
 

@@ -13,7 +13,7 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer import band_series as numbers
 from shviewer.viewer.actions import with_bands
-from shviewer.viewer.analysis import BEST, errors_of
+from shviewer.viewer.analysis import errors_of
 from shviewer.viewer.band_series import band_series, errors_by_count
 from shviewer.viewer.composition import Box, Composition, Sphere, compose
 from shviewer.viewer.convergence import EXACT, LEAST, LEFT_OUT, MOST, Convergence
@@ -22,6 +22,7 @@ from shviewer.viewer.log_axis import Axis
 from shviewer.viewer.markers import LOOKS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.projections import BEST
 from shviewer.viewer.sheet import place
 from shviewer.viewer.state import ViewState
 

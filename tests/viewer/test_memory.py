@@ -20,11 +20,11 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light, built_in_lights, find_light
 from shviewer.lights.radiance_files import Reading
-from shviewer.viewer import analysis
-from shviewer.viewer.analysis import keep_light, load_light, read_again, stamp_read
+from shviewer.viewer import analysis, projections
 from shviewer.viewer.memory import MEMORY, MOST_LIGHTS, Memory, Remembered, array_bytes, remember
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import keep_light, load_light, read_again, stamp_read
 from shviewer.viewer.watching import stamp
 
 
@@ -211,12 +211,12 @@ def test_a_functions_file_is_executed_again_at_the_same_size_within_the_same_sec
 def test_a_file_that_has_become_unreadable_leaves_what_is_known(image: Path) -> None:
     state = state_of(image)
     light, read = load_light(state), stamp_read(state)
-    results = analysis.project(light, "best", 0, 0, 32)
+    results = projections.project(light, "best", 0, 0, 32)
     image.write_bytes(b"#?RADIANCE\n")
     with pytest.raises(LightError, match=r"image\.hdr"):
         read_again(state)
     assert load_light(state) is light
-    assert analysis.project(light, "best", 0, 0, 32) is results
+    assert projections.project(light, "best", 0, 0, 32) is results
     assert stamp_read(state) == read != stamp(str(image))
 
 
@@ -236,7 +236,7 @@ def test_the_stamp_is_that_of_the_file_before_it_was_read(image: Path, monkeypat
         image.write_bytes(hdr_file(random_texels(8, 16)) + b"more")
         return light
 
-    monkeypatch.setattr("shviewer.viewer.analysis.find_light", find_and_change)
+    monkeypatch.setattr("shviewer.viewer.subjects.find_light", find_and_change)
     state = state_of(image)
     assert stamp_read(state) is None
     load_light(state)
@@ -258,7 +258,7 @@ def test_only_files_of_ones_own_are_decoded_in_isolation(image: Path, monkeypatc
         asked.append((text, reading.isolated))
         return find_light("green")
 
-    monkeypatch.setattr("shviewer.viewer.analysis.find_light", find)
+    monkeypatch.setattr("shviewer.viewer.subjects.find_light", find)
     for text in ("film_studio", str(image)):
         load_light(ViewState(lights=(text,), reading=Reading(isolated=True)))
         load_light(ViewState(lights=(text,)))  # isolation makes no other light of it

@@ -85,7 +85,7 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
         raise AssertionError("compiled or read again")
 
     monkeypatch.setattr("shviewer.viewer.programs._compile", forbidden)
-    monkeypatch.setattr("shviewer.viewer.analysis.find_light", forbidden)
+    monkeypatch.setattr("shviewer.viewer.subjects.find_light", forbidden)
     for n_bands in (6, 40, 1):
         render_rgb(renderer, picture("studio", n_bands=n_bands), frame)
 

@@ -13,8 +13,7 @@ from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light, find_light
-from shviewer.viewer import analysis, plane
-from shviewer.viewer.analysis import BEST, Measurement, load_light, measurements, project
+from shviewer.viewer import plane, projections
 from shviewer.viewer.composition import Box, compose
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.lettering import ACCENT
@@ -24,7 +23,9 @@ from shviewer.viewer.memory import MEMORY, MOST_LIGHTS
 from shviewer.viewer.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.plane import Plane, measured
+from shviewer.viewer.projections import BEST, Measurement, measurements, project
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import load_light
 
 SIZES = [
     (320, 160), (400, 300), (640, 320), (700, 400), (800, 800), (1280, 640), (1920, 1080), (2560, 1280), (900, 1200),
@@ -107,7 +108,7 @@ def test_a_measurement_outlives_its_projection_and_a_repetition_keeps_the_fastes
         ticks = iter((0.0, milliseconds / 1000))
         with monkeypatch.context() as patched:
             project(light, *BEST, 8)
-            patched.setattr(analysis, "perf_counter", lambda ticks=ticks: next(ticks))
+            patched.setattr(projections, "perf_counter", lambda ticks=ticks: next(ticks))
             project(light, "jittered", 100, 0, 8)
         found = next(found for found in measurements(light, 8) if found.samples == 100)
         seen.append((found.milliseconds, found.repetitions))
@@ -127,7 +128,7 @@ def test_what_was_only_looked_up_is_no_repetition() -> None:
 def test_the_measurements_used_longest_ago_are_forgotten_and_never_the_best_or_the_present(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(analysis, "MOST_MEASUREMENTS", 20)
+    monkeypatch.setattr(projections, "MOST_MEASUREMENTS", 20)
     light = find_light("green")
     for samples in range(100, 140):
         project(light, "jittered", samples, 0, 4)
@@ -140,7 +141,7 @@ def test_the_measurements_used_longest_ago_are_forgotten_and_never_the_best_or_t
 def test_the_irradiance_takes_the_time_of_the_lights_own_samples_and_has_errors_of_its_own() -> None:
     light = find_light("green")
     for _ in range(2):
-        analysis._measured_projection.cache_clear()
+        projections._measured_projection.cache_clear()
         project(light, "jittered", 500, 0, 8)
     project(IrradianceLight(light), "jittered", 500, 0, 8)
     (_, radiance), (_, irradiance) = (measurements(of, 8) for of in (light, IrradianceLight(light)))

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.sun import split_suns
-from shviewer.viewer.analysis import needs, subject
+from shviewer.viewer.analysis import needs
 from shviewer.viewer.composition import compose
 from shviewer.viewer.information import as_text, describe
 from shviewer.viewer.keys import press
@@ -18,6 +18,7 @@ from shviewer.viewer.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.picture_files import metadata
 from shviewer.viewer.state import ViewState
+from shviewer.viewer.subjects import subject
 
 
 def noon():
