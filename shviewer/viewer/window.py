@@ -16,8 +16,7 @@ import glfw
 import moderngl
 
 from shviewer.errors import ShviewerError
-from shviewer.lights.light import Light, split_light
-from shviewer.lights.radiance_files import Reading
+from shviewer.lights.light import Light
 from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, step_sweep, toggle_band, with_bands, zoom
 from shviewer.viewer.analysis import needs
 from shviewer.viewer.canvas import Canvas
@@ -25,11 +24,12 @@ from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.glfw_window import key_name, open_window
 from shviewer.viewer.keys import press
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.messages import notes_of, reading_news, with_keys
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import file_stem, metadata, write_numbered
 from shviewer.viewer.playing import Metronome
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import ViewState, describe_sanitizing
+from shviewer.viewer.state import ViewState
 from shviewer.viewer.subjects import keep_light, read_again, stamp_read
 from shviewer.viewer.watching import Watch
 
@@ -65,7 +65,7 @@ class Window:
         self.handle = handle
         first = prepare(state)
         self.state = replace(state, reading=replace(state.reading, isolated=True))
-        message = self.state.message or _notes(first.light)
+        message = self.state.message or notes_of(first.light)
         self.state = replace(self.state, message=message)
         self.picture: Picture = replace(first, state=self.state)
         self.watch = Watch() if watch else None
@@ -214,7 +214,7 @@ class Window:
         if picture.light is not last.light:
             glfw.set_window_title(self.handle, f"shviewer - {picture.light.name}")
             message = self._news(picture.light, again=anew and self.state.light == last.state.light)
-            message = "; ".join(filter(None, (_reading_news(last.state, self.state), message)))
+            message = "; ".join(filter(None, (reading_news(last.state, self.state), message)))
             if message and not self.state.message:
                 self.state = replace(self.state, message=message)
                 picture = replace(picture, state=self.state)
@@ -222,7 +222,7 @@ class Window:
 
     def _news(self, light: Light, *, again: bool) -> str:
         """What is worth saying of a light that was not shown before."""
-        notes = _notes(light)
+        notes = notes_of(light)
         if not again:
             return notes
         if self.verbose:
@@ -334,35 +334,3 @@ class Window:
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
             self.change(reload(open_light(self.state, paths[0])))  # it may have been edited since it was last opened
-
-
-def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
-    """A refusal of `light`, and the keys that do what it recommends as an option of the command line.
-
-    With keys it names the file without its folder, so that they are not cut off.
-    """
-    keys = []
-    if "--sanitize" in refusal and not reading.sanitize:
-        keys.append("Z repairs")
-    if "--layout" in refusal:
-        keys.append("L changes the layout")
-    if not keys:
-        return refusal
-    path = split_light(light)[0] if isinstance(light, str) else None
-    if path is not None and refusal.startswith(f"{path}: "):
-        refusal = path.name + refusal.removeprefix(str(path))
-    return f"{refusal}; {', '.join(keys)}"
-
-
-def _notes(light: Light) -> str:
-    """All notes in a line; "" if there are none."""
-    return f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
-
-
-def _reading_news(before: ViewState, after: ViewState) -> str:
-    """How files are read from now on, if that changed."""
-    if before.reading.layout != after.reading.layout:
-        return f"layout {after.reading.layout}"
-    if before.reading.sanitize != after.reading.sanitize:
-        return f"bad values {describe_sanitizing(after)}"
-    return ""
