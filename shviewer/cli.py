@@ -7,6 +7,7 @@ wait for each other on a busy machine take ten times as long.
 from __future__ import annotations
 
 import argparse
+import difflib
 import json
 import os
 import sys
@@ -42,6 +43,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.environ.setdefault(name, "1")
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
+        arguments = _meant(arguments)
         if arguments[:1] == ["screenshot"]:
             return _screenshot(screenshot_parser().parse_intermixed_args(arguments[1:]))
         if arguments[:1] == ["sweep"]:
@@ -61,6 +63,20 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # nobody reads on, as in `shviewer --list-lights | head -1`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+
+
+MODES = ("screenshot", "sweep", "info", "project", "report")
+
+
+def _meant(arguments: list[str]) -> list[str]:
+    """The arguments; "help" is --help. UsageError for a first one that is nearly a mode, and no file."""
+    first = arguments[0] if arguments else ""
+    if first == "help":
+        return ["--help", *arguments[1:]]
+    near = difflib.get_close_matches(first, MODES, n=1, cutoff=0.75)
+    if near and first not in MODES and not Path(first).exists():
+        raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {near[0]}?")
+    return arguments
 
 
 def _view(options: argparse.Namespace) -> int:

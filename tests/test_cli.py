@@ -144,7 +144,7 @@ def test_the_lists_are_those_of_the_program(capsys: pytest.CaptureFixture[str]) 
         (["--evaluate", "gpu"], 2, ["'gpu'", "auto, direct, map"]),
         (["--evaluate", "direct", "--bands", "33"], 2, ["33 bands", "at most 32 are summed directly"]),
         (["--basis", "2", "3"], 2, ["(2, 3)", "m -l to l"]),
-        (["--basis", "9", "0", "--bands", "5"], 2, ["(9, 0)", "l must be 0 to 4"]),
+        (["--basis", "9", "0", "--bands", "5"], 2, ["(9, 0) of 5 bands", "l must be 0 to 4"]),
         (["--basis", "1", "x"], 2, ["--basis", "'x'"]),
         (["--max-side", "0"], 2, ["--max-side", "'0'", "not positive"]),
         (["--max-side", "1.5"], 2, ["--max-side", "'1.5'", "whole number"]),
@@ -629,3 +629,14 @@ def test_a_basis_function_may_be_in_the_bands_that_the_tolerance_asks_for(
     assert "radiance 15" in told
     assert "surfaces hold no radiance" in wrong  # what is wrong is the file, and not the function
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_misspelt_mode_is_no_light(capsys: pytest.CaptureFixture[str]) -> None:
+    assert failing(capsys, "screnshot", "a.png") == (
+        2,
+        "shviewer: 'screnshot' is neither a mode nor a light; did you mean shviewer screenshot?",
+    )
+    with pytest.raises(SystemExit) as stopped:
+        main(["help"])
+    assert stopped.value.code == 0
+    assert "shviewer sweep OUT" in capsys.readouterr().out

@@ -192,6 +192,7 @@ def reset(state: ViewState) -> ViewState:
         fullscreen=state.fullscreen,
         screenshots=state.screenshots,
         fits=state.fits,
+        looks=state.looks,
         layout_tried=state.layout_tried,
         tolerance=state.tolerance,
         evaluate=state.evaluate,

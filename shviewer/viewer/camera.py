@@ -45,6 +45,12 @@ def towards(azimuth_degrees: float, elevation_degrees: float) -> Quaternion:
     return compose(about_axis((0, 0, 1), azimuth_degrees), about_axis((0, 1, 0), -elevation_degrees))
 
 
+def facing(direction: Array) -> tuple[float, float]:
+    """Azimuth in [0, 360) and elevation, degrees, of a camera that looks at a direction (3,) of the world from outside."""
+    x, y, z = (float(part) for part in direction)
+    return float(np.degrees(np.arctan2(y, x))) % 360, float(np.degrees(np.arctan2(z, np.hypot(x, y))))
+
+
 @lru_cache(maxsize=64)
 def world_from_view(azimuth_degrees: float, elevation_degrees: float) -> Array:
     """A camera standing in that direction and looking at the centre; its columns are right, up, and to the viewer."""

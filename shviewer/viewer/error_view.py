@@ -22,6 +22,9 @@ QUIET, SPIKE = 0.95, 2.5
 NOISE = 1e-6
 """Of the light's peak: smaller errors are rounding, which a range of its own would blow up to colours."""
 
+NOISE_SHARE = 100.0
+"""The colours end no nearer to noise than this many times it, where it cannot be seen."""
+
 MOST_RELATIVE = 1.0
 """Colours of the relative error end at 100 % or before."""
 
@@ -74,7 +77,7 @@ def automatic_range(kind: str, errors: Array, shares: Array, largest: float, noi
     order = np.argsort(magnitude)
     place = min(int(np.searchsorted(np.cumsum(shares[order]), QUIET)), len(order) - 1)
     quiet = float(magnitude[order[place]])
-    end = max(min(largest, SPIKE * quiet) if quiet > 0 else largest, 10 * noise)
+    end = max(min(largest, SPIKE * quiet) if quiet > 0 else largest, NOISE_SHARE * noise)
     if kind == "relative":
         end = min(end, MOST_RELATIVE)
     return end if end > 0 else 1.0

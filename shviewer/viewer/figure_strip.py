@@ -35,8 +35,8 @@ def write_figures(painter: Painter, picture: Picture) -> None:
     columns = (
         ("relative_l2", percent(figures.relative_l2, floor=figures.floor), relative),
         ("max_error", radiance(extremes.max_error, extremes.peak), largest),
-        ("minimum", radiance(extremes.minimum, extremes.peak), ("minimum",)),
-        ("negative_area", percent(extremes.negative_area, 2), ("of the sphere negative",)),
+        ("minimum", radiance(extremes.minimum, extremes.peak), ("minimum of a channel", "minimum")),
+        ("negative_area", percent(extremes.negative_area, 2), ("luminance below zero",)),
     )
     face, room = painter.face(13), at.px(150) - at.px(6) - 1
     x = at.margin
@@ -84,6 +84,7 @@ def _band_bars(painter: Painter, picture: Picture) -> None:
     for band in range(slots):
         middle = first + (band + 0.5) * pitch
         share = shares[band] if band < len(shares) else 0.0
+        share = share if share > picture.figures.floor**2 else 0.0  # below, it is rounding
         top = base - max(share * scale, 1.0)
         edge = (middle - bar / 2, top, middle + bar / 2, base)
         used = band < state.n_bands

@@ -14,6 +14,8 @@ DIM = (10, 10, 12, 232)
 KEY_COLUMN = 10.5
 """Width of the keys, in type sizes."""
 
+LEGEND = "blue: radiance below zero, the ringing of few bands; W takes it away"
+
 TITLE, KEY, TEXT, VALUE = (100, 160, 255, 255), (236, 236, 240, 255), (178, 178, 188, 255), (236, 236, 240, 255)
 
 
@@ -42,8 +44,11 @@ def draw_help(sheet: Image.Image, state: ViewState, composition: Composition, op
                 draw.text((x + width, y), _shortened(row.value(state)), VALUE, face, anchor="ra")
                 y += line
             y += line * 0.6
-    if opengl and top > 2 * line:
-        draw.text((composition.margin, composition.height - line * 1.2), opengl, TEXT, face)
+    if top > 2 * line:
+        y = composition.height - line * 1.2
+        draw.text((composition.margin, y), opengl, TEXT, face)
+        if face.getlength(opengl) + face.getlength(LEGEND) < composition.width - 4 * composition.margin:
+            draw.text((composition.width - composition.margin, y), LEGEND, TEXT, face, anchor="ra")
 
 
 def _split(groups: list[tuple[str, list[Binding]]]) -> int:

@@ -147,6 +147,7 @@ BINDINGS = (
         {"X": lambda s: replace(s, marks=not s.marks)},
         lambda s: "marked" if s.marks else "not marked",
     ),
+    Binding("Y", ERROR, "look at the next mark", {"Y": lambda s: replace(s, looks=s.looks + 1)}),
     Binding(
         "G",
         ERROR,

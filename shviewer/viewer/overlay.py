@@ -92,12 +92,13 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
         while text and face.getlength(text) > at.width - 2 * at.margin:
             text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
         painter.text("message", at.margin, y, text, 13, WARNING, "lm")
-    stops = f"exposure {picture.exposure_stops:+.1f} stops ({describe_exposure(state)})"
+    curve = "" if state.tone == "none" else f", {state.tone} curve"
+    stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state)}){curve}"
     needs, far = picture.needs, at.width - at.margin
     radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
     bands = "band" if needs.radiance == 1 else "bands"
-    within = f"{100 * needs.tolerance:g} % needs {radiance} {bands}, irradiance {irradiance}"
-    any(painter.text("exposure", far, y, text, 12, FAINT, "rm") for text in (f"{within}     {stops}", within, stops))
+    within = f"within {100 * needs.tolerance:g} %: {radiance} {bands}, for irradiance {irradiance}"
+    any(painter.text("exposure", far, y, text, 12, GREY, "rm") for text in (f"{within}     {stops}", within, stops))
     if not message:
         hints = [*_describe_suns(picture), HINT]
         any(painter.text("hint", at.margin, y, text, 12, GREY if text is not HINT else FAINT, "lm") for text in hints)

@@ -102,11 +102,16 @@ def _table(found: Probe, composition: Composition) -> np.ndarray:
     labels = max(face.getlength(name) for name, _, _ in rows) + size
     column = max(face.getlength(number) for _, numbers, _ in rows for number in numbers) + size
     width = round(max(max(map(face.getlength, heads)), labels + (1 if grey else 3) * column - size)) + 2 * pad
-    image = Image.new("RGBA", (width, (len(heads) + len(rows)) * line + 2 * pad - line + size), GROUND)
+    lines = len(heads) + len(rows) + (0 if grey else 1)
+    image = Image.new("RGBA", (width, lines * line + 2 * pad - line + size), GROUND)
     draw = ImageDraw.Draw(image)
     y = float(pad)
     for text in heads:
         draw.text((pad, y), text, FAINT, face)
+        y += line
+    if not grey:
+        for place, letter in enumerate("RGB"):
+            draw.text((pad + labels + (place + 1) * column - size, y), letter, FAINT, face, anchor="ra")
         y += line
     for name, numbers, ink in rows:
         draw.text((pad, y), name, ink, face)

@@ -80,6 +80,8 @@ class ViewState:
     screenshots: int = field(default=0, compare=False)
     fits: int = field(default=0, compare=False)
     """Counts the wishes for as many bands as the tolerance asks for, which depends on the light."""
+    looks: int = field(default=0, compare=False)
+    """Counts the wishes to look at the next mark, whose place depends on the light."""
     layout_tried: str = field(default="", compare=False)
     """The layout asked for last, from which the next follows even if the image could not have it; "" for the reading's."""
 

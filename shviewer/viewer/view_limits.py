@@ -61,7 +61,9 @@ def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> Non
             f"{state.n_bands} bands: at most {MAX_DIRECT_BANDS} are summed directly; map or auto take more"
         )
     if state.basis is not None and not abs(state.basis[1]) <= state.basis[0] < state.n_bands:
-        raise UsageError(f"basis function {state.basis}: l must be 0 to {state.n_bands - 1}, m -l to l")
+        raise UsageError(
+            f"basis function {state.basis} of {state.n_bands} bands: l must be 0 to {state.n_bands - 1}, m -l to l"
+        )
     if not ZOOM_RANGE[0] <= state.zoom <= ZOOM_RANGE[1]:
         raise UsageError(f"zoom {state.zoom:g}: it must be {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g}")
     if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):

@@ -19,11 +19,13 @@ from shviewer.errors import ShviewerError
 from shviewer.lights.light import Light
 from shviewer.viewer.actions import open_light, orbit, reload, rotate_light, step_sweep, toggle_band, with_bands, zoom
 from shviewer.viewer.analysis import needs
+from shviewer.viewer.camera import facing
 from shviewer.viewer.canvas import Canvas
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.glfw_window import key_name, open_window
 from shviewer.viewer.keys import press
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.marks import marks_of
 from shviewer.viewer.messages import notes_of, reading_news, with_keys
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import file_stem, metadata, write_numbered
@@ -120,6 +122,8 @@ class Window:
             self._save()
         if state.fits != last.fits:
             self._fit()
+        if state.looks != last.looks:
+            self._face_mark()
         self.frames_due = max(self.frames_due, 1)
 
     def frame(self) -> None:
@@ -173,7 +177,7 @@ class Window:
     def _keep(self, error: ShviewerError) -> None:
         """Stay with the picture there is, and say why; a sweep ends, whose next step would take that away."""
         keep_light(self.picture.state, self.picture.subject.whole)
-        names = ("fullscreen", "closing", "screenshots", "fits", "layout_tried")
+        names = ("fullscreen", "closing", "screenshots", "fits", "looks", "layout_tried")
         wishes = {name: getattr(self.state, name) for name in names}
         message = with_keys(str(error), self.state.light, self.picture.state.reading)
         self.state = replace(self.picture.state, message=message, sweep_to=None, **wishes)
@@ -258,6 +262,17 @@ class Window:
             self.state = replace(with_bands(self.state, found.best_bands), message=message)
         else:
             self.state = with_bands(self.state, wanted)
+
+    def _face_mark(self) -> None:
+        """Turn the spheres so that the next mark is in front."""
+        self._prepare()
+        marks = marks_of(self.picture)
+        if not marks:
+            message = "nothing is marked: X marks what is negative, D shows the error and marks where it is largest"
+            self.state = replace(self.state, message=message)
+            return
+        direction = self.picture.light_from_world.T @ marks[(self.state.looks - 1) % len(marks)].direction
+        self.state = replace(self.state, camera=facing(direction))
 
     def _set_fullscreen(self, fullscreen: bool) -> None:
         if fullscreen:

@@ -162,3 +162,20 @@ def renderer_name(display: str) -> str:
     return subprocess.run(
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True, timeout=PATIENCE
     ).stdout
+
+
+def test_y_turns_the_next_mark_to_the_front(start: Start) -> None:
+    viewer = start("--error", "signed", "--rotate-light", "40", "10")
+    for name in ("minimum", "largest", "minimum"):
+        viewer.press("y", "frame")
+        described = json.loads(viewer.saved_picture()[1])
+        if name == "minimum":
+            direction = described["figures"]["minimum_direction_in_light"]
+        else:
+            direction = described["error"]["largest_direction_in_light"]
+        matrix = np.array(described["light_from_world"]) @ np.array(described["world_from_view"])
+        np.testing.assert_allclose(matrix.T @ direction, [0, 0, 1], atol=1e-6)
+    viewer.press("x", "frame")
+    before = json.loads(viewer.saved_picture()[1])["camera_degrees"]
+    viewer.press("y", "frame")
+    assert json.loads(viewer.saved_picture()[1])["camera_degrees"] == before

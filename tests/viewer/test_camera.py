@@ -161,3 +161,12 @@ def test_nobody_imports_the_command_line_but_main() -> None:
     ]
     assert len(below) > 15
     assert not [path for path in below if any(name.startswith("shviewer.viewer") for name in imports(path))]
+
+
+@pytest.mark.parametrize("direction", [(1, 0, 0), (0, -1, 0), (0.3, -0.5, 0.7), (0, 0, 1), (0, 0, -1), (-1, 1e-9, 0)])
+def test_a_camera_that_faces_a_direction_has_it_in_front(direction: tuple[float, float, float]) -> None:
+    unit = np.array(direction) / np.linalg.norm(direction)
+    azimuth, elevation = camera.facing(unit)
+    assert 0 <= azimuth < 360
+    assert -90 <= elevation <= 90
+    np.testing.assert_allclose(camera.world_from_view(azimuth, elevation).T @ unit, [0, 0, 1], atol=1e-8)

@@ -57,7 +57,7 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space"
+        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space Y"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -230,6 +230,7 @@ def test_reset_keeps_the_light_and_the_window_and_nothing_else() -> None:
         fullscreen=True,
         screenshots=3,
         fits=2,
+        looks=4,
         layout_tried="cube",
     )
     assert all(getattr(changed, item.name) != item.default for item in fields(changed) if item.name != "closing")
