@@ -1,6 +1,6 @@
 // Radiance of a sum of lobes: the profiles of shviewer/harmonics/zonal.py, term for term.
 //
-// Each profile is a function of |direction - axis|^2, which keeps its digits in float32 where the cosine is close to 1.
+// A program knows those kinds whose bit is set in PROFILES. Each profile is a function of |direction - axis|^2, which keeps its digits in float32 where the cosine is close to 1.
 
 layout(std140) uniform LobeBlock {
     vec4 lobes[3 * LOBE_SLOTS]; // axis and kind; radiance; parameters
@@ -10,14 +10,20 @@ uniform ivec2 sun_lobes;        // split off the light, to be added to the recon
 uniform bool soft_edges;        // spread the edge of a disc over one pixel, for the eye; off where numbers are compared
 
 float profile_value(int kind, vec2 parameters, float squared_chord) {
+#if (PROFILES >> PROFILE_CLAMPED_LINEAR) % 2 == 1
     if (kind == PROFILE_CLAMPED_LINEAR)
         return max(0.0, (parameters.x - parameters.y) - 0.5 * parameters.x * squared_chord);
+#endif
+#if (PROFILES >> PROFILE_DISC) % 2 == 1
     if (kind == PROFILE_DISC) {
         float width = fwidth(squared_chord);
         if (soft_edges && width > 0.0) return clamp((parameters.x - squared_chord) / width + 0.5, 0.0, 1.0);
         return squared_chord <= parameters.x ? 1.0 : 0.0;
     }
+#endif
+#if (PROFILES >> PROFILE_GAUSSIAN) % 2 == 1
     if (kind == PROFILE_GAUSSIAN) return exp(-0.5 * parameters.x * squared_chord);
+#endif
     return 1.0;
 }
 

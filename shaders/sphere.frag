@@ -1,7 +1,7 @@
 #version 330 core
 // One sphere, seen from afar (orthographically) and drawn per pixel: a light looked up in the direction of its normal.
 //
-// There is a program for every SHOWN, ORIGINAL, RECONSTRUCTION and TONE: software OpenGL runs both sides of a branch, and a
+// There is a program for every SHOWN, ORIGINAL, RECONSTRUCTION, TONE and PROFILES: software OpenGL runs both sides of a branch, and a
 // sphere should not pay for what it does not show. Linear until the last line; display.glsl alone turns radiance into colour.
 
 #include "constants.glsl"

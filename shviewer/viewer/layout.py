@@ -32,7 +32,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "RECONSTRUCTION": ("SUM", "MAP"),
     "TONE": tuple(tone.upper() for tone in TONES),
 }
-"""What a program of shaders/sphere.frag is made for: one of each."""
+"""What a program of shaders/sphere.frag is made for: one of each, and PROFILES."""
 
 BACKGROUND = (0.0203, 0.0203, 0.0232)
 """Linear RGB around the spheres: a little above black, so that an unlit sphere is still seen."""
@@ -50,7 +50,7 @@ FLOATS = {"NEGATIVE_KNEE": NEGATIVE_KNEE, "LOG_RANGE": LOG_RANGE, "BRIGHTEST_EXP
 VECTORS = {"BACKGROUND": BACKGROUND, "NEGATIVE_HUE": NEGATIVE_HUE}
 
 
-def glsl_constants(chosen: Mapping[str, str] = MappingProxyType({})) -> str:
+def glsl_constants(chosen: Mapping[str, str | int] = MappingProxyType({})) -> str:
     """constants.glsl, which every shader that needs a number from here includes; with the choices of one program."""
     integers = {
         "SH_TERMS": SH_TERMS,
@@ -63,7 +63,9 @@ def glsl_constants(chosen: Mapping[str, str] = MappingProxyType({})) -> str:
     for name, values in (*CHOICES.items(), ("ERROR", ERROR_KINDS)):
         integers |= {f"{name}_{value}": number for number, value in enumerate(values)}
     lines = [f"#define {name} {value}" for name, value in integers.items()]
-    lines += [f"#define {name} {name}_{value}" for name, value in chosen.items()]
+    lines += [
+        f"#define {name} {value if isinstance(value, int) else f'{name}_{value}'}" for name, value in chosen.items()
+    ]
     lines += [f"const float {name} = {value!r};" for name, value in FLOATS.items()]
     lines += [f"const vec3 {name} = vec3({', '.join(map(repr, value))});" for name, value in VECTORS.items()]
     lines.append(f"const float ACES[5] = float[5]({', '.join(map(repr, ACES))});")
@@ -105,6 +107,11 @@ def pack_lobes(lobes: Sequence[Lobe]) -> NDArray[np.float32]:
         row[1, :3] = lobe.radiance
         row[2, :2] = lobe.profile.parameters
     return packed
+
+
+def profile_bits(lobes: Sequence[Lobe]) -> int:
+    """The kinds of their profiles, a bit for each: what PROFILES is in a program that draws them."""
+    return sum(1 << kind for kind in {int(lobe.profile.kind) for lobe in lobes})
 
 
 def map_size(n_bands: int) -> tuple[int, int]:

@@ -27,7 +27,7 @@ class Program:
         self,
         context: moderngl.Context,
         fragment: str,
-        chosen: Mapping[str, str] = MappingProxyType({}),
+        chosen: Mapping[str, str | int] = MappingProxyType({}),
         vertex: str = "screen.vert",
     ) -> None:
         self.program = _compile(context, vertex, fragment, chosen)
@@ -59,7 +59,9 @@ class Program:
         self.program.release()
 
 
-def _compile(context: moderngl.Context, vertex: str, fragment: str, chosen: Mapping[str, str]) -> moderngl.Program:
+def _compile(
+    context: moderngl.Context, vertex: str, fragment: str, chosen: Mapping[str, str | int]
+) -> moderngl.Program:
     generated = {"constants.glsl": glsl_constants(chosen)}
     sources = {"vertex": load_shader(vertex, generated), "fragment": load_shader(fragment, generated)}
     try:

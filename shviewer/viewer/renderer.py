@@ -14,7 +14,15 @@ from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Composition, Sphere
 from shviewer.viewer.error_view import ERRORS
 from shviewer.viewer.layers import Layer
-from shviewer.viewer.layout import BACKGROUND, CHOICES, LOBE_SLOTS, SH_TERMS, pack_coefficients, pack_lobes
+from shviewer.viewer.layout import (
+    BACKGROUND,
+    CHOICES,
+    LOBE_SLOTS,
+    SH_TERMS,
+    pack_coefficients,
+    pack_lobes,
+    profile_bits,
+)
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.surface_renderer import SurfaceRenderer
@@ -32,7 +40,7 @@ class Renderer:
 
     def __init__(self, context: moderngl.Context) -> None:
         self.context = context
-        self.programs: dict[tuple[str, ...], Program] = {}
+        self.programs: dict[tuple[str, str, str, str, int], Program] = {}
         """Of sphere.frag, by the choices they were made for."""
         self.layer_program = Program(context, "layer.frag")
         self.surfaces: SurfaceRenderer | None = None
@@ -183,9 +191,15 @@ class Renderer:
         original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
         reconstruction = "SUM" if picture.reconstruction_map is None or shown == "ORIGINAL" else "MAP"
         tone = "NONE" if shown == "ERROR" else picture.state.tone.upper()
-        key = shown, original, reconstruction, tone
+        lobes = {
+            "ORIGINAL": picture.original.lobes,
+            "RECONSTRUCTION": picture.suns,
+            "ERROR": picture.compared.lobes,
+        }[shown]
+        key = shown, original, reconstruction, tone, profile_bits(lobes)
         if key not in self.programs:
-            self.programs[key] = Program(self.context, "sphere.frag", dict(zip(CHOICES, key, strict=True)))
+            chosen: dict[str, str | int] = dict(zip((*CHOICES, "PROFILES"), key, strict=True))
+            self.programs[key] = Program(self.context, "sphere.frag", chosen)
         return self.programs[key]
 
     def _draw_layers(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
