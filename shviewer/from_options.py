@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer.errors import UsageError
@@ -61,10 +60,9 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     check(state, tuple(options.size))
     state = open_light(state, options.light)
     if options.compare:
-        from shviewer.lights.coefficients.light import CoefficientLight
+        from shviewer.viewer.compared_files import compared_with
 
-        file = Path(options.compare)
-        state = replace(state, compare=replace(CoefficientLight.read(file, state.reading), name=file.name))
+        state = compared_with(state, options.compare)
     if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
         from shviewer.viewer.comparison import as_the_file_holds
 

@@ -155,3 +155,11 @@ def test_the_command_compares_and_says_what_is_wrong(
     assert "not at all if its numbers are in the convention of three" in error
     assert main(command) == 3
     assert "name its convention" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"), [("own.hdr", "an image"), ("venice_sunset", "a built-in light"), ("own.toml", "a scene")]
+)
+def test_only_coefficients_are_compared(text: str, kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["screenshot", "out.png", "green", "--compare", text]) == 3
+    assert f"{text} is {kind}; --compare takes coefficients (.json, .csv, .txt" in capsys.readouterr().err
