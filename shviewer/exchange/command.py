@@ -9,6 +9,7 @@ from pathlib import Path
 
 from shviewer.errors import OutputError, ShviewerError, UsageError
 from shviewer.exchange.projected import Projected, project_state
+from shviewer.exchange.suns import sun_left_out
 from shviewer.exchange.writing import FORMATS, encode
 from shviewer.harmonics.conventions.convention import OVER_PI, Convention
 from shviewer.harmonics.conventions.programs import parse_convention
@@ -67,18 +68,18 @@ def project_lights(
     if out == STDOUT:
         if kind is None:
             raise UsageError(f"-o -: stdout has no suffix to go by; name a format: --format {', '.join(FORMATS)}")
-        data = encode(_noted(light, state_of), convention, kind)
+        data = encode(_noted(light, state_of, convention), convention, kind)
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return 0
     path = Path(out)
     if path.is_dir():
-        projected = _noted(light, state_of)
+        projected = _noted(light, state_of, convention)
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
     else:
         kind = _kind_of(path, kind)
         _check_is_not_read(path, light)
-        projected = _noted(light, state_of)
+        projected = _noted(light, state_of, convention)
     write_atomically(path, encode(projected, convention, kind or "json"))
     print(f"wrote {path}: {_bands(projected)}, relative L2 error {_percent(projected)}")
     return 0
@@ -120,7 +121,7 @@ def _one_of_many(
 ) -> Row:
     """One light of a batch, written under a name of its own."""
     try:
-        projected = _noted(light, state_of)
+        projected = _noted(light, state_of, convention)
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)
@@ -131,12 +132,13 @@ def _one_of_many(
     return Row(light, str(path), projected)
 
 
-def _noted(light: str, state_of: StateOf) -> Projected:
-    """Projected; what was done to the light, and why no sun was split off, is said on stderr."""
+def _noted(light: str, state_of: StateOf, convention: Convention) -> Projected:
+    """Projected; what was done to the light, and what became of its suns, is said on stderr."""
     state = state_of(light)
     projected = project_state(state)
     shown = subject(state)
-    for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else [])):
+    suns = [sun_left_out(sun, convention.axes) for sun in projected.suns]
+    for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else []), *suns):
         print(f"shviewer: note: {shown.light.name}: {note}", file=sys.stderr)
     return projected
 

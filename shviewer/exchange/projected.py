@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from shviewer import __version__
 from shviewer.errors import UsageError
+from shviewer.exchange.suns import sun_keys
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.conventions.convention import IRRADIANCE, Convention
 from shviewer.harmonics.conventions.programs import parse_convention
 from shviewer.lights.coefficients.stamp import Value, stamp_of
+from shviewer.lights.sun import Sun
 from shviewer.viewer.analysis import Figures, reconstruct
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.picture_files import write_atomically
@@ -39,6 +41,8 @@ class Projected:
     figures: Figures
     about: dict[str, Value]
     name: str
+    suns: tuple[Sun, ...] = ()
+    """Left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
 
     @property
     def n_bands(self) -> int:
@@ -76,7 +80,7 @@ class Projected:
             about = {key: value for key, value in about.items() if key not in ERRORS}
             if written == IRRADIANCE:
                 about["relative-l2"] = float(self.figures.irradiance_relative_l2)
-        return about
+        return about | sun_keys(self.suns, convention.axes)
 
 
 def project_state(state: ViewState) -> Projected:
@@ -98,7 +102,7 @@ def project_state(state: ViewState) -> Projected:
         **_errors(figures),
     }
     about = {key: value for key, value in about.items() if value is not None and value != ""}
-    return Projected(coefficients, state.quantity, figures, about, shown.light.name)
+    return Projected(coefficients, state.quantity, figures, about, shown.light.name, shown.suns)
 
 
 def _light(state: ViewState, shown: Subject) -> dict[str, Value]:

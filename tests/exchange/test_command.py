@@ -241,3 +241,33 @@ def test_as_many_bands_as_a_tolerance_needs(tmp_path: Path, capsys: Capture) -> 
     assert held(tmp_path / "c.json").n_bands == 3  # 127/128 of the energy: 8.8 %
     assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "1%", "--convention", "three") == 2
     assert "three takes 1 to 3" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["json", "csv", "npz", "h", "glsl"])
+def test_a_sun_that_is_left_out_is_written_in_the_axes_of_the_file(kind: str, tmp_path: Path, capsys: Capture) -> None:
+    """sun-sky.toml says where it stands and how bright it is; Unity's x, y, z are our x, z, y."""
+    out = tmp_path / f"sky.{kind}"
+    assert project("sun-sky", "--split-sun", "--convention", "unity", "-o", out) == 0
+    sun = next(lobe for lobe in find_light("sun-sky").lobes if lobe.radiance.max() > 1000)  # type: ignore[attr-defined]
+    light = held(out)
+    assert light.file is not None
+    said = {key: str(value) for key, value in light.file.stamp.items()}
+    numbers = {key: np.array(value.split(), dtype=float) for key, value in said.items() if key.startswith("sun-1-")}
+    assert said["suns"] == "1"
+    np.testing.assert_allclose(numbers["sun-1-direction"], sun.axis[[0, 2, 1]], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(numbers["sun-1-radiance"], sun.radiance, rtol=1e-15)
+    half_angle = np.radians(numbers["sun-1-width"] / 2)
+    assert half_angle == pytest.approx(sun.profile.half_angle, rel=1e-12)
+    irradiance = np.pi * np.sin(sun.profile.half_angle) ** 2 * sun.radiance
+    np.testing.assert_allclose(numbers["sun-1-irradiance"], irradiance, rtol=1e-12)
+    x, z, y = sun.axis
+    direction, brightness = f"{x:.4g} {y:.4g} {z:.4g}", " ".join(f"{value:.4g}" for value in irradiance)
+    assert f"sun left out: a directional light from ({direction}), irradiance {brightness}\n" in capsys.readouterr().err
+    assert light.notes[0] == "1 sun left out; the file says where and how bright"
+
+
+def test_without_a_sun_nothing_is_said_of_suns(tmp_path: Path, capsys: Capture) -> None:
+    assert project("sun-sky", "-o", tmp_path / "a.json") == 0
+    assert not [key for key in json.loads((tmp_path / "a.json").read_text()) if key.startswith("sun")]
+    assert "sun left out" not in capsys.readouterr().err
+    assert held(tmp_path / "a.json").notes == ()

@@ -18,6 +18,7 @@ from shviewer.harmonics.conventions.convention import RADIANCE, Convention, reco
 from shviewer.harmonics.conventions.programs import CONVENTIONS, OURS, convention_text
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.coefficients.reading import CoefficientFile, read_coefficients
+from shviewer.lights.coefficients.stamp import SUNS_KEY
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading
 
@@ -82,9 +83,17 @@ class CoefficientLight:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        if self.file is None or self.quantity == RADIANCE:
+        if self.file is None:
             return ()
-        lost = recovered_radiance(self.file.coefficients)[1]
+        suns = str(self.file.stamp.get(SUNS_KEY, 0))
+        left_out = (f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright",)
+        return (left_out if suns != "0" else ()) + self._recovery(self.file)
+
+    def _recovery(self, file: CoefficientFile) -> tuple[str, ...]:
+        """A note on how radiance comes from irradiance, if it has to."""
+        if self.quantity == RADIANCE:
+            return ()
+        lost = recovered_radiance(file.coefficients)[1]
         unknown = (
             f", which tells nothing of band{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}" if lost else ""
         )
