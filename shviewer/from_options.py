@@ -62,7 +62,9 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     if options.compare:
         from shviewer.viewer.compared_files import compared_with
 
-        state = compared_with(state, options.compare)
+        state, found = compared_with(state, options.compare)
+        if found:
+            print(f"shviewer: {found}", file=sys.stderr)
     if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
         from shviewer.viewer.comparison import as_the_file_holds
 

@@ -39,10 +39,13 @@ class CoefficientLight:
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> CoefficientLight:
         """LightError if the file is bad or does not say its convention."""
-        file = read_coefficients(path, reading)
-        if file.quantity == RADIANCE:
-            return cls(file.coefficients, path.stem, file)
-        return cls(recovered_radiance(file.coefficients)[0], path.stem, file)
+        return cls.of_file(read_coefficients(path, reading), path.stem)
+
+    @classmethod
+    def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
+        """Of a file that has been read."""
+        held = file.coefficients
+        return cls(held if file.quantity == RADIANCE else recovered_radiance(held)[0], name, file)
 
     @classmethod
     def of_numbers(
