@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.picture_files import write_atomically
 from shviewer.viewer.projections import project, sampling_of
 from shviewer.viewer.state import ViewState, light_name
-from shviewer.viewer.subjects import Subject, subject
+from shviewer.viewer.subjects import Subject, load_light, subject
 from shviewer.viewer.view_limits import check
 
 ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")
@@ -41,6 +41,8 @@ class Projected:
     figures: Figures
     about: dict[str, Value]
     name: str
+    relative_l2_as: dict[str, float] = field(default_factory=dict)
+    """The error of "radiance" and of "irradiance", whichever of them the coefficients are of."""
     suns: tuple[Sun, ...] = ()
     """Left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
 
@@ -92,6 +94,12 @@ def project_state(state: ViewState) -> Projected:
     coefficients, figures = reconstruct(
         shown.light, projection, state.n_bands, state.muted_shown, state.window, state.window_width
     )
+    both = {"radiance": figures.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
+    if state.quantity == IRRADIANCE:
+        radiance = load_light(replace(state, quantity="radiance"))
+        shape = state.n_bands, state.muted_shown, state.window, state.window_width
+        of_radiance = project(radiance, *sampling_of(state), bands)
+        both = {"radiance": reconstruct(radiance, of_radiance, *shape)[1].relative_l2, IRRADIANCE: figures.relative_l2}
     about: dict[str, Value] = {
         **_light(state, shown),
         "window": _window(state),
@@ -102,7 +110,7 @@ def project_state(state: ViewState) -> Projected:
         **_errors(figures),
     }
     about = {key: value for key, value in about.items() if value is not None and value != ""}
-    return Projected(coefficients, state.quantity, figures, about, shown.light.name, shown.suns)
+    return Projected(coefficients, state.quantity, figures, about, shown.light.name, both, shown.suns)
 
 
 def _light(state: ViewState, shown: Subject) -> dict[str, Value]:

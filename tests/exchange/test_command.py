@@ -15,6 +15,7 @@ from shviewer.exchange.command import project_lights
 from shviewer.harmonics.conventions.programs import CONVENTIONS
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import find_light
 from shviewer.viewer.state import ViewState
 
@@ -151,7 +152,7 @@ def test_of_several_lights_every_one_that_can_be_is_written(tmp_path: Path, caps
     captured = capsys.readouterr()
     assert sorted(path.name for path in out.iterdir()) == ["cosine.csv", "green-2.csv", "green.csv"]
     assert captured.out.splitlines()[-1] == "3 of 5 written"
-    assert re.search(r"^green +4 +51\.2 % +-0\.1844 +.*green\.csv$", captured.out, flags=re.MULTILINE)
+    assert re.search(r"^green +4 +51\.2 % +[\d.]+ % +-0\.1844 +.*green\.csv$", captured.out, flags=re.MULTILINE)
     assert re.search(r"^nothing +failed$", captured.out, flags=re.MULTILINE)
     assert [line for line in captured.err.splitlines() if line.startswith("shviewer: unknown light 'nothing'")]
     assert "no column blue" in captured.err
@@ -271,3 +272,23 @@ def test_without_a_sun_nothing_is_said_of_suns(tmp_path: Path, capsys: Capture) 
     assert not [key for key in json.loads((tmp_path / "a.json").read_text()) if key.startswith("sun")]
     assert "sun left out" not in capsys.readouterr().err
     assert held(tmp_path / "a.json").notes == ()
+
+
+@pytest.mark.parametrize("quantity", ["radiance", "irradiance"])
+def test_both_errors_are_said_whatever_is_written(quantity: str, tmp_path: Path, capsys: Capture) -> None:
+    green = find_light("green")
+    exact = green.coefficients(3)
+    radiance = errors_by_band_count(green.products(), exact, exact)[-1]
+    shaded = IrradianceLight(green)
+    irradiance = errors_by_band_count(shaded.products(), shaded.coefficients(3), shaded.coefficients(3))[-1]
+    assert project("green", "--bands", 3, "--for", quantity, "-o", tmp_path / "a.json") == 0
+    errors = f"radiance within {100 * radiance:.3g} %, as irradiance {100 * irradiance:.3g} %"
+    assert f"a.json: 3 bands, {errors}\n" in capsys.readouterr().out
+
+
+def test_a_reconstruction_below_zero_is_warned_of_with_the_remedy(tmp_path: Path, capsys: Capture) -> None:
+    assert project("green", "-o", tmp_path / "a.json") == 0
+    warning = "shviewer: note: green: the radiance of its 5 bands goes to -0.137; --window dering takes that away\n"
+    assert capsys.readouterr().err == warning
+    assert project("green", "--window", "dering", "-o", tmp_path / "a.json") == 0
+    assert capsys.readouterr().err == ""
