@@ -206,7 +206,7 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _project(options: argparse.Namespace) -> int:
-    from shviewer.exchange.command import project_lights, wanted_convention
+    from shviewer.exchange.command import check_tolerance, project_lights, wanted_convention
 
     convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
     if convention.quantity:
@@ -215,7 +215,10 @@ def _project(options: argparse.Namespace) -> int:
         options.bands = min(DEFAULT_BANDS, convention.most_bands)
 
     def state_of(light: str) -> ViewState:
-        return state_from(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+        state = state_from(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+        if options.tolerance is not None:
+            check_tolerance(state, convention)
+        return state
 
     lights = options.lights or ["green"]
     with status_line() as line:

@@ -146,7 +146,23 @@ def _input_convention(options: argparse.Namespace) -> str:
             parse_convention(text)
         except ValueError as error:
             raise UsageError(str(error)) from error
+        _check_is_of_use(options, text)
     return text
+
+
+def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
+    """UsageError for a convention that nothing is read in."""
+    from shviewer.lights.light import COEFFICIENT_SUFFIXES, split_light
+
+    given = vars(options)
+    lights: list[str] = given.get("lights") or [given.get("light", "green")]
+    if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
+        return
+    name = "--input-convention" if "convention" in given else "--convention"
+    raise UsageError(
+        f"{name} {convention}: it is of a coefficient file, and {lights[0]} is none; name one as LIGHT"
+        + ("" if name == "--input-convention" else " or with --compare")
+    )
 
 
 def _finite_width(text: str) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +17,11 @@ from shviewer.harmonics.conventions.axes import Axes
 from shviewer.harmonics.conventions.convention import OVER_PI, Convention
 from shviewer.harmonics.conventions.programs import CONVENTIONS, parse_convention
 from shviewer.lights.light import split_light
+from shviewer.viewer.analysis import errors_of
 from shviewer.viewer.picture_files import file_stem, write_atomically
-from shviewer.viewer.state import ViewState
-from shviewer.viewer.subjects import subject
+from shviewer.viewer.projections import sampling_of
+from shviewer.viewer.state import ViewState, light_name
+from shviewer.viewer.subjects import load_light, subject
 
 STDOUT = "-"
 BATCH_FAILED = 1
@@ -57,6 +59,21 @@ def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str
             f"axes write --convention {own.name},{axes}"
         )
     return convention
+
+
+def check_tolerance(state: ViewState, convention: Convention) -> None:
+    """UsageError if the state's tolerance needs more bands than the program has: what its bands give, and what may help."""
+    most = convention.most_bands
+    if most is None or state.n_bands <= most:
+        return
+    bands = f"{most} band{'s' if most > 1 else ''}"
+    reached = float(errors_of(load_light(state), *sampling_of(state))[most - 1])
+    suns = () if state.split_sun else subject(replace(state, split_sun=True)).suns
+    remedy = "take its sun out, --split-sun, or " if suns else ""
+    raise UsageError(
+        f"{light_name(state.light)}: {100 * state.tolerance:g} % needs more than the {bands} that {convention.name} takes, "
+        f"which reach {100 * reached:.3g} %; {remedy}give --bands {most}"
+    )
 
 
 def project_lights(

@@ -179,6 +179,8 @@ def test_a_batch_without_failures_is_done(tmp_path: Path, capsys: Capture) -> No
         (("-o", "x.json", "--convention", "unreal", "--no-phase"), 2, "not be what that program expects"),
         (("-o", "x.json", "--axes", "up"), 2, "such as +x+z-y"),
         (("-o", "x.json", "--convention", "unity", "--bands", "4"), 2, "4 bands: unity takes 1 to 3"),
+        (("-o", "x.json", "--convention", "unity", "--axes", "z-up"), 2, "unity expects x y z are our +x +z +y; y up"),
+        (("-o", "x.json", "--input-convention", "three"), 2, "--input-convention three: it is of a coefficient file"),
         (("-o", "x.glsl", "--convention", "scipy"), 2, "complex coefficients"),
         (("-o", "x.json", "--input-convention", "maya"), 2, "must be one of shviewer"),
         (("nothing", "-o", "x.json"), 3, "unknown light 'nothing'"),
@@ -241,7 +243,7 @@ def test_as_many_bands_as_a_tolerance_needs(tmp_path: Path, capsys: Capture) -> 
     assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "10%") == 0
     assert held(tmp_path / "c.json").n_bands == 3  # 127/128 of the energy: 8.8 %
     assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "1%", "--convention", "three") == 2
-    assert "three takes 1 to 3" in capsys.readouterr().err
+    assert "3 bands that three takes" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("kind", ["json", "csv", "npz", "h", "glsl"])
@@ -292,3 +294,27 @@ def test_a_reconstruction_below_zero_is_warned_of_with_the_remedy(tmp_path: Path
     assert capsys.readouterr().err == warning
     assert project("green", "--window", "dering", "-o", tmp_path / "a.json") == 0
     assert capsys.readouterr().err == ""
+
+
+def test_a_tolerance_that_a_program_cannot_reach_says_what_it_reaches(tmp_path: Path, capsys: Capture) -> None:
+    command = ["--tolerance", "5%", "--convention", "three", "-o", tmp_path / "a.json"]
+    assert project("green", *command) == 2
+    green, exact = find_light("green"), find_light("green").coefficients(3)
+    reached = errors_by_band_count(green.products(), exact, exact)[-1]
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert f"needs more than the 3 bands that three takes, which reach {100 * reached:.3g} %; give --bands 3" in error
+    assert project("sun-sky", *command) == 2
+    assert "take its sun out, --split-sun" in capsys.readouterr().err
+    assert project("sun-sky", "--split-sun", *command) == 0
+
+
+def test_the_header_says_how_its_array_differs_from_the_programs(tmp_path: Path) -> None:
+    assert project("-o", tmp_path / "a.h", "--convention", "unity") == 0
+    assert "// layout: in Unity sh[channel, row]; this array is [row][channel]\n" in (tmp_path / "a.h").read_text()
+    assert held(tmp_path / "a.h").n_bands == 3
+
+
+def test_a_convention_that_nothing_is_read_in_is_refused(capsys: Capture) -> None:
+    assert main(["screenshot", "a.png", "green", "--convention", "three"]) == 2
+    says = "--convention three: it is of a coefficient file, and green is none; name one as LIGHT or with --compare"
+    assert says in capsys.readouterr().err
