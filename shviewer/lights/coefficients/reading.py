@@ -100,7 +100,8 @@ def interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientF
             raise LightError(str(error)) from error
     else:
         raise LightError(
-            f"a bare list of numbers; name its convention: --convention {', '.join(CONVENTIONS)}, such as --convention three; "
+            f"a bare list of numbers; name its convention: --convention {', '.join(CONVENTIONS)}, such as --convention three "
+            "(in Python convention='three'); "
             "if the light is at hand, --compare finds it out: shviewer LIGHT --compare FILE"
         )
     table = as_table(numbers, complex_pairs=convention.complex)
