@@ -37,21 +37,21 @@ if TYPE_CHECKING:
     from shviewer.report.run import Summary
 
 OPTIONS_HELP = """options:
-    quantity        "radiance" (default) or "irradiance"
-    window          "none", "hann", "lanczos", "gauss" or "dering"; window_width in bands, as many as are shown unless given
-    muted           bands to leave out
-    method          "best" (default, the light's own), "jittered" or "gauss-legendre", with `samples` and `seed`
-    split_sun       take suns out of the light
-    exposure_stops  fixed, instead of chosen from the light
-    camera          azimuth and elevation, degrees
-    zoom            0.25 to 16
-    tone            "none" (default), "reinhard", "aces" or "log"
-    error           "off" (default), "signed", "absolute" or "relative": a third sphere; error_range ends its colours
-    marks           False: no rings at the minimum and the largest error
-    lobe_view       surfaces whose radius is the magnitude; basis, such as (2, -1): one function as the second of them
-    sheet           "convergence": the error against the number of bands
-    evaluate        "direct", "map" or "auto" (default): how the reconstruction is drawn
-    compare         somebody else's coefficients, shown instead of the light's own: a path, an array or a light of them
+        quantity        "radiance" (default) or "irradiance"
+        window          "none", "hann", "lanczos", "gauss" or "dering"; window_width in bands, as many as are shown unless given
+        muted           bands to leave out
+        method          "best" (default, the light's own), "jittered" or "gauss-legendre", with `samples` and `seed`
+        split_sun       take suns out of the light
+        exposure_stops  fixed, instead of chosen from the light
+        camera          azimuth and elevation, degrees
+        zoom            0.25 to 16
+        tone            "none" (default), "reinhard", "aces" or "log"
+        error           "off" (default), "signed", "absolute" or "relative": a third sphere; error_range ends its colours
+        marks           False: no rings at the minimum and the largest error
+        lobe_view       surfaces whose radius is the magnitude; basis, such as (2, -1): one function as the second of them
+        sheet           "convergence": the error against the number of bands
+        evaluate        "direct", "map" or "auto" (default): how the reconstruction is drawn
+        compare         somebody else's coefficients, shown instead of the light's own: a path, an array or a light of them
 """
 """At the end of the docstring of every function that takes them."""
 
@@ -192,7 +192,8 @@ def project(light: LightLike, bands: int | None = None, **options: Any) -> Proje
     """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
 
     `Projected.coefficients` is (bands**2, 3) float64 in the convention of harmonics/basis.py, row l(l+1) + m; `save` writes a
-    file and `numbers` converts, both for other programs, too. options: see above.
+    file and `numbers` converts, both for other programs, too. ShviewerError for whatever a caller can put right.
+
     """
     return project_state(_state(light, bands, options))
 
