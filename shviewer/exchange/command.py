@@ -112,7 +112,9 @@ def project_lights(
         projected = _noted(light, state_of, convention)
     write_atomically(path, encode(projected, convention, kind or "json"))
     radiance, irradiance = (_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
-    print(f"wrote {path}: {_bands(projected)}, radiance within {radiance}, as irradiance {irradiance}")
+    print(
+        f"wrote {path}: {_bands(projected)}, radiance within {radiance.removeprefix('< ')}, as irradiance {irradiance}"
+    )
     _warn_below_zero(projected)
     return 0
 

@@ -180,7 +180,7 @@ def _state(light: LightLike, bands: int | None, options: dict[str, Any]) -> View
 
 def _comparing(state: ViewState, given: LightLike) -> ViewState:
     if isinstance(given, str | os.PathLike):
-        return compared_with(state, os.fspath(given))[0]
+        return compared_with(state, os.fspath(given), "compare=")[0]
     light = find_light(given)
     if not isinstance(light, CoefficientLight):
         raise UsageError(f"compare {light.name!r}: it must be coefficients, a file or an array (n**2, 3) of them")

@@ -22,16 +22,16 @@ from shviewer.viewer.state import ViewState
 from shviewer.viewer.subjects import load_light
 
 
-def compared_with(state: ViewState, text: str) -> tuple[ViewState, str]:
+def compared_with(state: ViewState, text: str, option: str = "--compare") -> tuple[ViewState, str]:
     """The state, comparing with the coefficients in the file `text`, and which convention that was found to have, if any.
 
     A bare list whose convention nobody names is read in the one that fits the state's light, or is nearest. LightError if the
-    file is bad or no coefficient file.
+    file is bad or no coefficient file; option: what the caller calls it.
     """
     file = Path(text)
     if file.suffix.lower() not in COEFFICIENT_SUFFIXES:
         raise LightError(
-            f"{text} is {_kind(text)}; --compare takes coefficients ({', '.join(COEFFICIENT_SUFFIXES)}): shviewer project "
+            f"{text} is {_kind(text)}; {option} takes coefficients ({', '.join(COEFFICIENT_SUFFIXES)}): shviewer project "
             "makes them of a light"
         )
     with naming(text):

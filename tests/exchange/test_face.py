@@ -93,7 +93,7 @@ def test_a_light_may_be_a_text_a_path_a_function_an_array_or_a_light(tmp_path: P
         ("green", {"window": 3}, "window 3: it must be a text"),
         ("green", {"muted": 1}, "muted 1: it must be several bands"),
         ("green", {"camera": (1,)}, "azimuth and elevation"),
-        ("green", {"compare": "studio"}, "studio is a built-in light; --compare takes coefficients"),
+        ("green", {"compare": "studio"}, "studio is a built-in light; compare= takes coefficients"),
         ("green", {"compare": lambda directions: directions}, "it must be coefficients"),
     ],
 )
