@@ -74,7 +74,7 @@ def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
     best = min(fits, key=lambda fit: max(fit.error, TINY))
     if best.error > FITS:
         bent = list(_fits(numbers, exact, _bent(numbers, exact)))
-        best = min([best, *bent], key=lambda fit: fit.error)
+        best = min([best, *bent], key=lambda fit: max(fit.error, TINY))  # of equal ones the simplest, which comes first
     same = [fit.text for fit in fits if fit is not best and fit.error <= max(ALIKE * best.error, TINY)]
     return Found(best, best.error <= FITS, tuple(same) if best.error <= FITS else ())
 
