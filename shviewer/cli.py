@@ -154,6 +154,7 @@ def _sweep(options: argparse.Namespace) -> int:
             progress=line.fraction if line else None,
         )
     _print_notes(picture.subject)
+    _print_verdict(state)
     return 0
 
 

@@ -119,6 +119,12 @@ def _checked(name: str, value: Any) -> Any:
     return value
 
 
+def _checked_size(size: Any) -> tuple[int, int]:
+    if not (isinstance(size, Sequence) and len(size) == 2):
+        raise UsageError(f"size {size!r}: it must be width and height, such as (1280, 640)")
+    return whole(size[0], "width"), whole(size[1], "height")
+
+
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float | np.integer | np.floating) and bool(np.isfinite(value))
 
@@ -216,7 +222,7 @@ def screenshot(
     from shviewer.viewer.screenshot import headless_renderer, render_rgb
 
     state = _state(light, bands, options)
-    check(state, size)
+    check(state, _checked_size(size))
     picture = prepare(state)
     with headless_renderer() as renderer:
         return render_rgb(renderer, picture, compose(*size, state.zoom, n_spheres=state.n_spheres), overlay=overlay)
@@ -234,7 +240,7 @@ def view(
     from shviewer.viewer import window
 
     state = _state(light, bands, options)
-    check(state, size)
+    check(state, _checked_size(size))
     window.run(state, size)
 
 

@@ -181,6 +181,12 @@ def test_reconstruct_and_evaluate_basis_say_what_is_wrong() -> None:
             shviewer.evaluate_basis([0, 0, 1], n_bands)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("size", [(320,), (320.5, 160), 3])
+def test_a_size_is_two_whole_numbers(size: Any) -> None:
+    with pytest.raises(ShviewerError, match=r"width"):
+        shviewer.screenshot("green", size=size)
+
+
 def test_help_lists_the_options_where_they_are_taken() -> None:
     from shviewer.exchange.face import OPTIONS
 
