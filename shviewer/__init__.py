@@ -18,10 +18,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from shviewer.errors import ShviewerError
+    from shviewer.exchange.evaluating import evaluate_basis, reconstruct
     from shviewer.exchange.face import find_light, project, report, screenshot, view
     from shviewer.exchange.projected import Projected
-    from shviewer.harmonics.basis import evaluate_basis
-    from shviewer.harmonics.synthesis import reconstruct
 
 __version__ = "0.1.0"
 
@@ -40,8 +39,8 @@ __all__ = [
 
 _HOMES = {
     "ShviewerError": "shviewer.errors",
-    "evaluate_basis": "shviewer.harmonics.basis",
-    "reconstruct": "shviewer.harmonics.synthesis",
+    "evaluate_basis": "shviewer.exchange.evaluating",
+    "reconstruct": "shviewer.exchange.evaluating",
     "Projected": "shviewer.exchange.projected",
     "find_light": "shviewer.exchange.face",
     "project": "shviewer.exchange.face",

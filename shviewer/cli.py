@@ -101,7 +101,7 @@ def _view(options: argparse.Namespace) -> int:
 
     state = state_from(options, all_lights=True)
     _print_notes(subject(state))
-    _print_suspicion(state)
+    _print_verdict(state)
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
@@ -134,7 +134,7 @@ def _screenshot(options: argparse.Namespace) -> int:
     composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     _print_notes(picture.subject)
-    _print_suspicion(state)
+    _print_verdict(state)
     if options.reference is None or pixels is None:
         return 0
     difference = options.out.with_name(f"{options.out.stem}-difference.png")
@@ -170,6 +170,7 @@ def _sweep(options: argparse.Namespace) -> int:
             progress=line.fraction if line else None,
         )
     _print_notes(picture.subject)
+    _print_verdict(state)
     return 0
 
 
@@ -222,7 +223,7 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _project(options: argparse.Namespace) -> int:
-    from shviewer.exchange.command import project_lights, wanted_convention
+    from shviewer.exchange.command import check_tolerance, project_lights, wanted_convention
 
     convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
     if convention.quantity:
@@ -231,7 +232,10 @@ def _project(options: argparse.Namespace) -> int:
         options.bands = min(DEFAULT_BANDS, convention.most_bands)
 
     def state_of(light: str) -> ViewState:
-        return state_from(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+        state = state_from(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+        if options.tolerance is not None:
+            check_tolerance(state, convention)
+        return state
 
     lights = options.lights or ["green"]
     with status_line() as line:
@@ -286,10 +290,10 @@ def _print_notes(subject: Subject) -> None:
         print(f"shviewer: note: {subject.refusal}", file=sys.stderr)
 
 
-def _print_suspicion(state: ViewState) -> None:
-    """By which usual mistake coefficients that are compared are off."""
-    from shviewer.viewer.comparison import suspicion
+def _print_verdict(state: ViewState) -> None:
+    """How well coefficients that are compared agree, or by which usual mistake they are off."""
+    from shviewer.viewer.comparison import verdict
     from shviewer.viewer.subjects import load_light
 
-    if state.compare and (found := suspicion(load_light(state), state.compare)):
-        print(f"shviewer: {found}", file=sys.stderr)
+    if state.compare:
+        print(f"shviewer: {verdict(load_light(state), state.compare)}", file=sys.stderr)

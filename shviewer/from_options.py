@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer.errors import UsageError
@@ -61,10 +60,11 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     check(state, tuple(options.size))
     state = open_light(state, options.light)
     if options.compare:
-        from shviewer.lights.coefficients.light import CoefficientLight
+        from shviewer.viewer.compared_files import compared_with
 
-        file = Path(options.compare)
-        state = replace(state, compare=replace(CoefficientLight.read(file, state.reading), name=file.name))
+        state, found = compared_with(state, options.compare)
+        if found:
+            print(f"shviewer: {found}", file=sys.stderr)
     if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
         from shviewer.viewer.comparison import as_the_file_holds
 
@@ -146,7 +146,23 @@ def _input_convention(options: argparse.Namespace) -> str:
             parse_convention(text)
         except ValueError as error:
             raise UsageError(str(error)) from error
+        _check_is_of_use(options, text)
     return text
+
+
+def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
+    """UsageError for a convention that nothing is read in."""
+    from shviewer.lights.light import COEFFICIENT_SUFFIXES, split_light
+
+    given = vars(options)
+    lights: list[str] = given.get("lights") or [given.get("light", "green")]
+    if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
+        return
+    name = "--input-convention" if "convention" in given else "--convention"
+    raise UsageError(
+        f"{name} {convention}: it is of a coefficient file, and {lights[0]} is none; name one as LIGHT"
+        + ("" if name == "--input-convention" else " or with --compare")
+    )
 
 
 def _finite_width(text: str) -> float:

@@ -71,7 +71,8 @@ def add_picture_options(parser: OneLineParser) -> None:
     parser.add_argument(
         "--compare",
         metavar="FILE",
-        help="show the coefficients in FILE instead of the light's own, and say by which usual mistake they are off",
+        help="show the coefficients in FILE instead of the light's own, and say how well they agree, or by which usual "
+        "mistake they are off; finds out the convention of a bare list, if none is named",
     )
     parser.add_argument("--exposure", metavar="STOPS", type=finite, help="fixed, instead of chosen from the light")
     parser.add_argument("--tone", metavar="T", default="none", help="curve after exposure: none, reinhard, aces or log")

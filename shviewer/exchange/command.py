@@ -4,21 +4,30 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from shviewer.errors import OutputError, ShviewerError, UsageError
 from shviewer.exchange.projected import Projected, project_state
+from shviewer.exchange.suns import sun_left_out
 from shviewer.exchange.writing import FORMATS, encode
+from shviewer.harmonics.conventions.axes import Axes
 from shviewer.harmonics.conventions.convention import OVER_PI, Convention
-from shviewer.harmonics.conventions.programs import parse_convention
+from shviewer.harmonics.conventions.programs import CONVENTIONS, parse_convention
 from shviewer.lights.light import split_light
+from shviewer.viewer.analysis import errors_of
 from shviewer.viewer.picture_files import file_stem, write_atomically
-from shviewer.viewer.state import ViewState
-from shviewer.viewer.subjects import subject
+from shviewer.viewer.projections import sampling_of
+from shviewer.viewer.state import ViewState, light_name
+from shviewer.viewer.subjects import load_light, subject
 
 STDOUT = "-"
 BATCH_FAILED = 1
+
+ROUNDING = 1e-6
+"""A minimum that is no farther below zero than this part of the largest coefficient is called zero."""
 
 StateOf = Callable[[str], ViewState]
 """The state that the options ask for, of one LIGHT. It raises what reading the light raises."""
@@ -43,7 +52,28 @@ def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str
     held = "irradiance" if convention.quantity == OVER_PI else convention.quantity
     if held is not None and quantity not in (None, held):
         raise UsageError(f"--for {quantity} contradicts --convention {text}, which takes {convention.quantity}")
+    own = CONVENTIONS[convention.name]
+    if axes and own.axes != Axes() and convention.axes != own.axes:
+        raise UsageError(
+            f"--axes {axes} contradicts --convention {text}: {own.name} expects {own.axes.words}; for its numbers in other "
+            f"axes write --convention {own.name},{axes}"
+        )
     return convention
+
+
+def check_tolerance(state: ViewState, convention: Convention) -> None:
+    """UsageError if the state's tolerance needs more bands than the program has: what its bands give, and what may help."""
+    most = convention.most_bands
+    if most is None or state.n_bands <= most:
+        return
+    bands = f"{most} band{'s' if most > 1 else ''}"
+    reached = float(errors_of(load_light(state), *sampling_of(state))[most - 1])
+    suns = () if state.split_sun else subject(replace(state, split_sun=True)).suns
+    remedy = "take its sun out, --split-sun, or " if suns else ""
+    raise UsageError(
+        f"{light_name(state.light)}: {100 * state.tolerance:g} % needs more than the {bands} that {convention.name} takes, "
+        f"which reach {100 * reached:.3g} %; {remedy}give --bands {most}"
+    )
 
 
 def project_lights(
@@ -67,20 +97,25 @@ def project_lights(
     if out == STDOUT:
         if kind is None:
             raise UsageError(f"-o -: stdout has no suffix to go by; name a format: --format {', '.join(FORMATS)}")
-        data = encode(_noted(light, state_of), convention, kind)
-        sys.stdout.buffer.write(data)
+        projected = _noted(light, state_of, convention)
+        sys.stdout.buffer.write(encode(projected, convention, kind))
         sys.stdout.buffer.flush()
+        _warn_below_zero(projected)
         return 0
     path = Path(out)
     if path.is_dir():
-        projected = _noted(light, state_of)
+        projected = _noted(light, state_of, convention)
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
     else:
         kind = _kind_of(path, kind)
         _check_is_not_read(path, light)
-        projected = _noted(light, state_of)
+        projected = _noted(light, state_of, convention)
     write_atomically(path, encode(projected, convention, kind or "json"))
-    print(f"wrote {path}: {_bands(projected)}, relative L2 error {_percent(projected)}")
+    radiance, irradiance = (_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
+    print(
+        f"wrote {path}: {_bands(projected)}, radiance within {radiance.removeprefix('< ')}, as irradiance {irradiance}"
+    )
+    _warn_below_zero(projected)
     return 0
 
 
@@ -120,25 +155,37 @@ def _one_of_many(
 ) -> Row:
     """One light of a batch, written under a name of its own."""
     try:
-        projected = _noted(light, state_of)
+        projected = _noted(light, state_of, convention)
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)
         _check_is_not_read(path, light)
         write_atomically(path, encode(projected, convention, kind))
+        _warn_below_zero(projected)
     except ShviewerError as error:
         return Row(light, "", error=str(error))
     return Row(light, str(path), projected)
 
 
-def _noted(light: str, state_of: StateOf) -> Projected:
-    """Projected; what was done to the light, and why no sun was split off, is said on stderr."""
+def _noted(light: str, state_of: StateOf, convention: Convention) -> Projected:
+    """Projected; what was done to the light, and what became of its suns, is said on stderr."""
     state = state_of(light)
     projected = project_state(state)
     shown = subject(state)
-    for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else [])):
+    suns = [sun_left_out(sun, convention.axes) for sun in projected.suns]
+    for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else []), *suns):
         print(f"shviewer: note: {shown.light.name}: {note}", file=sys.stderr)
     return projected
+
+
+def _warn_below_zero(projected: Projected) -> None:
+    """On stderr, of what has been written and is below zero by more than rounding."""
+    minimum = projected.figures.extremes.minimum
+    if minimum >= -ROUNDING * float(np.abs(projected.coefficients).max()):
+        return
+    says = f"the {projected.quantity} of its {_bands(projected)} goes to {minimum:.3g}"
+    remedy = "" if projected.about["window"] == "dering" else "; --window dering takes that away"
+    print(f"shviewer: note: {projected.name}: {says}{remedy}", file=sys.stderr)
 
 
 def _kind_of(path: Path, kind: str | None) -> str:
@@ -162,16 +209,17 @@ def _check_is_not_read(path: Path, light: str) -> None:
 
 
 def summary(rows: Sequence[Row]) -> str:
-    """A table: light, bands, errors as radiance or irradiance of what was projected, and the file."""
+    """A table: light, bands, relative L2 errors of both quantities, the minimum of the one that is written, and the file."""
     width = max(len("light"), *(min(len(row.light), 40) for row in rows))
-    lines = [f"{'light':<{width}}  bands  relative L2     minimum  file"]
+    lines = [f"{'light':<{width}}  bands   radiance  irradiance     minimum  file"]
     for row in rows:
         label = row.light if len(row.light) <= 40 else f"...{row.light[-37:]}"
         if row.projected is None:
             lines.append(f"{label:<{width}}  failed")
             continue
         figures = row.projected.figures
-        numbers = f"{row.projected.n_bands:>5}  {_percent(row.projected):>11}  {figures.extremes.minimum:>10.4g}"
+        errors = f"{_percent(row.projected, 'radiance'):>9}  {_percent(row.projected, 'irradiance'):>10}"
+        numbers = f"{row.projected.n_bands:>5}  {errors}  {figures.extremes.minimum:>10.4g}"
         lines.append(f"{label:<{width}}  {numbers}  {row.file}")
     failed = sum(1 for row in rows if row.error)
     return "\n".join([*lines, f"{len(rows) - failed} of {len(rows)} written"])
@@ -181,7 +229,7 @@ def _bands(projected: Projected) -> str:
     return f"{projected.n_bands} band{'s' if projected.n_bands > 1 else ''}"
 
 
-def _percent(projected: Projected) -> str:
+def _percent(projected: Projected, quantity: str) -> str:
     """The relative L2 error, or the floor below which it cannot be told from rounding."""
-    error, floor = projected.figures.relative_l2, projected.figures.floor
+    error, floor = projected.relative_l2_as[quantity], projected.figures.floor
     return f"{100 * error:.3g} %" if error >= floor else f"< {100 * floor:.0e} %"

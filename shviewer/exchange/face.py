@@ -1,22 +1,7 @@
 """The functions of `import shviewer`, each of which does what the command of its name does.
 
 A light is what `find_light` takes: a text that the command line would take for LIGHT, a path, a function of directions, an
-array, or a Light. `options` are those of the window, by their names in ViewState:
-
-    quantity        "radiance" (default) or "irradiance"
-    window          "none", "hann", "lanczos", "gauss" or "dering"; window_width in bands, as many as are shown unless given
-    muted           bands to leave out
-    method          "best" (default, the light's own), "jittered" or "gauss-legendre", with `samples` and `seed`
-    split_sun       take suns out of the light
-    exposure_stops  fixed, instead of chosen from the light
-    camera          azimuth and elevation, degrees
-    zoom            0.25 to 16
-    tone            "none" (default), "reinhard", "aces" or "log"
-    error           "off" (default), "signed", "absolute" or "relative": a third sphere; error_range ends its colours
-    marks           False: no rings at the minimum and the largest error
-    lobe_view       surfaces whose radius is the magnitude; basis, such as (2, -1): one function as the second of them
-    sheet           "convergence": the error against the number of bands
-    evaluate        "direct", "map" or "auto" (default): how the reconstruction is drawn
+array, or a Light. `options` are those of the window, by their names in ViewState; OPTIONS_HELP lists them.
 
 ShviewerError, with one line that says what to do, where an argument is out of range or a light is bad.
 """
@@ -24,15 +9,16 @@ ShviewerError, with one line that says what to do, where an argument is out of r
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
-from dataclasses import fields
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.errors import UsageError
+from shviewer.exchange.evaluating import whole
 from shviewer.exchange.projected import Projected, project_state
 from shviewer.harmonics.basis import count_bands
 from shviewer.lights import light as lights
@@ -41,12 +27,33 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.lights.radiance_files import Reading
+from shviewer.viewer.compared_files import compared_with
+from shviewer.viewer.comparison import as_the_file_holds
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.view_limits import check
 
 if TYPE_CHECKING:
     from shviewer.report.run import Summary
+
+OPTIONS_HELP = """options:
+        quantity        "radiance" (default) or "irradiance"
+        window          "none", "hann", "lanczos", "gauss" or "dering"; window_width in bands, as many as are shown unless given
+        muted           bands to leave out
+        method          "best" (default, the light's own), "jittered" or "gauss-legendre", with `samples` and `seed`
+        split_sun       take suns out of the light
+        exposure_stops  fixed, instead of chosen from the light
+        camera          azimuth and elevation, degrees
+        zoom            0.25 to 16
+        tone            "none" (default), "reinhard", "aces" or "log"
+        error           "off" (default), "signed", "absolute" or "relative": a third sphere; error_range ends its colours
+        marks           False: no rings at the minimum and the largest error
+        lobe_view       surfaces whose radius is the magnitude; basis, such as (2, -1): one function as the second of them
+        sheet           "convergence": the error against the number of bands
+        evaluate        "direct", "map" or "auto" (default): how the reconstruction is drawn
+        compare         somebody else's coefficients, shown instead of the light's own: a path, an array or a light of them
+"""
+"""At the end of the docstring of every function that takes them."""
 
 LightLike: TypeAlias = str | os.PathLike[str] | Light | Callable[[Any], ArrayLike] | NDArray[np.generic]
 
@@ -71,8 +78,55 @@ OPTIONS = frozenset(
         "basis",
         "sheet",
         "evaluate",
+        "compare",
     )
 )
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def _with_options(function: _Function) -> _Function:
+    function.__doc__ = f"{function.__doc__}{OPTIONS_HELP}"
+    return function
+
+
+WHOLE = ("samples", "seed")
+NUMBERS = ("window_width", "exposure_stops", "zoom", "error_range")
+WORDS = ("quantity", "window", "method", "tone", "error", "sheet", "evaluate")
+PAIRS = {"camera": "azimuth and elevation in degrees, such as (30, 10)", "basis": "l and m, such as (2, -1)"}
+NOT_SET = ("window_width", "exposure_stops", "error_range", "basis")
+"""Those that may be None."""
+
+
+def _checked(name: str, value: Any) -> Any:
+    """An option of the type that it has to have. UsageError."""
+    if value is None and name in NOT_SET:
+        return None
+    if name in WHOLE:
+        return whole(value, name)
+    if name in NUMBERS and not _is_number(value):
+        raise UsageError(f"{name} {value!r}: it must be a finite number")
+    if name in WORDS and not isinstance(value, str):
+        raise UsageError(f"{name} {value!r}: it must be a text")
+    if name == "muted":
+        if not isinstance(value, Iterable) or isinstance(value, str):
+            raise UsageError(f"muted {value!r}: it must be several bands, such as [1, 3]")
+        return frozenset(whole(band, "muted band") for band in value)
+    if name in PAIRS:
+        if not (isinstance(value, Sequence) and len(value) == 2 and all(map(_is_number, value))):
+            raise UsageError(f"{name} {value!r}: it must be {PAIRS[name]}")
+        return tuple(whole(part, name) for part in value) if name == "basis" else tuple(map(float, value))
+    return value
+
+
+def _checked_size(size: Any) -> tuple[int, int]:
+    if not (isinstance(size, Sequence) and len(size) == 2):
+        raise UsageError(f"size {size!r}: it must be width and height, such as (1280, 640)")
+    return whole(size[0], "width"), whole(size[1], "height")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | np.integer | np.floating) and bool(np.isfinite(value))
 
 
 def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False, layout: str = "auto") -> Light:
@@ -117,25 +171,40 @@ def _state(light: LightLike, bands: int | None, options: dict[str, Any]) -> View
         raise UsageError(
             f"option {unknown[0]!r}: there is {', '.join(field.name for field in fields(ViewState) if field.name in OPTIONS)}"
         )
-    if "muted" in options:
-        options = {**options, "muted": frozenset(cast(Iterable[int], options["muted"]))}
+    checked = {name: _checked(name, value) for name, value in options.items() if name != "compare"}
+    count = None if bands is None else whole(bands, "bands")
     found = find_light(light)
-    if bands is None:
-        bands = found.n_bands if isinstance(found, CoefficientLight) else ViewState.n_bands
-    state = ViewState(lights=(found,), n_bands=bands, **options)
+    if count is None:
+        count = found.n_bands if isinstance(found, CoefficientLight) else ViewState.n_bands
+    state = ViewState(lights=(found,), n_bands=count, **checked)
     check(state)
+    if (given := options.get("compare")) is not None:
+        state = _comparing(state, given)
+        state = as_the_file_holds(state, quantity="quantity" not in options, bands=bands is None)
     return state
 
 
+def _comparing(state: ViewState, given: LightLike) -> ViewState:
+    if isinstance(given, str | os.PathLike):
+        return compared_with(state, os.fspath(given), "compare=")[0]
+    light = find_light(given)
+    if not isinstance(light, CoefficientLight):
+        raise UsageError(f"compare {light.name!r}: it must be coefficients, a file or an array (n**2, 3) of them")
+    return replace(state, compare=light)
+
+
+@_with_options
 def project(light: LightLike, bands: int | None = None, **options: Any) -> Projected:
     """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
 
     `Projected.coefficients` is (bands**2, 3) float64 in the convention of harmonics/basis.py, row l(l+1) + m; `save` writes a
-    file and `numbers` converts, both for other programs, too. options: see above.
+    file and `numbers` converts, both for other programs, too. ShviewerError for whatever a caller can put right.
+
     """
     return project_state(_state(light, bands, options))
 
 
+@_with_options
 def screenshot(
     light: LightLike,
     bands: int | None = None,
@@ -146,29 +215,32 @@ def screenshot(
 ) -> NDArray[np.uint8]:
     """The picture of the window: (height, width, 3) uint8, sRGB, top row first. size: width and height in pixels.
 
-    overlay: with captions and figures. GraphicsError where there is no OpenGL 3.3. options: see above.
+    overlay: with captions and figures. GraphicsError where there is no OpenGL 3.3.
+
     """
     from shviewer.viewer.composition import compose
     from shviewer.viewer.screenshot import headless_renderer, render_rgb
 
     state = _state(light, bands, options)
-    check(state, size)
+    check(state, _checked_size(size))
     picture = prepare(state)
     with headless_renderer() as renderer:
         return render_rgb(renderer, picture, compose(*size, state.zoom, n_spheres=state.n_spheres), overlay=overlay)
 
 
+@_with_options
 def view(
     light: LightLike = "green", bands: int | None = None, *, size: tuple[int, int] = (1280, 640), **options: Any
 ) -> None:
     """Open the window and stay until it is closed. size: width and height in screen coordinates.
 
-    NoDisplayError without a display, GraphicsError without OpenGL 3.3. options: see above.
+    NoDisplayError without a display, GraphicsError without OpenGL 3.3.
+
     """
     from shviewer.viewer import window
 
     state = _state(light, bands, options)
-    check(state, size)
+    check(state, _checked_size(size))
     window.run(state, size)
 
 

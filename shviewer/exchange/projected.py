@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 
 from shviewer import __version__
 from shviewer.errors import UsageError
+from shviewer.exchange.suns import sun_keys
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.conventions.convention import IRRADIANCE, Convention
 from shviewer.harmonics.conventions.programs import parse_convention
 from shviewer.lights.coefficients.stamp import Value, stamp_of
+from shviewer.lights.sun import Sun
 from shviewer.viewer.analysis import Figures, reconstruct
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.picture_files import write_atomically
 from shviewer.viewer.projections import project, sampling_of
 from shviewer.viewer.state import ViewState, light_name
-from shviewer.viewer.subjects import Subject, subject
+from shviewer.viewer.subjects import Subject, load_light, subject
 from shviewer.viewer.view_limits import check
 
 ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")
@@ -39,6 +41,10 @@ class Projected:
     figures: Figures
     about: dict[str, Value]
     name: str
+    relative_l2_as: dict[str, float] = field(default_factory=dict)
+    """The error of "radiance" and of "irradiance", whichever of them the coefficients are of."""
+    suns: tuple[Sun, ...] = ()
+    """Left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
 
     @property
     def n_bands(self) -> int:
@@ -76,7 +82,7 @@ class Projected:
             about = {key: value for key, value in about.items() if key not in ERRORS}
             if written == IRRADIANCE:
                 about["relative-l2"] = float(self.figures.irradiance_relative_l2)
-        return about
+        return about | sun_keys(self.suns, convention.axes)
 
 
 def project_state(state: ViewState) -> Projected:
@@ -88,6 +94,12 @@ def project_state(state: ViewState) -> Projected:
     coefficients, figures = reconstruct(
         shown.light, projection, state.n_bands, state.muted_shown, state.window, state.window_width
     )
+    both = {"radiance": figures.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
+    if state.quantity == IRRADIANCE:
+        radiance = load_light(replace(state, quantity="radiance"))
+        shape = state.n_bands, state.muted_shown, state.window, state.window_width
+        of_radiance = project(radiance, *sampling_of(state), bands)
+        both = {"radiance": reconstruct(radiance, of_radiance, *shape)[1].relative_l2, IRRADIANCE: figures.relative_l2}
     about: dict[str, Value] = {
         **_light(state, shown),
         "window": _window(state),
@@ -98,7 +110,7 @@ def project_state(state: ViewState) -> Projected:
         **_errors(figures),
     }
     about = {key: value for key, value in about.items() if value is not None and value != ""}
-    return Projected(coefficients, state.quantity, figures, about, shown.light.name)
+    return Projected(coefficients, state.quantity, figures, about, shown.light.name, both, shown.suns)
 
 
 def _light(state: ViewState, shown: Subject) -> dict[str, Value]:

@@ -19,7 +19,7 @@ from shviewer.exchange.source_code import c_header, glsl_source
 from shviewer.harmonics.basis import count_bands
 from shviewer.harmonics.conventions.axes import orders
 from shviewer.harmonics.conventions.convention import Convention
-from shviewer.lights.coefficients.stamp import Stamp
+from shviewer.lights.coefficients.stamp import Stamp, Value
 
 FORMATS = ("json", "csv", "npz", "h", "glsl")
 
@@ -47,39 +47,42 @@ def real_columns(numbers: NDArray[np.generic]) -> NDArray[np.float64]:
     return np.asarray(numbers, dtype=np.float64)
 
 
-def _json(numbers: NDArray[np.generic], stamp: Stamp, convention: Convention, name: str) -> bytes:
+def _json(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
     """One row to a line."""
     head = json.dumps(stamp, indent=2, allow_nan=False)[:-2]
     rows = ",\n".join(f"    [{', '.join(_digits(row))}]" for row in real_columns(numbers))
     return f'{head},\n  "coefficients": [\n{rows}\n  ]\n}}\n'.encode()
 
 
-def _csv(numbers: NDArray[np.generic], stamp: Stamp, convention: Convention, name: str) -> bytes:
+def _csv(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
     lines = [*_comment_lines("#", stamp), ",".join(["l", "m", *str(stamp["columns"]).split()])]
     for l, m, row in _rows(numbers, convention):
         lines.append(",".join([str(l), str(m), *_digits(row)]))
     return ("\n".join(lines) + "\n").encode()
 
 
-def _npz(numbers: NDArray[np.generic], stamp: Stamp, convention: Convention, name: str) -> bytes:
+def _npz(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
     file = io.BytesIO()
     np.savez(file, coefficients=numbers, stamp=np.array(json.dumps(stamp, allow_nan=False)))
     return file.getvalue()
 
 
-def _h(numbers: NDArray[np.generic], stamp: Stamp, convention: Convention, name: str) -> bytes:
+def _h(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
     rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
+    if convention.layout != Convention.layout:  # the program's own, which this array need not have
+        program = convention.program.partition(",")[0]
+        stamp = stamp | {"layout": f"in {program} {convention.layout}; this array is [row][channel]"}
     return c_header(name, _comment_lines("//", stamp), rows).encode()
 
 
-def _glsl(numbers: NDArray[np.generic], stamp: Stamp, convention: Convention, name: str) -> bytes:
+def _glsl(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
     factors = convention.basis_factors(count_bands(numbers))
     rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
     quantity = str(stamp["quantity"]).replace("-", "_")
     return glsl_source(name, quantity, _comment_lines("//", stamp), rows, factors, convention.mirrored).encode()
 
 
-_Encoder = Callable[[NDArray[np.generic], Stamp, Convention, str], bytes]
+_Encoder = Callable[[NDArray[np.generic], dict[str, Value], Convention, str], bytes]
 _ENCODERS: dict[str, _Encoder] = {"json": _json, "csv": _csv, "npz": _npz, "h": _h, "glsl": _glsl}
 
 

@@ -15,7 +15,7 @@ from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer import camera
 from shviewer.viewer.analysis import Figures, Needs, error_grid, grid_rows, needs, reconstruct
-from shviewer.viewer.comparison import suspicion
+from shviewer.viewer.comparison import verdict
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.error_view import ErrorScale
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
@@ -62,7 +62,7 @@ class Picture:
     needs_unsplit: Needs | None
     """What the light would need with its suns; None if none were split off."""
     suspicion: str = ""
-    """What is wrong with coefficients that are compared and do not fit."""
+    """How well coefficients that are compared agree with the light's own, and if they do not, what is wrong with them."""
 
     @property
     def light(self) -> Light:
@@ -116,7 +116,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         figures=figures,
         needs=needs(state),
         needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
-        suspicion=suspicion(light, state.compare) if state.compare else "",
+        suspicion=verdict(light, state.compare) if state.compare else "",
     )
 
 

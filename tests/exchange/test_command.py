@@ -15,6 +15,7 @@ from shviewer.exchange.command import project_lights
 from shviewer.harmonics.conventions.programs import CONVENTIONS
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import find_light
 from shviewer.viewer.state import ViewState
 
@@ -151,7 +152,7 @@ def test_of_several_lights_every_one_that_can_be_is_written(tmp_path: Path, caps
     captured = capsys.readouterr()
     assert sorted(path.name for path in out.iterdir()) == ["cosine.csv", "green-2.csv", "green.csv"]
     assert captured.out.splitlines()[-1] == "3 of 5 written"
-    assert re.search(r"^green +4 +51\.2 % +-0\.1844 +.*green\.csv$", captured.out, flags=re.MULTILINE)
+    assert re.search(r"^green +4 +51\.2 % +[\d.]+ % +-0\.1844 +.*green\.csv$", captured.out, flags=re.MULTILINE)
     assert re.search(r"^nothing +failed$", captured.out, flags=re.MULTILINE)
     assert [line for line in captured.err.splitlines() if line.startswith("shviewer: unknown light 'nothing'")]
     assert "no column blue" in captured.err
@@ -178,6 +179,8 @@ def test_a_batch_without_failures_is_done(tmp_path: Path, capsys: Capture) -> No
         (("-o", "x.json", "--convention", "unreal", "--no-phase"), 2, "not be what that program expects"),
         (("-o", "x.json", "--axes", "up"), 2, "such as +x+z-y"),
         (("-o", "x.json", "--convention", "unity", "--bands", "4"), 2, "4 bands: unity takes 1 to 3"),
+        (("-o", "x.json", "--convention", "unity", "--axes", "z-up"), 2, "unity expects x y z are our +x +z +y; y up"),
+        (("-o", "x.json", "--input-convention", "three"), 2, "--input-convention three: it is of a coefficient file"),
         (("-o", "x.glsl", "--convention", "scipy"), 2, "complex coefficients"),
         (("-o", "x.json", "--input-convention", "maya"), 2, "must be one of shviewer"),
         (("nothing", "-o", "x.json"), 3, "unknown light 'nothing'"),
@@ -240,4 +243,78 @@ def test_as_many_bands_as_a_tolerance_needs(tmp_path: Path, capsys: Capture) -> 
     assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "10%") == 0
     assert held(tmp_path / "c.json").n_bands == 3  # 127/128 of the energy: 8.8 %
     assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "1%", "--convention", "three") == 2
-    assert "three takes 1 to 3" in capsys.readouterr().err
+    assert "3 bands that three takes" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["json", "csv", "npz", "h", "glsl"])
+def test_a_sun_that_is_left_out_is_written_in_the_axes_of_the_file(kind: str, tmp_path: Path, capsys: Capture) -> None:
+    """sun-sky.toml says where it stands and how bright it is; Unity's x, y, z are our x, z, y."""
+    out = tmp_path / f"sky.{kind}"
+    assert project("sun-sky", "--split-sun", "--convention", "unity", "-o", out) == 0
+    sun = next(lobe for lobe in find_light("sun-sky").lobes if lobe.radiance.max() > 1000)  # type: ignore[attr-defined]
+    light = held(out)
+    assert light.file is not None
+    said = {key: str(value) for key, value in light.file.stamp.items()}
+    numbers = {key: np.array(value.split(), dtype=float) for key, value in said.items() if key.startswith("sun-1-")}
+    assert said["suns"] == "1"
+    np.testing.assert_allclose(numbers["sun-1-direction"], sun.axis[[0, 2, 1]], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(numbers["sun-1-radiance"], sun.radiance, rtol=1e-15)
+    half_angle = np.radians(numbers["sun-1-width"] / 2)
+    assert half_angle == pytest.approx(sun.profile.half_angle, rel=1e-12)
+    irradiance = np.pi * np.sin(sun.profile.half_angle) ** 2 * sun.radiance
+    np.testing.assert_allclose(numbers["sun-1-irradiance"], irradiance, rtol=1e-12)
+    x, z, y = sun.axis
+    direction, brightness = f"{x:.4g} {y:.4g} {z:.4g}", " ".join(f"{value:.4g}" for value in irradiance)
+    assert f"sun left out: a directional light from ({direction}), irradiance {brightness}\n" in capsys.readouterr().err
+    assert light.notes[0] == "1 sun left out; the file says where and how bright"
+
+
+def test_without_a_sun_nothing_is_said_of_suns(tmp_path: Path, capsys: Capture) -> None:
+    assert project("sun-sky", "-o", tmp_path / "a.json") == 0
+    assert not [key for key in json.loads((tmp_path / "a.json").read_text()) if key.startswith("sun")]
+    assert "sun left out" not in capsys.readouterr().err
+    assert held(tmp_path / "a.json").notes == ()
+
+
+@pytest.mark.parametrize("quantity", ["radiance", "irradiance"])
+def test_both_errors_are_said_whatever_is_written(quantity: str, tmp_path: Path, capsys: Capture) -> None:
+    green = find_light("green")
+    exact = green.coefficients(3)
+    radiance = errors_by_band_count(green.products(), exact, exact)[-1]
+    shaded = IrradianceLight(green)
+    irradiance = errors_by_band_count(shaded.products(), shaded.coefficients(3), shaded.coefficients(3))[-1]
+    assert project("green", "--bands", 3, "--for", quantity, "-o", tmp_path / "a.json") == 0
+    errors = f"radiance within {100 * radiance:.3g} %, as irradiance {100 * irradiance:.3g} %"
+    assert f"a.json: 3 bands, {errors}\n" in capsys.readouterr().out
+
+
+def test_a_reconstruction_below_zero_is_warned_of_with_the_remedy(tmp_path: Path, capsys: Capture) -> None:
+    assert project("green", "-o", tmp_path / "a.json") == 0
+    warning = "shviewer: note: green: the radiance of its 5 bands goes to -0.137; --window dering takes that away\n"
+    assert capsys.readouterr().err == warning
+    assert project("green", "--window", "dering", "-o", tmp_path / "a.json") == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_tolerance_that_a_program_cannot_reach_says_what_it_reaches(tmp_path: Path, capsys: Capture) -> None:
+    command = ["--tolerance", "5%", "--convention", "three", "-o", tmp_path / "a.json"]
+    assert project("green", *command) == 2
+    green, exact = find_light("green"), find_light("green").coefficients(3)
+    reached = errors_by_band_count(green.products(), exact, exact)[-1]
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert f"needs more than the 3 bands that three takes, which reach {100 * reached:.3g} %; give --bands 3" in error
+    assert project("sun-sky", *command) == 2
+    assert "take its sun out, --split-sun" in capsys.readouterr().err
+    assert project("sun-sky", "--split-sun", *command) == 0
+
+
+def test_the_header_says_how_its_array_differs_from_the_programs(tmp_path: Path) -> None:
+    assert project("-o", tmp_path / "a.h", "--convention", "unity") == 0
+    assert "// layout: in Unity sh[channel, row]; this array is [row][channel]\n" in (tmp_path / "a.h").read_text()
+    assert held(tmp_path / "a.h").n_bands == 3
+
+
+def test_a_convention_that_nothing_is_read_in_is_refused(capsys: Capture) -> None:
+    assert main(["screenshot", "a.png", "green", "--convention", "three"]) == 2
+    says = "--convention three: it is of a coefficient file, and green is none; name one as LIGHT or with --compare"
+    assert says in capsys.readouterr().err

@@ -54,7 +54,7 @@ def test_reconstruct_is_the_sum_of_the_basis() -> None:
     value = shviewer.reconstruct(asymmetric(6), directions)
     assert value.shape == (4, 5, 3)
     np.testing.assert_allclose(value, shviewer.evaluate_basis(directions, 6) @ asymmetric(6), rtol=0, atol=1e-13)
-    with pytest.raises(ValueError, match="8 coefficients"):
+    with pytest.raises(ShviewerError, match="8 coefficients"):
         shviewer.reconstruct(np.zeros((8, 3)), directions)
 
 
@@ -86,6 +86,15 @@ def test_a_light_may_be_a_text_a_path_a_function_an_array_or_a_light(tmp_path: P
         ("green", {"bands": 129}, "129 bands"),
         ("green", {"colour": 1}, "option 'colour': there is"),
         ("green", {"window": "welch"}, "window 'welch'"),
+        ("green", {"bands": 3.5}, "bands 3.5: it must be a whole number"),
+        ("green", {"bands": "3"}, "bands '3': it must be a whole number"),
+        ("green", {"samples": 1e3}, "samples 1000.0: it must be a whole number"),
+        ("green", {"window_width": "wide"}, "window_width 'wide': it must be a finite number"),
+        ("green", {"window": 3}, "window 3: it must be a text"),
+        ("green", {"muted": 1}, "muted 1: it must be several bands"),
+        ("green", {"camera": (1,)}, "azimuth and elevation"),
+        ("green", {"compare": "studio"}, "studio is a built-in light; compare= takes coefficients"),
+        ("green", {"compare": lambda directions: directions}, "it must be coefficients"),
     ],
 )
 def test_what_is_wrong_is_one_line(light: Any, options: dict[str, Any], says: str) -> None:
@@ -157,3 +166,40 @@ def test_users_are_type_checked(tmp_path: Path) -> None:
     assert len(errors) == 1, done.stdout
     assert 'user.py:8: error: Argument 2 to "project"' in errors[0]
     assert 'user.py:7: note: Revealed type is "int"' in done.stdout
+
+
+def test_reconstruct_and_evaluate_basis_say_what_is_wrong() -> None:
+    for coefficients, directions, says in (
+        (np.ones((8, 3)), [0, 0, 1], "8 coefficients"),
+        (np.ones((9, 2)), [0, 0, 1], "rows of red, green and blue"),
+        (np.ones((9, 3)), [0, 0, 0], "finite and not zero"),
+    ):
+        with pytest.raises(ShviewerError, match=says):
+            shviewer.reconstruct(coefficients, directions)
+    for n_bands in (0, 2.5, "2"):
+        with pytest.raises(ShviewerError):
+            shviewer.evaluate_basis([0, 0, 1], n_bands)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("size", [(320,), (320.5, 160), 3])
+def test_a_size_is_two_whole_numbers(size: Any) -> None:
+    with pytest.raises(ShviewerError, match=r"width"):
+        shviewer.screenshot("green", size=size)
+
+
+def test_help_lists_the_options_where_they_are_taken() -> None:
+    from shviewer.exchange.face import OPTIONS
+
+    for function in (shviewer.project, shviewer.screenshot, shviewer.view):
+        assert all(name in str(function.__doc__) for name in OPTIONS)
+        assert "see above" not in str(function.__doc__)
+
+
+def test_coefficients_from_elsewhere_take_the_place_of_the_lights_own(tmp_path: Path) -> None:
+    own = shviewer.project("venice_sunset", 3)
+    (tmp_path / "three.json").write_text(json.dumps(own.numbers("three").tolist()))
+    compared = shviewer.project("venice_sunset", compare=1.5 * own.coefficients)
+    np.testing.assert_array_equal(compared.coefficients, 1.5 * own.coefficients)
+    assert compared.figures.channels["all"].added > 0.1
+    found = shviewer.project("venice_sunset", compare=tmp_path / "three.json")
+    np.testing.assert_allclose(found.coefficients, own.coefficients, rtol=0, atol=1e-13)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from harmonics.peer_cases import asymmetric
 
+import shviewer
 from shviewer.errors import UsageError
 from shviewer.exchange.projected import Projected, project_state
 from shviewer.exchange.source_code import identifier
@@ -18,6 +20,8 @@ from shviewer.exchange.writing import encode, real_columns
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.conventions.programs import CONVENTIONS, parse_convention
 from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.lights.light import find_light
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.state import ViewState
 
@@ -131,3 +135,17 @@ def test_names_become_identifiers_that_c_and_glsl_accept() -> None:
     assert identifier("film:diffuse--2") == "sh_film_diffuse_2"
     assert identifier("float") == "sh_float"
     assert identifier("__") == "sh"
+
+
+def test_unitys_seven_vectors_are_made_as_the_readme_says() -> None:
+    """ShadeSH9 adds dot(A, (n, 1)), dot(B, (xy, yz, zz, zx)) and C (xx - yy): the polynomials of what is written."""
+    readme = (Path(__file__).parents[2] / "README.md").read_text()
+    found = shviewer.project("venice_sunset", 3)
+    sh = np.asarray(found.numbers("unity"), dtype=float).T
+    x, y, z = 0.48, 0.6, 0.64
+    rows = [re.findall(rf"unity_SH{name} = \((.*)\)", readme)[0].replace("3 sh", "3 * sh") for name in "ABC"]
+    a, b, c = (eval(f"({row})", {"sh": sh, "c": 1}) for row in rows)
+    value = np.dot(a, [x, y, z, 1]) + np.dot(b, [x * y, y * z, z * z, z * x]) + c[1] * (x * x - y * y)
+    ours = np.array([[x, z, y]])
+    wanted = shviewer.reconstruct(IrradianceLight(find_light("venice_sunset")).coefficients(3), ours) / np.pi
+    assert value == pytest.approx(wanted[0, 1], rel=1e-12)

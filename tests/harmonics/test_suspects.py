@@ -73,14 +73,14 @@ def test_a_whole_program_is_a_simpler_explanation_than_its_parts() -> None:
     for name in ("filament", "three", "unity"):
         numbers = np.asarray(CONVENTIONS[name].from_ours(exact))
         readings = {
-            other: exact_again / (A if convention.quantity == OVER_PI else 1)
+            (f"in the convention of {other}",): exact_again / (A if convention.quantity == OVER_PI else 1)
             for other, convention in CONVENTIONS.items()
             if not convention.complex
             for exact_again in [convention.to_ours(numbers)]
         }
         best = usual_suspects(exact, numbers, readings)[0]
         assert best.words == f"in the convention of {name}"
-        assert best.error < 1e-12
+        assert best.error < 1e-7  # the root of a difference of sums
 
 
 def test_black_lights_and_empty_numbers_have_an_answer() -> None:

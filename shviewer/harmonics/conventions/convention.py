@@ -113,7 +113,7 @@ class Convention:
     def check_bands(self, n_bands: int) -> None:
         """ValueError for more bands than the program has."""
         if self.most_bands is not None and n_bands > self.most_bands:
-            raise ValueError(f"{n_bands} bands: {self.name} takes 1 to {self.most_bands}; use fewer (--bands)")
+            raise ValueError(f"{n_bands} bands: {self.name} takes 1 to {self.most_bands}; use fewer")
 
     def from_ours(self, coefficients: Array, quantity: str = RADIANCE) -> NDArray[np.generic]:
         """Ours, (n**2, k) of `quantity`, "radiance" or "irradiance" -> the program's, float64, or complex128.

@@ -20,7 +20,7 @@ unreal      `TSHVector` [Core/Public/Math/SHMath.h, Core/Private/Math/SHMath.cpp
             times -y, z, -x), V[l(l+1) + m] for each of R, G, B; its tables hold 3 bands. Radiance: SetupSkyIrradiance-
             EnvironmentMapConstants [Renderer, SceneRendering.cpp] applies A(l)/pi when it packs them for the shader.
             z up, left-handed; the image's centre is -y and its right +x [TextureCompressorModule.cpp, LookupLongLat with y and
-            z swapped]. For coefficients with x ahead and y to the right, give --axes z-up-left.
+            z swapped]. For coefficients with x ahead and y to the right, write unreal,z-up-left.
 ambix       C. Nachbar et al., "AmbiX - A Suggested Ambisonics Format", Ambisonics Symposium 2011, as RFC 8486 and the IEM
             Plug-in Suite [plugins.iem.at/docs/compatibility] use it: ACN order, SN3D, no phase; channel W is the plain
             integral. Azimuth from ahead to the left, elevation up: x ahead, y left, z up. The numbers are what an

@@ -18,6 +18,7 @@ from shviewer.harmonics.conventions.convention import RADIANCE, Convention, reco
 from shviewer.harmonics.conventions.programs import CONVENTIONS, OURS, convention_text
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.coefficients.reading import CoefficientFile, read_coefficients
+from shviewer.lights.coefficients.stamp import SUNS_KEY
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.radiance_files import DEFAULT_READING, Reading
 
@@ -38,10 +39,13 @@ class CoefficientLight:
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> CoefficientLight:
         """LightError if the file is bad or does not say its convention."""
-        file = read_coefficients(path, reading)
-        if file.quantity == RADIANCE:
-            return cls(file.coefficients, path.stem, file)
-        return cls(recovered_radiance(file.coefficients)[0], path.stem, file)
+        return cls.of_file(read_coefficients(path, reading), path.stem)
+
+    @classmethod
+    def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
+        """Of a file that has been read."""
+        held = file.coefficients
+        return cls(held if file.quantity == RADIANCE else recovered_radiance(held)[0], name, file)
 
     @classmethod
     def of_numbers(
@@ -82,9 +86,17 @@ class CoefficientLight:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        if self.file is None or self.quantity == RADIANCE:
+        if self.file is None:
             return ()
-        lost = recovered_radiance(self.file.coefficients)[1]
+        suns = str(self.file.stamp.get(SUNS_KEY, 0))
+        left_out = (f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright",)
+        return (left_out if suns != "0" else ()) + self._recovery(self.file)
+
+    def _recovery(self, file: CoefficientFile) -> tuple[str, ...]:
+        """A note on how radiance comes from irradiance, if it has to."""
+        if self.quantity == RADIANCE:
+            return ()
+        lost = recovered_radiance(file.coefficients)[1]
         unknown = (
             f", which tells nothing of band{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}" if lost else ""
         )

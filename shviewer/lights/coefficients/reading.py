@@ -66,10 +66,14 @@ def read_coefficients(path: Path, reading: Reading = DEFAULT_READING) -> Coeffic
     LightError, one line with file, finding and next step, for whatever is wrong with it.
     """
     with naming(str(path)):
-        limits = Limits(file_bytes=min(MAX_FILE_BYTES, reading.limits.file_bytes))
-        _check_size(path)
-        found = _READERS[path.suffix.lower()](read_bytes(path, limits))
-        return _interpreted(*found, reading.convention)
+        return interpreted(*read_numbers(path, reading), reading.convention)
+
+
+def read_numbers(path: Path, reading: Reading = DEFAULT_READING) -> tuple[NDArray[Any], Stamp]:
+    """The numbers in a file, in whichever shape, and what it says of them; nothing for a bare list. LightError."""
+    limits = Limits(file_bytes=min(MAX_FILE_BYTES, reading.limits.file_bytes))
+    _check_size(path)
+    return _READERS[path.suffix.lower()](read_bytes(path, limits))
 
 
 def _check_size(path: Path) -> None:
@@ -81,7 +85,8 @@ def _check_size(path: Path) -> None:
             )
 
 
-def _interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientFile:
+def interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientFile:
+    """Numbers as they were read, in the convention of their stamp, or the one that somebody named. LightError."""
     if stamp:
         convention = read_stamp(stamp)
         if named and parse_convention(named) != parse_convention(str(stamp["convention"])):
@@ -95,12 +100,19 @@ def _interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> Coefficient
             raise LightError(str(error)) from error
     else:
         raise LightError(
-            f"a bare list of numbers; name its convention: --convention {', '.join(CONVENTIONS)}, such as --convention three"
+            f"a bare list of numbers; name its convention: --convention {', '.join(CONVENTIONS)}, such as --convention three "
+            "(in Python convention='three'); "
+            "if the light is at hand, --compare finds it out: shviewer LIGHT --compare FILE"
         )
     table = as_table(numbers, complex_pairs=convention.complex)
     if stamp and "bands" in stamp and str(stamp["bands"]) != str(count_bands(table)):
         raise LightError(
             f"says {stamp['bands']} bands but has {len(table)} rows; n bands have n^2: project the light again"
+        )
+    if convention.most_bands is not None and count_bands(table) > convention.most_bands:
+        raise LightError(
+            f"{count_bands(table)} bands, so its numbers are not those of {convention.name}, which has at most "
+            f"{convention.most_bands}: name another convention"
         )
     if np.abs(table).max() > LARGEST:
         raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")

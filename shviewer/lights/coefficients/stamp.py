@@ -9,6 +9,11 @@ Schema 1. A reader needs the first three; the rest is for people, and is checked
     program, layout         who reads it, and how the program itself arranges the numbers
     bands, rows, columns    n, n^2, and what the columns are
     light, light-is, light-notes, window, muted, method, samples, seed
+    suns                    how many were left out of the light, if any were; of each, sun-1 having the greatest flux,
+    sun-1-direction         x y z in the file's axes, the unit vector towards it,
+    sun-1-irradiance        red green blue, of a surface that faces it, not divided by pi: that of a directional light,
+    sun-1-radiance          red green blue, of a disc of uniform radiance with that irradiance,
+    sun-1-width             the angle across this disc in degrees
     relative-l2, left-out, added, max-error, minimum, negative-area, irradiance-relative-l2
 
 Errors are of what the rows hold against the light, relative ones over all channels; max-error and minimum are in units of
@@ -25,6 +30,7 @@ from shviewer.harmonics.conventions.programs import convention_text, parse_conve
 
 SCHEMA = 1
 SCHEMA_KEY = "shviewer-coefficients"
+SUNS_KEY = "suns"
 
 Value = str | int | float | None
 Stamp = Mapping[str, Value]
