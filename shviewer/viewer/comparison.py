@@ -82,6 +82,11 @@ def verdict(light: Light, given: CoefficientLight) -> str:
     return f"{says}, but {left} if its numbers are {best.words}"
 
 
+def agrees(said: str) -> bool:
+    """Whether a verdict is a good one."""
+    return " agrees with the light's own " in said
+
+
 def _where(exact: Array, shown: Array) -> str:
     """In which bands they disagree, relative to each band of the light's own; "" if it has only one band, or is black."""
     starts = np.arange(count_bands(exact)) ** 2

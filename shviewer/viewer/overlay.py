@@ -14,6 +14,7 @@ from PIL import Image, ImageDraw
 
 from shviewer.viewer.captions import write_captions
 from shviewer.viewer.colour_bar import draw_colour_bar
+from shviewer.viewer.comparison import agrees
 from shviewer.viewer.composition import Box, Composition
 from shviewer.viewer.convergence import Convergence, draw_convergence
 from shviewer.viewer.figure_strip import write_figures
@@ -85,13 +86,14 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
     """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
     at, state = painter.at, picture.state
     y = at.hairline_y + at.px(104)
-    message = state.message or remark or picture.suspicion or picture.subject.refusal.partition(";")[0]
+    message = state.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
     if message:
         face = painter.face(13)
         text = message
         while text and face.getlength(text) > at.width - 2 * at.margin:
             text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
-        painter.text("message", at.margin, y, text, 13, WARNING, "lm")
+        good = message == picture.verdict and agrees(message)
+        painter.text("message", at.margin, y, text, 13, GREY if good else WARNING, "lm")
     curve = "" if state.tone == "none" else f", {state.tone} curve"
     stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state)}){curve}"
     needs, far = picture.needs, at.width - at.margin

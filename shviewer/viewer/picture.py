@@ -61,7 +61,7 @@ class Picture:
     needs: Needs
     needs_unsplit: Needs | None
     """What the light would need with its suns; None if none were split off."""
-    suspicion: str = ""
+    verdict: str = ""
     """How well coefficients that are compared agree with the light's own, and if they do not, what is wrong with them."""
 
     @property
@@ -116,7 +116,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         figures=figures,
         needs=needs(state),
         needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
-        suspicion=verdict(light, state.compare) if state.compare else "",
+        verdict=verdict(light, state.compare) if state.compare else "",
     )
 
 

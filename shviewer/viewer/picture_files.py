@@ -44,7 +44,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "muted": list(state.muted_shown),
         "quantity": state.quantity,
         "compare": state.compare and {"name": state.compare.name, "convention": state.compare.convention},
-        "suspicion": picture.suspicion,
+        "verdict": picture.verdict,
         "split_sun": state.split_sun,
         "suns": [_described(sun) for sun in picture.subject.suns],
         "window": state.window,

@@ -47,7 +47,7 @@ def test_the_lights_own_coefficients_fit_and_have_its_own_figures() -> None:
     plain = prepare(ViewState(lights=(VENICE,), n_bands=4))
     np.testing.assert_allclose(picture.coefficients, plain.coefficients, rtol=0, atol=1e-14)
     assert picture.figures.relative_l2 == pytest.approx(plain.figures.relative_l2, rel=1e-9)
-    assert picture.suspicion == "theirs.txt agrees with the light's own to 0.0001 % over its 4 bands"
+    assert picture.verdict == "theirs.txt agrees with the light's own to 0.0001 % over its 4 bands"
 
 
 def test_the_figures_are_those_of_the_given_coefficients() -> None:
@@ -71,7 +71,7 @@ def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
     file = CoefficientLight.read(path, Reading(convention="unity"))
     picture = compared(file)
     assert (picture.state.quantity, picture.state.n_bands) == ("irradiance", 3)
-    assert picture.suspicion == "probe agrees with the light's own to 0.0001 % over its 3 bands"
+    assert picture.verdict == "probe agrees with the light's own to 0.0001 % over its 3 bands"
     own = prepare(ViewState(lights=(VENICE,), n_bands=3, quantity="irradiance"))
     np.testing.assert_allclose(picture.coefficients, own.coefficients, rtol=0, atol=1e-13)
     assert picture.figures.relative_l2 == pytest.approx(own.figures.relative_l2, rel=1e-9)
@@ -88,9 +88,9 @@ def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
 )
 def test_the_usual_mistakes_are_named_in_one_line(names: tuple[str, ...], words: str) -> None:
     picture = compared(given(spoiled(VENICE.coefficients(3), *names)))
-    assert picture.suspicion.startswith("theirs.txt is ")
-    assert picture.suspicion.endswith(f" % off, but not at all if its numbers are {words}")
-    assert "\n" not in picture.suspicion
+    assert picture.verdict.startswith("theirs.txt is ")
+    assert picture.verdict.endswith(f" % off, but not at all if its numbers are {words}")
+    assert "\n" not in picture.verdict
 
 
 def test_another_programs_file_is_recognised_by_its_numbers(tmp_path: Path) -> None:
@@ -105,9 +105,9 @@ def test_another_programs_file_is_recognised_by_its_numbers(tmp_path: Path) -> N
 
 def test_what_nothing_explains_is_said_to_be_so() -> None:
     stranger = given(np.random.default_rng(0).normal(size=(9, 3)))
-    assert " % off, which no usual mistake explains: band " in compared(stranger).suspicion
+    assert " % off, which no usual mistake explains: band " in compared(stranger).verdict
     black = given(np.zeros((4, 3)))
-    assert compared(black).suspicion == "theirs.txt is 100 % off: its numbers are all zero"
+    assert compared(black).verdict == "theirs.txt is 100 % off: its numbers are all zero"
 
 
 def test_no_more_bands_are_shown_than_the_file_has() -> None:
@@ -136,7 +136,7 @@ def test_the_picture_says_whose_coefficients_they_are() -> None:
     assert "message" in overlay.boxes
     said = json.loads(metadata(picture, compose(1280, 640, 1.0), "none"))
     assert said["compare"] == {"name": "theirs.txt", "convention": "shviewer"}
-    assert said["suspicion"] == picture.suspicion
+    assert said["verdict"] == picture.verdict
 
 
 def test_a_long_name_is_shortened_in_the_caption() -> None:
@@ -170,10 +170,8 @@ def test_only_coefficients_are_compared(text: str, kind: str, capsys: pytest.Cap
 
 def test_small_disagreement_is_a_figure() -> None:
     exact = VENICE.coefficients(3)
-    assert (
-        compared(given(1.005 * exact)).suspicion == "theirs.txt agrees with the light's own to 0.5 % over its 3 bands"
-    )
-    assert compared(given(exact[:1])).suspicion.endswith("over its one band")
+    assert compared(given(1.005 * exact)).verdict == "theirs.txt agrees with the light's own to 0.5 % over its 3 bands"
+    assert compared(given(exact[:1])).verdict.endswith("over its one band")
 
 
 @pytest.mark.parametrize(
@@ -194,7 +192,7 @@ def test_small_disagreement_is_a_figure() -> None:
 def test_factors_channels_and_the_order_of_the_list_are_usual_mistakes(
     change: Callable[[Array], Array], words: str
 ) -> None:
-    said = compared(given(np.ascontiguousarray(change(VENICE.coefficients(3))))).suspicion
+    said = compared(given(np.ascontiguousarray(change(VENICE.coefficients(3))))).verdict
     assert said.endswith(f" off, but not at all if its numbers are {words}")
 
 
