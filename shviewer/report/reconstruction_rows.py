@@ -21,7 +21,7 @@ from shviewer.report.timing import Timing, time_interleaved
 from shviewer.stability.shader import Shader
 from shviewer.viewer import camera
 from shviewer.viewer.composition import compose
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, map_size
+from shviewer.viewer.layout import MAX_DIRECT_BANDS
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import offscreen, render_linear
@@ -31,7 +31,7 @@ SECTION = "reconstruction"
 BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
 FRAME = compose(1280, 640)
 MAP_SIZE = (1025, 2048)
-"""Of the maps that the CPU makes."""
+"""Of the maps that the CPU makes, and the largest that the shader draws from."""
 
 
 DIRECT, CACHED = "shader, direct sum", "shader, cached map"
@@ -135,7 +135,7 @@ class _Stage:
 
     def on_a_map(self) -> Picture:
         """Drawn from a map, however few bands; the copy tells the renderer that its block of coefficients is not this one's."""
-        splines = self.synthesis.spline_map(*map_size(self.n_bands))
+        splines = self.synthesis.spline_map(*MAP_SIZE)
         return replace(self.direct, coefficients=self.coefficients.copy(), reconstruction_map=splines)
 
     def rows_of_map(self) -> Array:

@@ -12,7 +12,6 @@ from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 from shviewer.viewer.analysis import error_grid, grid_rows, reconstruct
 from shviewer.viewer.error_view import NOISE, ErrorScale, automatic_range, error_values
-from shviewer.viewer.layout import map_size
 from shviewer.viewer.memory import remember
 from shviewer.viewer.projections import BEST, Projection, project
 from shviewer.viewer.state import ViewState
@@ -61,9 +60,12 @@ def surfaces(state: ViewState, light: Light, projection: Projection, shape: Shap
 
 
 @remember(most=2)
-def reconstruction_map(light: Light, projection: Projection, shape: Shape) -> NDArray[np.float32]:
+def reconstruction_map(
+    light: Light, projection: Projection, shape: Shape, size: tuple[int, int]
+) -> NDArray[np.float32]:
+    """Of rows and columns `size`: spline coefficients (rows, columns, 4)."""
     shown, _ = reconstruct(light, projection, *shape)
-    return Synthesis(shown).spline_map(*map_size(shape[0]))
+    return Synthesis(shown).spline_map(*size)
 
 
 @remember(most=4)

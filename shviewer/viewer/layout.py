@@ -22,9 +22,17 @@ MAX_DIRECT_BANDS = 32
 MAX_SHOWN_BANDS = 128
 """Beyond MAX_DIRECT_BANDS the reconstruction is drawn from a map, up to here."""
 
-MAP_COLUMNS, COLUMNS_PER_BAND = (512, 1024, 2048), 64
-"""Columns of the map: the first that are COLUMNS_PER_BAND for each band, or the last. So fine, its splines are good to 5e-6
-of the peak up to 32 bands, and to 4e-4 at 128."""
+MAP_COLUMNS = (512, 1024, 2048)
+"""Widths of the map."""
+
+MAP_ERROR = 0.25 / 255
+"""What its splines may be off, in units of white: half of what could be seen. The widest map is taken where none is so good."""
+
+SPLINE_ERROR = 0.012
+"""A wave of w radians a column is off by this times w^3 at most, of its height (Synthesis.spline_map)."""
+
+LONGEST_STEP = 0.7
+"""Radians a column of the shortest wave: beyond, that is no bound."""
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "SHOWN": ("ORIGINAL", "RECONSTRUCTION", "ERROR"),
@@ -114,7 +122,13 @@ def profile_bits(lobes: Sequence[Lobe]) -> int:
     return sum(1 << kind for kind in {int(lobe.profile.kind) for lobe in lobes})
 
 
-def map_size(n_bands: int) -> tuple[int, int]:
-    """Rows and columns of the map of a reconstruction."""
-    columns = next((columns for columns in MAP_COLUMNS if columns >= COLUMNS_PER_BAND * n_bands), MAP_COLUMNS[-1])
+def map_size(n_bands: int, peak: float) -> tuple[int, int]:
+    """Rows and columns of the map of a reconstruction, no finer than needed. peak: its largest magnitude, in units of white."""
+    waves = {columns: 2 * np.pi * (n_bands - 1) / columns for columns in MAP_COLUMNS}
+    good = (
+        columns
+        for columns, wave in waves.items()
+        if wave <= LONGEST_STEP and SPLINE_ERROR * wave**3 * peak <= MAP_ERROR
+    )
+    columns = next(good, MAP_COLUMNS[-1])
     return columns // 2 + 1, columns

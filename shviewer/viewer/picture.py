@@ -18,11 +18,12 @@ from shviewer.viewer.analysis import Figures, Needs, error_grid, grid_rows, need
 from shviewer.viewer.comparison import verdict
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.error_view import ErrorScale
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS, map_size
 from shviewer.viewer.projections import Projection, project, sampling_of
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.subjects import Subject, subject
 from shviewer.viewer.surface import Surface
+from shviewer.viewer.tone import steepest
 from shviewer.viewer.view_limits import BRIGHTEST, DIMMEST, check
 
 
@@ -99,6 +100,8 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     if scale is not None and state.error_range is not None:
         scale = replace(scale, end=state.error_range)
     by_map = (by_map or state.n_bands > MAX_DIRECT_BANDS or state.evaluate == "map") and not state.lobe_view
+    stops = exposure_stops(state, whole)
+    size = map_size(state.n_bands, _height(figures, scale, 2.0**stops * steepest(state.tone)))
     return Picture(
         state=state,
         subject=shown,
@@ -106,10 +109,10 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         compared=_source(light),
         suns=_sun_lobes(shown, state.quantity),
         coefficients=coefficients,
-        reconstruction_map=reconstruction_map(light, projection, shape) if by_map else None,
+        reconstruction_map=reconstruction_map(light, projection, shape, size) if by_map else None,
         world_from_view=camera.world_from_view(*state.camera),
         light_from_world=camera.light_from_world(state.light_rotation),
-        exposure_stops=exposure_stops(state, whole),
+        exposure_stops=stops,
         error_scale=scale,
         surfaces=surfaces(state, light, projection, shape) if state.lobe_view else (),
         projection=projection,
@@ -118,6 +121,14 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
         verdict=verdict(light, state.compare) if state.compare else "",
     )
+
+
+def _height(figures: Figures, scale: ErrorScale | None, exposure: float) -> float:
+    """The reconstruction's largest magnitude, at most, over what is a full step of colour: white, or the end of the error's."""
+    largest = figures.extremes.peak + figures.extremes.max_error
+    if scale is None:
+        return largest * exposure
+    return largest * max(exposure, 1 / (scale.end * (scale.floor if scale.kind == "relative" else 1.0)))
 
 
 def _source(light: Light) -> Source:

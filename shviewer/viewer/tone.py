@@ -42,6 +42,11 @@ def toned(exposed: NDArray[np.floating], tone: str) -> Array:
     return x
 
 
+def steepest(tone: str) -> float:
+    """How much more than without a curve a difference can show, at most: in the dark, where the logarithm is steep."""
+    return LOG_RANGE / math.log1p(LOG_RANGE) if tone == "log" else 1.0
+
+
 def exposed_for(level: float, tone: str) -> float:
     """The exposed radiance that the curve shows at `level`, 0 < level < 1."""
     if tone == "reinhard":

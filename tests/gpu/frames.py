@@ -11,11 +11,12 @@ from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composition import Box, Composition, Sphere
-from shviewer.viewer.layout import map_size
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
 SIDE = 128
+MAP_SIZE = (1025, 2048)
+"""The largest map that is drawn from."""
 
 
 def square_frame(side: int = SIDE) -> Composition:
@@ -85,7 +86,7 @@ def reconstructing(picture: Picture, coefficients: Array) -> Picture:
     """The same picture with other coefficients on the right, and above 32 bands with the map that viewer/ makes of them."""
     if count_bands(coefficients) <= 32:
         return replace(picture, coefficients=coefficients, reconstruction_map=None)
-    splines = Synthesis(coefficients).spline_map(*map_size(count_bands(coefficients)))
+    splines = Synthesis(coefficients).spline_map(*MAP_SIZE)
     return replace(picture, coefficients=coefficients, reconstruction_map=splines)
 
 

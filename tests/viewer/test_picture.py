@@ -14,7 +14,7 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import find_light
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import compose
-from shviewer.viewer.layout import map_size
+from shviewer.viewer.layout import MAP_COLUMNS, map_size
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
@@ -182,8 +182,8 @@ def test_a_map_takes_over_above_32_bands() -> None:
     above = picture(n_bands=33, muted=frozenset({1}))
     assert above.reconstruction_map is not None
     splines = above.reconstruction_map
-    height, width = map_size(33)
-    assert splines.shape == (height, width, 4)
+    height, width, components = splines.shape
+    assert components == 4
     rng = np.random.default_rng(0)
     rows, columns = rng.integers(1, height - 1, 50), rng.integers(0, width, 50)
     # at its node a quadratic B-spline is 3/4, at the nodes beside it 1/8
@@ -196,6 +196,26 @@ def test_a_map_takes_over_above_32_bands() -> None:
     directions = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1)
     wanted = evaluate_basis(directions, 33) @ above.coefficients
     np.testing.assert_allclose(value, wanted, rtol=0, atol=3e-7 * np.abs(wanted).max())
+
+
+def test_a_map_is_as_fine_as_the_bands_and_the_contrast_need() -> None:
+    assert [map_size(n, 1.0)[1] for n in (1, 9, 32, 40, 64, 128)] == [512, 512, 512, 1024, 1024, 2048]
+    assert [map_size(16, peak)[1] for peak in (1.0, 10.0, 100.0, 1e6)] == [512, 512, 1024, 2048]
+    for n_bands in (2, 17, 32):
+        for peak in (0.1, 3.0, 40.0):
+            rows, columns = map_size(n_bands, peak)
+            assert rows == columns // 2 + 1
+            wave = 2 * np.pi * (n_bands - 1) / columns
+            assert 0.012 * wave**3 * peak < 0.5 / 255 or columns == MAP_COLUMNS[-1]
+
+
+@pytest.mark.parametrize("change", [{"exposure_offset": 12.0}, {"tone": "log"}, {"error": "signed"}])
+def test_what_shows_finer_differences_takes_a_finer_map(change: dict[str, object]) -> None:
+    plain = picture(n_bands=32, evaluate="map").reconstruction_map
+    finer = picture(n_bands=32, evaluate="map", **change).reconstruction_map
+    assert plain is not None
+    assert finer is not None
+    assert finer.shape[1] > plain.shape[1]
 
 
 def test_a_map_is_drawn_where_it_is_asked_for_and_refused_nowhere_but_directly_above_32_bands() -> None:
