@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from shviewer.errors import GraphicsError
-from shviewer.viewer.renderer import Renderer
+from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import headless_renderer
 
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from pathlib import Path
 
-from shviewer.cli import main
+from places import ROOT
 
-ROOT = Path(__file__).parents[1]
+from shviewer.cli.main import main
 
 
 def section() -> str:

@@ -8,9 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.harmonics.conventions.programs import CONVENTIONS
-from shviewer.lights.scene import PROFILES, read_scene
-from shviewer.options import (
+from shviewer.cli.options import (
     EXIT_CODES,
     info_parser,
     project_parser,
@@ -19,8 +17,10 @@ from shviewer.options import (
     sweep_parser,
     view_parser,
 )
+from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.lights.scene import PROFILES, read_scene
+from shviewer.limits import MAX_BANDS
 from shviewer.viewer.keys import key_table
-from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.state import METHODS, ViewState
 
 ROOT = Path(__file__).parents[1]
@@ -55,7 +55,7 @@ def test_every_option_is_explained(parser: object) -> None:
 def test_the_help_names_the_methods_the_default_bands_and_their_limit() -> None:
     text = "".join(view_parser().format_help().split())  # argparse breaks lines at hyphens, too
     assert all(method in text for method in METHODS)
-    assert f"1to{MAX_SHOWN_BANDS}(default{ViewState().n_bands})" in text
+    assert f"1to{MAX_BANDS}(default{ViewState().n_bands})" in text
 
 
 def test_the_two_commands_are_single_lines_and_ci_runs_the_second() -> None:

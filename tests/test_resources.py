@@ -8,7 +8,8 @@ import pytest
 
 from shviewer import resources
 from shviewer.errors import ShaderError, ShviewerError
-from shviewer.resources import ShaderSource, load_shader, resource_folder
+from shviewer.resources import resource_folder
+from shviewer.viewer.gl.shader_source import ShaderSource, load_shader
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
+from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.actions import (
     Action,
     auto_exposure,
@@ -37,7 +38,6 @@ from shviewer.viewer.actions import (
     toggle_sweep,
     with_bands,
 )
-from shviewer.viewer.layout import MAX_DIRECT_BANDS
 from shviewer.viewer.state import (
     CAMERA_HOME,
     EXPOSURE_STEP,

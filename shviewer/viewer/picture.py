@@ -8,23 +8,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.analysis.comparison import verdict
+from shviewer.analysis.figures import Figures, Needs, error_grid, grid_rows, needs, reconstruct
+from shviewer.analysis.projections import Projection, project, sampling_of
+from shviewer.analysis.subjects import Subject, subject
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.limits import BRIGHTEST, DIMMEST, MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
-from shviewer.viewer.analysis import Figures, Needs, error_grid, grid_rows, needs, reconstruct
-from shviewer.viewer.comparison import verdict
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
-from shviewer.viewer.error_view import ErrorScale
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS, map_size
-from shviewer.viewer.projections import Projection, project, sampling_of
+from shviewer.viewer.error_scale import ErrorScale
+from shviewer.viewer.gl.shared import map_size
 from shviewer.viewer.state import ViewState
-from shviewer.viewer.subjects import Subject, subject
 from shviewer.viewer.surface import Surface
 from shviewer.viewer.tone import steepest
-from shviewer.viewer.view_limits import BRIGHTEST, DIMMEST, check
+from shviewer.viewer.view_limits import check
 
 
 class Source(NamedTuple):
@@ -87,7 +88,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     check(state)
     shown = subject(state)
     light, whole = shown.light, shown.whole
-    projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
+    projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
     projection = project(light, *sampling_of(state), projected)
     peak = error_grid(whole, grid_rows(1)).peak
     if not (peak == 0 or DIMMEST <= peak <= BRIGHTEST):

@@ -9,12 +9,12 @@ from math import ceil, log2, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.analysis.cache import remember
 from shviewer.harmonics.basis import Array, count_bands, index
 from shviewer.harmonics.extremes import LUMINANCE
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
-from shviewer.viewer.memory import remember
 
 Floats = NDArray[np.float32]
 

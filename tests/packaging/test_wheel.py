@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
-
-ROOT = Path(__file__).parents[2]
+from places import ROOT
 
 
 def run(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:

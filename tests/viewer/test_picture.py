@@ -10,13 +10,13 @@ import pytest
 
 from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.light import find_light
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import compose
-from shviewer.viewer.layout import MAP_COLUMNS, map_size
+from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.gl.shared import MAP_COLUMNS, map_size
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.view_limits import check
@@ -84,8 +84,8 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
     def forbidden(*arguments: object, **named: object) -> None:
         raise AssertionError("compiled or read again")
 
-    monkeypatch.setattr("shviewer.viewer.programs._compile", forbidden)
-    monkeypatch.setattr("shviewer.viewer.subjects.find_light", forbidden)
+    monkeypatch.setattr("shviewer.viewer.gl.programs._compile", forbidden)
+    monkeypatch.setattr("shviewer.analysis.subjects.find_light", forbidden)
     for n_bands in (6, 40, 1):
         render_rgb(renderer, picture("studio", n_bands=n_bands), frame)
 
