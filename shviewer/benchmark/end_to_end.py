@@ -58,7 +58,7 @@ PATIENCE = 60.0
 WATCHED_WINDOW = """
 import _thread, sys, threading, time
 from shviewer.errors import GraphicsError
-from shviewer.viewer import window
+from shviewer.viewer.desktop import window
 from shviewer.viewer.state import ViewState
 
 def watch():

@@ -22,6 +22,7 @@ from shviewer.harmonics.synthesis import Synthesis
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.composition import compose
+from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import offscreen, render_linear
@@ -122,7 +123,7 @@ class _Stage:
         self.n_bands = n_bands
         self.light_name = subject.name
         self.coefficients = picture.coefficients
-        self.direct = replace(picture, reconstruction_map=None, light_from_world=np.eye(3))
+        self.direct = replace(picture, drawn=DirectSum(picture.coefficients), light_from_world=np.eye(3))
         self.synthesis = Synthesis(picture.coefficients)
         self.truncation = float(subject.truncation[n_bands - 1])
         self.rms = float(np.sqrt(np.trace(light.products()) / (4 * np.pi))) * light.unit
@@ -134,9 +135,9 @@ class _Stage:
         return self.synthesis.pole_to_pole(*MAP_SIZE)
 
     def on_a_map(self) -> Picture:
-        """Drawn from a map, however few bands; the copy tells the renderer that its block of coefficients is not this one's."""
+        """Drawn from a map, however few bands."""
         splines = self.synthesis.spline_map(*MAP_SIZE)
-        return replace(self.direct, coefficients=self.coefficients.copy(), reconstruction_map=splines)
+        return replace(self.direct, drawn=SplineMap(splines))
 
     def rows_of_map(self) -> Array:
         return self.synthesis.on_rows(np.linspace(0, np.pi, MAP_SIZE[0]), MAP_SIZE[1])

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shviewer.analysis.comparison import verdict
 from shviewer.analysis.figures import Figures, Needs, error_grid, grid_rows, needs, reconstruct
@@ -20,10 +19,9 @@ from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.limits import BRIGHTEST, DIMMEST, MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
+from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
 from shviewer.viewer.error_scale import ErrorScale
-from shviewer.viewer.gl.shared import map_size
 from shviewer.viewer.state import ViewState
-from shviewer.viewer.surface import Surface
 from shviewer.viewer.tone import steepest
 from shviewer.viewer.view_limits import check
 
@@ -49,15 +47,13 @@ class Picture:
     """Drawn on top of the reconstruction."""
     coefficients: Array
     """Shown, (n_bands**2, 3): muted ones are zero."""
-    reconstruction_map: NDArray[np.float32] | None
-    """Spline coefficients (rows, columns, 4) of the reconstruction, drawn in place of the direct sum."""
+    drawn: Drawn
+    """How the reconstruction is drawn."""
     world_from_view: Array
     light_from_world: Array
     exposure_stops: float
     error_scale: ErrorScale | None
     """Of the error, if it is shown."""
-    surfaces: tuple[Surface, ...]
-    """In place of the spheres, as many as there are; none unless the lobe view is shown."""
     projection: Projection
     figures: Figures
     needs: Needs
@@ -100,9 +96,15 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     scale = None if state.error == "off" else error_scale(light, projection, shape, state.error)
     if scale is not None and state.error_range is not None:
         scale = replace(scale, end=state.error_range)
-    by_map = (by_map or state.n_bands > MAX_DIRECT_BANDS or state.evaluate == "map") and not state.lobe_view
     stops = exposure_stops(state, whole)
-    size = map_size(state.n_bands, _height(figures, scale, 2.0**stops * steepest(state.tone)))
+    drawn: Drawn
+    if state.lobe_view:
+        drawn = Surfaces(surfaces(state, light, projection, shape))
+    elif by_map or state.evaluate == "map" or state.n_bands > MAX_DIRECT_BANDS:
+        size = map_size(state.n_bands, _height(figures, scale, 2.0**stops * steepest(state.tone)))
+        drawn = SplineMap(reconstruction_map(light, projection, shape, size))
+    else:
+        drawn = DirectSum(coefficients)
     return Picture(
         state=state,
         subject=shown,
@@ -110,12 +112,11 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         compared=_source(light),
         suns=_sun_lobes(shown, state.quantity),
         coefficients=coefficients,
-        reconstruction_map=reconstruction_map(light, projection, shape, size) if by_map else None,
+        drawn=drawn,
         world_from_view=camera.world_from_view(*state.camera),
         light_from_world=camera.light_from_world(state.light_rotation),
         exposure_stops=stops,
         error_scale=scale,
-        surfaces=surfaces(state, light, projection, shape) if state.lobe_view else (),
         projection=projection,
         figures=figures,
         needs=needs(state),

@@ -23,7 +23,11 @@ from shviewer.lights.suns.sun import Sun
 from shviewer.version import __version__
 from shviewer.viewer.colour_maps import map_of
 from shviewer.viewer.composition import Composition
+from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.picture import Picture
+
+EVALUATED = {DirectSum: "direct", SplineMap: "map", Surfaces: "surfaces"}
+"""What the description of a picture says of how its reconstruction is drawn."""
 
 PIXEL_STEP = 2
 """Two pixels differ if any channel does by more than this many of 255: rounding differs by 1 between drivers."""
@@ -72,7 +76,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "sheet": state.sheet,
         "lobe_view": state.lobe_view,
         "basis": state.basis,
-        "evaluated": "direct" if picture.reconstruction_map is None else "map",
+        "evaluated": EVALUATED[type(picture.drawn)],
         "size": [composition.width, composition.height],
         "camera_degrees": list(state.camera),
         "zoom": state.zoom,

@@ -56,6 +56,7 @@ class Shader:
         """
         from shviewer.viewer.composition import Box, compose
         from shviewer.viewer.composition import Sphere as Disc
+        from shviewer.viewer.drawn import DirectSum
         from shviewer.viewer.picture import prepare
         from shviewer.viewer.screenshot import render_linear
         from shviewer.viewer.state import ViewState
@@ -65,7 +66,7 @@ class Shader:
         picture = replace(
             prepare(ViewState(n_bands=n_bands)),
             coefficients=coefficients,
-            reconstruction_map=None,
+            drawn=DirectSum(coefficients),
             world_from_view=view.world_from_view,
             light_from_world=np.eye(3),
         )

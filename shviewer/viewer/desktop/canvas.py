@@ -11,6 +11,7 @@ import moderngl
 from shviewer.errors import ShviewerError
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.desktop.evaluation import Evaluation
+from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.layers import Layer
@@ -53,7 +54,7 @@ class Canvas:
         """
         picture = self._picture
         layers = self.layers(composition, pointer)
-        timed = picture.state.evaluate == "auto" and picture.reconstruction_map is None and not picture.state.lobe_view
+        timed = picture.state.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
         if timed:
             self.renderer.context.finish()
         start = perf_counter()

@@ -12,6 +12,7 @@ from shviewer.harmonics.basis import Array, count_bands
 from shviewer.lights.lobes import Lobe
 from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Composition, Sphere
+from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
 from shviewer.viewer.error_scale import ERRORS
 from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.gl.shared import (
@@ -56,7 +57,7 @@ class Renderer:
         self.picture: Picture | None = None
         self.coefficients: Array | None = None
         self.lobes: tuple[Lobe, ...] | None = None
-        """Those in the buffers."""
+        """The lobes that are in their buffer."""
         self.rest = context.simple_framebuffer((1, 1))
         """Bound while no other framebuffer is in use."""
 
@@ -72,17 +73,21 @@ class Renderer:
         if lobes != self.lobes:
             self.lobe_buffer.write(pack_lobes(lobes))
             self.lobes = lobes
-        if picture.reconstruction_map is None and picture.coefficients is not self.coefficients:
-            self.sh_buffer.write(pack_coefficients(picture.coefficients))
-            self.coefficients = picture.coefficients
         original = picture.original.map
         compared = picture.compared.map if picture.error_scale is not None else None
         self.original_map.follow(None if original is None else original.texels)
         self.compared_map.follow(None if compared is None or compared is original else compared.texels)
-        self.reconstruction_map.follow(picture.reconstruction_map)
+        self._show_reconstruction(picture.drawn)
         if picture.error_scale is not None:
             self.colour_map.follow(self._colours(colour_maps.map_of(picture.error_scale.kind)))
         self.picture = picture
+
+    def _show_reconstruction(self, drawn: Drawn) -> None:
+        """A sum's coefficients stay in their buffer while something else is drawn; a map goes."""
+        if isinstance(drawn, DirectSum) and drawn.coefficients is not self.coefficients:
+            self.sh_buffer.write(pack_coefficients(drawn.coefficients))
+            self.coefficients = drawn.coefficients
+        self.reconstruction_map.follow(drawn.splines if isinstance(drawn, SplineMap) else None)
 
     def draw(
         self,
@@ -92,16 +97,18 @@ class Renderer:
         *,
         linear: bool = False,
     ) -> None:
-        """The spheres of the picture last shown, and layers over them; with `linear` the spheres' radiance alone."""
+        """The picture last shown, and layers over it; with `linear` the spheres' radiance alone, which surfaces have not."""
         picture = self.picture
         if picture is None:
             raise ValueError("nothing to draw: show a picture first")
+        if linear and isinstance(picture.drawn, Surfaces):
+            raise ValueError("surfaces hold no radiance")
         target.use()
         target.viewport = (0, 0, composition.width, composition.height)
         self.context.disable(moderngl.BLEND)
         target.clear(color=(0.0, 0.0, 0.0, 0.0) if linear else (*_encode(BACKGROUND), 1.0))
-        if picture.surfaces and not linear:
-            self._draw_surfaces(target, composition, picture)
+        if isinstance(picture.drawn, Surfaces):
+            self._draw_surfaces(target, composition, picture.drawn, picture.light_from_world @ picture.world_from_view)
         else:
             self._draw_spheres(target, composition, picture, linear)
         target.viewport = (0, 0, composition.width, composition.height)
@@ -129,11 +136,12 @@ class Renderer:
                 attachment.release()
         self.rest.release()
 
-    def _draw_surfaces(self, target: moderngl.Framebuffer, composition: Composition, picture: Picture) -> None:
+    def _draw_surfaces(
+        self, target: moderngl.Framebuffer, composition: Composition, drawn: Surfaces, light_from_view: Array
+    ) -> None:
         if self.surfaces is None:
             self.surfaces = SurfaceRenderer(self.context)
-        light_from_view = picture.light_from_world @ picture.world_from_view
-        for sphere, surface in zip(composition.spheres, picture.surfaces, strict=False):
+        for sphere, surface in zip(composition.spheres, drawn.shown, strict=False):
             self.surfaces.draw(target, sphere, composition.height, surface, light_from_view)
 
     def _draw_spheres(
@@ -189,7 +197,7 @@ class Renderer:
     def _program(self, picture: Picture, shown: str) -> Program:
         """The program that draws this of a picture, compiled when it is first wanted; what it does not read is all one."""
         original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
-        reconstruction = "SUM" if picture.reconstruction_map is None or shown == "ORIGINAL" else "MAP"
+        reconstruction = "MAP" if isinstance(picture.drawn, SplineMap) and shown != "ORIGINAL" else "SUM"
         tone = "NONE" if shown == "ERROR" else picture.state.tone.upper()
         lobes = {
             "ORIGINAL": picture.original.lobes,

@@ -17,18 +17,6 @@ from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.error_scale import ERRORS
 from shviewer.viewer.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE, TONES
 
-MAP_COLUMNS = (512, 1024, 2048)
-"""Widths of the map."""
-
-MAP_ERROR = 0.25 / 255
-"""What its splines may be off, in units of white: half of what could be seen. The widest map is taken where none is so good."""
-
-SPLINE_ERROR = 0.012
-"""A wave of w radians a column is off by this times w^3 at most, of its height (Synthesis.spline_map)."""
-
-LONGEST_STEP = 0.7
-"""Radians a column of the shortest wave: beyond, that is no bound."""
-
 CHOICES: dict[str, tuple[str, ...]] = {
     "SHOWN": ("ORIGINAL", "RECONSTRUCTION", "ERROR"),
     "ORIGINAL": ("LOBES", "MAP"),
@@ -115,15 +103,3 @@ def pack_lobes(lobes: Sequence[Lobe]) -> NDArray[np.float32]:
 def profile_bits(lobes: Sequence[Lobe]) -> int:
     """The kinds of their profiles, a bit for each: what PROFILES is in a program that draws them."""
     return sum(1 << kind for kind in {int(lobe.profile.kind) for lobe in lobes})
-
-
-def map_size(n_bands: int, peak: float) -> tuple[int, int]:
-    """Rows and columns of the map of a reconstruction, no finer than needed. peak: its largest magnitude, in units of white."""
-    waves = {columns: 2 * np.pi * (n_bands - 1) / columns for columns in MAP_COLUMNS}
-    good = (
-        columns
-        for columns, wave in waves.items()
-        if wave <= LONGEST_STEP and SPLINE_ERROR * wave**3 * peak <= MAP_ERROR
-    )
-    columns = next(good, MAP_COLUMNS[-1])
-    return columns // 2 + 1, columns

@@ -5,6 +5,7 @@ from __future__ import annotations
 from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, grouped, grouped_number, radiance, shortened
 from shviewer.viewer.overlay.painter import Painter
 from shviewer.viewer.picture import Picture
@@ -21,14 +22,15 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     bands = f"{caption(state)}{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
     original = "Original" if state.quantity == "radiance" else "Irradiance"
     suns = len(picture.subject.suns)
-    if picture.surfaces and suns:
+    surfaces = picture.drawn.shown if isinstance(picture.drawn, Surfaces) else ()
+    if surfaces and suns:
         original = f"{original} without sun{'s' if suns > 1 else ''}"
-    if picture.surfaces and picture.surfaces[0].clipped:
+    if surfaces and surfaces[0].clipped:
         original = f"{original}, cut at the circle"
     painter.text("original", left, y, original, 17, INK, "mm")
     apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
     changes = [change for change in (apart, describe_window(state), muted) if change]
-    if picture.surfaces and picture.surfaces[1].clipped:
+    if surfaces and surfaces[1].clipped:
         changes.append("cut at the circle")
     if state.basis is not None:
         value = float(picture.projection.coefficients[index(*state.basis)] @ LUMINANCE)
@@ -46,7 +48,7 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     if state.error != "off":
         error = at.spheres[-1]
         kind = "Error" if state.lobe_view else f"{state.error.capitalize()} error"
-        if picture.surfaces and picture.surfaces[2].clipped:
+        if surfaces and surfaces[2].clipped:
             kind = f"{kind}, cut at the circle"
         painter.text("error", error.x, error.caption_y, kind, 17, INK, "mm")
     names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
@@ -80,9 +82,11 @@ def describe_light(picture: Picture) -> list[str]:
 
 def describe_evaluation(picture: Picture, timing: bool) -> str:
     """How the reconstruction is drawn; in a picture that does not depend on the machine only if it is not the sum."""
-    if picture.surfaces:
-        return ""
-    if picture.reconstruction_map is None:
-        return "summed per pixel" if timing else ""
-    height, width = picture.reconstruction_map.shape[:2]
-    return f"from a map of {width} x {height}"
+    match picture.drawn:
+        case DirectSum():
+            return "summed per pixel" if timing else ""
+        case SplineMap(splines):
+            height, width = splines.shape[:2]
+            return f"from a map of {width} x {height}"
+        case Surfaces():
+            return ""

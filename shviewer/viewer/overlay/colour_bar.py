@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw
 
 from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.drawn import Surfaces
 from shviewer.viewer.overlay.lettering import GREY, MIN_TYPE, font
 from shviewer.viewer.picture import Picture
 
@@ -47,7 +48,12 @@ def tick_text(value: float, ticks: list[float], *, percent: bool) -> str:
 def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Composition) -> dict[str, Box]:
     """The bar and its numbers; their boxes by name. None where there is no room for either."""
     place, scale = composition.colour_bar, picture.error_scale
-    if place is None or scale is None or picture.surfaces or place.right - place.left < composition.px(60):
+    if (
+        place is None
+        or scale is None
+        or isinstance(picture.drawn, Surfaces)
+        or place.right - place.left < composition.px(60)
+    ):
         return {}
     draw = ImageDraw.Draw(sheet)
     tip = round(composition.px(TIP)) if scale.beyond else 0

@@ -218,7 +218,7 @@ DROP_SCRIPT = """
 import sys
 from pathlib import Path
 from shviewer.lights.environment import EnvironmentLight
-from shviewer.viewer import window
+from shviewer.viewer.desktop import window
 from shviewer.viewer.state import ViewState
 
 isolated, read = [], EnvironmentLight.read

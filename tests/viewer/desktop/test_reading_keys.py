@@ -16,7 +16,7 @@ from viewer.desktop.desktop import PATIENCE
 SCRIPT = """
 import json
 import sys
-from shviewer.viewer import window
+from shviewer.viewer.desktop import window
 from shviewer.viewer.keys import press
 from shviewer.viewer.state import ViewState
 

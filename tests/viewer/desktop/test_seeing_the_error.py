@@ -81,7 +81,7 @@ def test_the_mouse_over_a_sphere_draws_a_frame_and_elsewhere_none(start: Start) 
 SCRIPT = """
 import json
 import sys
-from shviewer.viewer import canvas, window
+from shviewer.viewer.desktop import canvas, window
 from shviewer.viewer.keys import press
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.actions import orbit, rotate_light
@@ -94,8 +94,8 @@ with window.open_window((800, 400)) as handle:
     shown = window.Window(handle, ViewState(evaluate=sys.argv[1], n_bands=int(sys.argv[2])), False)
     for _ in range(4):
         shown.frame()
-    said["evaluated"] = "direct" if shown.picture.reconstruction_map is None else "map"
-    before, count = shown.picture.reconstruction_map, len(drawn)
+    said["evaluated"] = type(shown.picture.drawn).__name__
+    before, count = shown.picture.drawn, len(drawn)
     for _ in range(5):
         shown.change(orbit(shown.state, 0.1, 0.05))
         shown.frame()
@@ -104,7 +104,7 @@ with window.open_window((800, 400)) as handle:
     shown._on_cursor(handle, 200.0, 150.0)
     shown.frame()
     said["redrawn by turning and pointing"] = len(drawn) - count
-    said["same map"] = shown.picture.reconstruction_map is before
+    said["same map"] = shown.picture.drawn is before
     composition = shown.composition()
     assert shown.hovering
     said["layers of the probe"] = len(shown.canvas.layers(composition, shown.mouse)) - len(shown.canvas.layers(composition))
@@ -134,7 +134,7 @@ def window_says(display: str, *arguments: str) -> dict[str, object]:
     return said
 
 
-@pytest.mark.parametrize(("evaluate", "drawn"), [("direct", "direct"), ("map", "map")])
+@pytest.mark.parametrize(("evaluate", "drawn"), [("direct", "DirectSum"), ("map", "SplineMap")])
 def test_turning_and_pointing_write_nothing_anew(display: str, evaluate: str, drawn: str) -> None:
     said = window_says(display, evaluate, "5")
     assert said == {
@@ -157,7 +157,7 @@ def test_a_frame_that_is_too_slow_by_the_sum_is_drawn_from_a_map(display: str) -
 
 def renderer_name(display: str) -> str:
     script = (
-        "from shviewer.viewer import window\nimport moderngl\n"
+        "from shviewer.viewer.desktop import window\nimport moderngl\n"
         "with window.open_window((64, 64)): print(moderngl.create_context(require=330).info['GL_RENDERER'])"
     )
     environment = {**os.environ, "DISPLAY": display}

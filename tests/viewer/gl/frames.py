@@ -11,6 +11,7 @@ from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composition import Box, Composition, Sphere
+from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 
@@ -85,9 +86,9 @@ def random_directions(count: int, seed: int = 0) -> Array:
 def reconstructing(picture: Picture, coefficients: Array) -> Picture:
     """The same picture with other coefficients on the right, and above 32 bands with the map that viewer/ makes of them."""
     if count_bands(coefficients) <= 32:
-        return replace(picture, coefficients=coefficients, reconstruction_map=None)
+        return replace(picture, coefficients=coefficients, drawn=DirectSum(coefficients))
     splines = Synthesis(coefficients).spline_map(*MAP_SIZE)
-    return replace(picture, coefficients=coefficients, reconstruction_map=splines)
+    return replace(picture, coefficients=coefficients, drawn=SplineMap(splines))
 
 
 def sum_of_harmonics(directions: Array, coefficients: Array) -> Array:

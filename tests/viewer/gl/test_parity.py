@@ -33,6 +33,7 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobes import MAX_LOBES, Lobe, LobeLight
 from shviewer.viewer.camera import towards
 from shviewer.viewer.composition import Box, Composition, Sphere, compose
+from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.shared import (
     BACKGROUND,
@@ -79,8 +80,9 @@ def assert_sum_is_right(renderer: Renderer, picture: Picture, side: int = 128) -
     frame = square_frame(side)
     seen = picture_view(frame, RECONSTRUCTION, picture)
     wanted = sum_of_harmonics(seen.directions, picture.coefficients)
-    wave = 2 * np.pi * n_bands / picture.reconstruction_map.shape[1] if n_bands > 32 else 0.0
-    interpolation = 0.0 if picture.reconstruction_map is None else 0.012 * wave**3
+    interpolation = 0.0
+    if isinstance(picture.drawn, SplineMap):
+        interpolation = 0.012 * (2 * np.pi * n_bands / picture.drawn.splines.shape[1]) ** 3
     tolerance = (n_bands * np.maximum(1e-6, rounding(seen)) + interpolation) * np.abs(wanted).max()
     error = np.abs(linear(renderer, picture, frame)[seen.mask] - wanted).max(axis=1)
     assert (error <= tolerance).all(), (error / tolerance).max()
@@ -113,7 +115,7 @@ def test_above_32_bands_poles_and_seam_are_as_good_as_the_rest(renderer: Rendere
 def test_the_reconstruction_of_a_real_light_is_drawn_as_projected(renderer: Renderer, light: str, n_bands: int) -> None:
     picture = picture_of(light, n_bands=n_bands, muted=frozenset({1, 3}))
     assert_sum_is_right(renderer, picture)
-    assert (picture.reconstruction_map is None) == (n_bands <= 32)
+    assert isinstance(picture.drawn, DirectSum) == (n_bands <= 32)
 
 
 # --- the original
@@ -537,15 +539,15 @@ def test_reconstructing_replaces_only_what_the_right_sphere_shows() -> None:
     """The ruler of this file: its helper must not change the original."""
     picture = picture_of("green")
     other = reconstructing(picture, noise(5))
-    assert replace(other, coefficients=picture.coefficients, reconstruction_map=None).original is picture.original
+    assert replace(other, coefficients=picture.coefficients, drawn=picture.drawn).original is picture.original
     assert other.light is picture.light
 
 
 def test_the_sum_is_right_after_a_map_of_the_same_coefficients(renderer: Renderer) -> None:
     picture = picture_of("green", n_bands=3)
     linear(renderer, picture)
-    other = replace(picture, coefficients=noise(3))
-    linear(renderer, replace(other, reconstruction_map=np.zeros((3, 4, 4), np.float32)))
+    other = reconstructing(picture, noise(3))
+    linear(renderer, replace(other, drawn=SplineMap(np.zeros((3, 4, 4), np.float32))))
     assert_sum_is_right(renderer, other)
 
 
