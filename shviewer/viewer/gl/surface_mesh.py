@@ -36,7 +36,7 @@ JUMP = 1 / 16
 
 TINY = np.float32(1e-30)
 
-MAX_TRIANGLES = 2**16
+MAX_TRIANGLES = 2**20
 """A surface that needs more for its tolerance, such as a photograph, is drawn with these."""
 
 
