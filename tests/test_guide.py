@@ -6,6 +6,7 @@ import argparse
 import csv
 import json
 import re
+import tomllib
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -75,6 +76,15 @@ def test_every_link_and_picture_leads_to_a_file_and_every_anchor_to_a_heading(pa
         target = path.parent / name if name else path
         assert target.exists(), link
         assert not anchor or anchor in anchors(read(target)), link
+
+
+@pages
+def test_a_page_links_only_to_what_is_installed_with_it(path: Path) -> None:
+    wheel = tomllib.loads(read(ROOT / "pyproject.toml"))["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
+    installed = [ROOT / source for source, place in wheel.items() if place == f"shviewer/{source}"]
+    for link in links(read(path)):
+        target = (path.parent / link.partition("#")[0]).resolve()
+        assert any(target.is_relative_to(place) for place in installed), link
 
 
 def test_the_index_lists_every_page_once() -> None:
