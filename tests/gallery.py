@@ -28,7 +28,7 @@ def commands() -> list[list[str]]:
 
 
 def pictures() -> list[str]:
-    """The paths of the pictures that the README shows up to there, but for those of the report."""
+    """The paths of the pictures that the README shows up to there."""
     text = (ROOT / "README.md").read_text(encoding="utf-8").partition(section())
     return re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text[0] + text[1])
 

@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 import pytest
 from coefficients.peer_cases import asymmetric
-from places import ROOT
+from places import ASSETS
 
 import shviewer
 from shviewer.analysis.projected import Projected, project_state
@@ -138,13 +138,13 @@ def test_names_become_identifiers_that_c_and_glsl_accept() -> None:
     assert identifier("__") == "sh"
 
 
-def test_unitys_seven_vectors_are_made_as_the_readme_says() -> None:
+def test_unitys_seven_vectors_are_made_as_the_guide_says() -> None:
     """ShadeSH9 adds dot(A, (n, 1)), dot(B, (xy, yz, zz, zx)) and C (xx - yy): the polynomials of what is written."""
-    readme = (ROOT / "README.md").read_text()
+    page = (ASSETS / "guide" / "coefficients.md").read_text(encoding="utf-8")
     found = shviewer.project("venice_sunset", 3)
     sh = np.asarray(found.numbers("unity"), dtype=float).T
     x, y, z = 0.48, 0.6, 0.64
-    rows = [re.findall(rf"unity_SH{name} = \((.*)\)", readme)[0].replace("3 sh", "3 * sh") for name in "ABC"]
+    rows = [re.findall(rf"unity_SH{name} = \((.*)\)", page)[0].replace("3 sh", "3 * sh") for name in "ABC"]
     a, b, c = (eval(f"({row})", {"sh": sh, "c": 1}) for row in rows)
     value = np.dot(a, [x, y, z, 1]) + np.dot(b, [x * y, y * z, z * z, z * x]) + c[1] * (x * x - y * y)
     ours = np.array([[x, z, y]])
