@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, stamp_of
 from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.words import counted
 
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
 
@@ -53,12 +54,11 @@ def describe_coefficients(light: object) -> CoefficientInformation | None:
 
 def coefficient_rows(found: CoefficientInformation) -> list[tuple[str, str]]:
     """Lines for a person: label and text."""
-    plural = "s" if found.bands > 1 else ""
     said = "as the file says" if found.stamped else "as named on the command line; the file does not say"
     rows = [
         (
             "coefficients",
-            f"{found.bands} band{plural}, {found.bands**2} row{plural}, {found.quantity.replace('-', ' ')}",
+            f"{counted(found.bands, 'band')}, {counted(found.bands**2, 'row')}, {found.quantity.replace('-', ' ')}",
         ),
         ("convention", f"{found.convention} ({found.program}), {said}"),
         ("basis", f"{found.basis}; {found.phase}; index {found.index}"),

@@ -9,7 +9,6 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from shviewer.analysis.comparison import percent
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.finding import FITS, Found, find_convention
@@ -20,6 +19,7 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import COEFFICIENT_SUFFIXES, IMAGE_SUFFIXES, built_in_lights
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.state import ViewState
+from shviewer.words import brief_percent
 
 
 def compared_with(state: ViewState, text: str, option: str = "--compare") -> tuple[ViewState, str]:
@@ -56,8 +56,8 @@ def _said(name: str, found: Found) -> str:
     best = found.best
     if not found.fits:
         return (
-            f"{name} does not name its convention, and none fits within {percent(FITS)}; the nearest is {best.text}, "
-            f"{percent(best.error)} off"
+            f"{name} does not name its convention, and none fits within {brief_percent(FITS)}; the nearest is {best.text}, "
+            f"{brief_percent(best.error)} off"
         )
     alike = " and ".join(filter(None, [", ".join(found.alike[:-1]), *found.alike[-1:]]))
     others = f", as {alike} would" if alike else ""

@@ -21,6 +21,7 @@ from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.state import ViewState
+from shviewer.words import brief_percent
 
 BAD = FITS
 """Given coefficients that are farther off than this, relative to the light's own in the same bands, are looked into."""
@@ -70,14 +71,15 @@ def verdict(light: Light, given: CoefficientLight) -> str:
     norm, off = float(np.linalg.norm(exact)), float(np.linalg.norm(exact - shown))
     if off <= BAD * norm:
         over = f"its {given.n_bands} bands" if given.n_bands > 1 else "its one band"
-        return f"{given.name} agrees with the light's own to {percent(max(off / norm if norm else 0.0, EXACT))} over {over}"
-    says = f"{given.name} is {percent(off / norm) if norm else 'wholly'} off"
+        error = brief_percent(max(off / norm if norm else 0.0, EXACT))
+        return f"{given.name} agrees with the light's own to {error} over {over}"
+    says = f"{given.name} is {brief_percent(off / norm) if norm else 'wholly'} off"
     if not shown.any():
         return f"{says}: its numbers are all zero"
     best = usual_suspects(exact, shown, _readings(light, given))[0]
     if not best.changes or best.error > EXPLAINED * min(1.0, off / norm if norm else 0.0):
         return f"{says}, which no usual mistake explains{_where(exact, shown)}"
-    left = "not at all" if best.error < EXACT else percent(best.error)
+    left = "not at all" if best.error < EXACT else brief_percent(best.error)
     return f"{says}, but {left} if its numbers are {best.words}"
 
 
@@ -97,7 +99,7 @@ def _where(exact: Array, shown: Array) -> str:
     worst = int(share.argmax())
     bad = np.flatnonzero(share > BAD)
     others = "the others fit" if len(bad) == 1 else "most of all" if len(bad) == len(own) else _bad_bands(bad, worst)
-    return f": band {worst} is {percent(share[worst])} off, {others}"
+    return f": band {worst} is {brief_percent(share[worst])} off, {others}"
 
 
 def _bad_bands(bad: NDArray[np.int64], worst: int) -> str:
@@ -129,9 +131,3 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
                 radiance = CoefficientLight.of_numbers(table, convention).given
                 found[words] = radiance * per_coefficient(cosine) / light.unit
     return found
-
-
-def percent(share: float) -> str:
-    """ "104 %", "1.4 %", "0.0001 %" """
-    text = f"{100 * share:.2g}" if share < 0.1 else f"{100 * share:.0f}"
-    return f"{float(text):.10f}".rstrip("0").rstrip(".") + " %"

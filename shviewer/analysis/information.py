@@ -24,6 +24,7 @@ from shviewer.lights.reading import Reading
 from shviewer.lights.suns.sun import Sun
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
+from shviewer.words import theta_phi_degrees
 
 TOLERANCES = (0.10, 0.05, 0.01)
 SHOWN_BANDS = 9
@@ -202,7 +203,7 @@ def _describe(text: str, reading: Reading) -> Information:
         mean_luminance=float(mean @ LUMINANCE),
         peak=0.0 + (values.maximum if values.maximum >= -values.minimum else values.minimum),
         peak_direction=_triple(peak),
-        peak_theta_phi_degrees=_theta_phi(peak),
+        peak_theta_phi_degrees=theta_phi_degrees(peak),
         irradiance_up=_triple(irradiance.radiance(np.array([[0.0, 0.0, 1.0]]))[0]),
         method=picture.projection.method,
         energy_share=picture.figures.energy_share[:SHOWN_BANDS],
@@ -222,18 +223,12 @@ def _sun(sun: Sun, total: float) -> SunInformation:
     """total: the light's flux, of the channels' mean."""
     return SunInformation(
         direction=_triple(sun.axis),
-        theta_phi_degrees=_theta_phi(sun.axis),
+        theta_phi_degrees=theta_phi_degrees(sun.axis),
         width_degrees=float(np.degrees(2 * sun.half_angle)),
         radiance=_triple(sun.radiance),
         irradiance=_triple(sun.irradiance),
         share_of_flux=float(sun.flux.mean()) / total,
     )
-
-
-def _theta_phi(direction: Array) -> tuple[float, float]:
-    """Degrees."""
-    x, y, z = direction
-    return float(np.degrees(np.arctan2(np.hypot(x, y), z))), float(np.degrees(np.arctan2(y, x))) + 0.0
 
 
 def _image_values(image: EnvironmentLight) -> tuple[Values, Array]:

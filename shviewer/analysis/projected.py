@@ -25,6 +25,7 @@ from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.version import __version__
 from shviewer.viewer.state import ViewState, light_name
 from shviewer.viewer.view_limits import check
+from shviewer.words import counted
 
 ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")
 """Keys of the stamp that are figures."""
@@ -125,7 +126,7 @@ def project_state(state: ViewState) -> Projected:
 
 def _light(state: ViewState, shown: Subject) -> dict[str, Value]:
     light, suns = shown.light, shown.suns
-    without = f"; {len(suns)} sun{'s' if len(suns) > 1 else ''} left out" if suns else ""
+    without = f"; {counted(len(suns), 'sun')} left out" if suns else ""
     return {
         "light": _one_line(light_name(state.light)),
         "light-is": _one_line(light.description + without),

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 from shviewer.benchmark.experiments import BEST, PAPER, PAPER_SAMPLES, method
 from shviewer.benchmark.measurement import Measurement
-from shviewer.benchmark.page.tables import milliseconds, percent, thousands
+from shviewer.benchmark.page.tables import milliseconds, percent
 from shviewer.benchmark.subjects import MOST_BANDS, Subject
 from shviewer.harmonics.metrics import PARSEVAL_FLOOR, pareto_front
+from shviewer.words import grouped
 
 
 def front_of(rows: Sequence[Measurement], accuracy: float = 0.0) -> list[Measurement]:
@@ -69,7 +70,7 @@ def _sentence(subject: Subject, tolerance: float, needed: int, rows: Sequence[Me
     if paper is not None and paper.total_error is not None:
         end = "stop at" if paper.total_error > tolerance else "reach"
         others.append(
-            f"the paper's {thousands(PAPER_SAMPLES)} jittered samples take {_times(paper, winner)} and {end}"
+            f"the paper's {grouped(PAPER_SAMPLES)} jittered samples take {_times(paper, winner)} and {end}"
             f" {percent(paper.total_error)}"
         )
     return "; ".join([answer, *others]) + "."
@@ -97,7 +98,7 @@ def alike(first: Measurement, second: Measurement) -> bool:
 def name_of(row: Measurement, subject: Subject) -> str:
     """The method in words, with its samples."""
     words = method(row.method).words_for(subject.light.best_method)
-    return words if row.samples is None else f"{words}, {thousands(row.samples)} samples"
+    return words if row.samples is None else f"{words}, {grouped(row.samples)} samples"
 
 
 def bands(count: int | None) -> str:

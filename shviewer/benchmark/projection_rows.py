@@ -17,12 +17,12 @@ import numpy as np
 from shviewer.benchmark import costs
 from shviewer.benchmark.experiments import BEST, METHODS, PAPER, PAPER_SAMPLES, Method, Prepared
 from shviewer.benchmark.measurement import Measurement, timed
-from shviewer.benchmark.page.tables import thousands
 from shviewer.benchmark.subjects import Subject
 from shviewer.benchmark.timing import Timing, time_interleaved, wall_milliseconds
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import relative, squared_error
 from shviewer.lights.light import Light
+from shviewer.words import grouped
 
 SECTION = "projection"
 SEEDS = 5
@@ -118,7 +118,7 @@ def describe(left_out: Sequence[Omission]) -> list[str]:
     """A line per experiment: where it is missing."""
     bands: dict[str, dict[str, list[int]]] = {}
     for (method, samples), light, n_bands in left_out:
-        words = method.words if samples is None else f"{method.words} {thousands(samples)}"
+        words = method.words if samples is None else f"{method.words} {grouped(samples)}"
         bands.setdefault(words, {}).setdefault(light, []).append(n_bands)
     return [
         f"{words}: {'; '.join(f'{light}, {_listed(counts)} bands' for light, counts in sorted(lights.items()))}"

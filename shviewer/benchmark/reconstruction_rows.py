@@ -18,6 +18,7 @@ from shviewer.benchmark.measurement import Measurement, timed
 from shviewer.benchmark.subjects import Subject
 from shviewer.benchmark.timing import Timing, time_interleaved
 from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import camera
@@ -145,7 +146,7 @@ class _Stage:
     def sum_at(self, directions: Array) -> Array:
         """(k, 3) -> (k, 3) by Synthesis, in blocks."""
         return _in_blocks(
-            lambda d: self.synthesis.at(np.arctan2(np.hypot(d[:, 0], d[:, 1]), d[:, 2]), np.arctan2(d[:, 1], d[:, 0])),
+            lambda part: self.synthesis.at(*angles_from_directions(part)),
             directions,
         )
 

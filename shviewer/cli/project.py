@@ -26,6 +26,7 @@ from shviewer.errors import OutputError, ShviewerError, UsageError
 from shviewer.files import file_stem, write_atomically
 from shviewer.lights.find import split_light
 from shviewer.viewer.state import ViewState, light_name
+from shviewer.words import counted
 
 STDOUT = "-"
 BATCH_FAILED = 1
@@ -90,7 +91,7 @@ def check_tolerance(state: ViewState, convention: Convention) -> None:
     most = convention.most_bands
     if most is None or state.n_bands <= most:
         return
-    bands = f"{most} band{'s' if most > 1 else ''}"
+    bands = counted(most, "band")
     reached = float(errors_of(load_light(state), *sampling_of(state))[most - 1])
     suns = () if state.split_sun else subject(replace(state, split_sun=True)).suns
     remedy = "take its sun out, --split-sun, or " if suns else ""
@@ -250,7 +251,7 @@ def summary(rows: Sequence[Row]) -> str:
 
 
 def _bands(projected: Projected) -> str:
-    return f"{projected.n_bands} band{'s' if projected.n_bands > 1 else ''}"
+    return counted(projected.n_bands, "band")
 
 
 def _percent(projected: Projected, quantity: str) -> str:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, degrees
 from shviewer.harmonics.projection import project_product
-from shviewer.harmonics.quadrature import gauss_legendre
+from shviewer.harmonics.quadrature import angles_from_directions, gauss_legendre
 from shviewer.harmonics.synthesis import Synthesis
 
 NAMED_AXES = {"z-up": "+x+y+z", "y-up": "+x+z-y", "z-up-left": "+x-y+z", "y-up-left": "+x+z+y"}
@@ -144,8 +144,7 @@ def _evaluated_again(coefficients: Array, matrix: Array, n_bands: int) -> Array:
         synthesis = Synthesis(columns)
 
         def before(directions: Array, synthesis: Synthesis = synthesis) -> Array:
-            x, y, z = (directions @ matrix).T  # row vectors: M^T applied to each
-            return synthesis.at(np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+            return synthesis.at(*angles_from_directions(directions @ matrix))  # row vectors: M^T applied to each
 
         turned[:, first : first + width] = project_product(before, rule, n_bands)[0][:, :width]
     return _with_the_power_of(coefficients, turned)

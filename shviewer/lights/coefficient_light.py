@@ -18,9 +18,11 @@ from shviewer.coefficients.programs import CONVENTIONS, OURS, convention_text
 from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
 from shviewer.harmonics.basis import Array, count_bands, safe_unit
+from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.words import counted
 
 MAP_SIZE = (1025, 2048)
 
@@ -63,7 +65,7 @@ class CoefficientLight:
     @property
     def extent(self) -> str:
         """ "sh.txt has 3 bands": what is said where more are asked for."""
-        return f"{self.name} has {self.n_bands} band{'s' if self.n_bands > 1 else ''}"
+        return f"{self.name} has {counted(self.n_bands, 'band')}"
 
     @property
     def quantity(self) -> str:
@@ -80,9 +82,8 @@ class CoefficientLight:
 
     @property
     def description(self) -> str:
-        plural = "s" if self.n_bands > 1 else ""
         origin = self.file.stamp.get("light") if self.file else None
-        return f"{self.n_bands} band{plural}, {self.convention.split(',')[0]}{f', of {origin}' if origin else ''}"
+        return f"{counted(self.n_bands, 'band')}, {self.convention.split(',')[0]}{f', of {origin}' if origin else ''}"
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -103,8 +104,7 @@ class CoefficientLight:
         return (f"holds irradiance; the radiance is recovered from it{unknown}",)
 
     def radiance(self, directions: Array) -> Array:
-        x, y, z = directions.T
-        return self._synthesis.at(np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+        return self._synthesis.at(*angles_from_directions(directions))
 
     def integrand(self, directions: Array) -> Array:
         return self.radiance(directions)

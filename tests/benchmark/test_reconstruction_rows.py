@@ -27,6 +27,7 @@ from shviewer.benchmark.subjects import Subject, subject_of
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.find import find_light
 from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import offscreen
 
@@ -84,7 +85,7 @@ def test_an_error_in_the_coefficients_drawn_is_seen(green: Subject, renderer: Re
     from shviewer.benchmark import reconstruction_rows as module
 
     stage = module._Stage(green, 5)
-    brighter = replace(stage.direct, coefficients=1.01 * stage.coefficients)
+    brighter = replace(stage.direct, drawn=DirectSum(1.01 * stage.coefficients))
     with offscreen(renderer, module.FRAME) as target:
         found = module._Frame(renderer, target)._error(stage, brighter)
     kept = np.sqrt(1 - green.truncation[4] ** 2)

@@ -25,13 +25,12 @@ from places import DATA
 from scipy.special import sph_harm_y
 from viewer.gl.frames import picture_of, square_frame
 
-from shviewer import resources
+from shviewer import files, resources
 from shviewer.errors import OutputError, ShaderError, UsageError
 from shviewer.files import write_atomically
 from shviewer.harmonics.basis import Array
 from shviewer.lights.find import find_light
 from shviewer.version import __version__
-from shviewer.viewer import picture_files
 from shviewer.viewer.composition import compose
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture_files import compare_with_reference, write_numbered, write_png
@@ -252,7 +251,7 @@ def test_a_failing_move_leaves_the_old_file_and_nothing_else(tmp_path: Path, mon
     def fail(source: str, target: Path) -> None:
         raise OSError(5, "Input/output error")
 
-    monkeypatch.setattr(picture_files.os, "replace", fail)
+    monkeypatch.setattr(files.os, "replace", fail)
     with pytest.raises(OutputError, match=r"a\.png: cannot be written: Input/output error"):
         write_atomically(path, b"new")
     assert path.read_bytes() == b"old"
@@ -320,7 +319,7 @@ def test_numbered_pictures_take_the_next_free_name(tmp_path: Path, monkeypatch: 
 def shaders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of shaders/ that the program reads."""
     shutil.copytree(SHADERS, tmp_path / "shaders")
-    monkeypatch.setattr(resources, "resource_folder", lambda kind: tmp_path / kind)
+    monkeypatch.setattr(shader_source, "resource_folder", lambda kind: tmp_path / kind)
     return tmp_path / "shaders"
 
 

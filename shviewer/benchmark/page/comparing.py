@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from shviewer.benchmark.front import alike
 from shviewer.benchmark.measurement import Measurement
 from shviewer.benchmark.page.document import Report
-from shviewer.benchmark.page.tables import error, milliseconds, table, thousands
+from shviewer.benchmark.page.tables import error, milliseconds, table
+from shviewer.words import grouped
 
 LEAST_RATIO = 1.25
 """Between two runs a shared machine drifts by more than the quartiles of one run show; less than this is no difference."""
@@ -130,7 +131,7 @@ def _cells(change: Change) -> Sequence[str]:
         row.light,
         row.method,
         "" if row.n_bands is None else str(row.n_bands),
-        "" if row.samples is None else thousands(row.samples),
+        "" if row.samples is None else grouped(row.samples),
         milliseconds(change.before.milliseconds),
         milliseconds(row.milliseconds),
         error(_shown_error(change.before)),

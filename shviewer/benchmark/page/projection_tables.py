@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 
 from shviewer.benchmark.experiments import METHODS
 from shviewer.benchmark.measurement import Measurement
-from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error, milliseconds, table, thousands, with_spread
+from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error, milliseconds, table, with_spread
 from shviewer.benchmark.projection_rows import SECTION
 from shviewer.benchmark.subjects import Subject
+from shviewer.words import counted, grouped
 
 Experiment = tuple[str, int | None]
 Cell = Callable[[Measurement], str]
@@ -47,7 +48,7 @@ def _matrix(rows: Sequence[Measurement], cell: Cell) -> list[str]:
                 for label, experiment in zip(labels, experiments, strict=True)
             ]
             body = [line for line in body if set(line[1:]) != {ABSENT}]
-            drawn = table(("", *(f"{n} band{'s' if n > 1 else ''}" for n in bands[:count])), body)
+            drawn = table(("", *(counted(n, "band") for n in bands[:count])), body)
             if count == 1 or len(drawn[0]) <= MOST_COLUMNS:
                 break
             count -= 1
@@ -64,7 +65,7 @@ def _experiments(rows: Sequence[Measurement]) -> list[Experiment]:
 
 def _label(experiment: Experiment) -> str:
     words = {each.name: each.words for each in METHODS}[experiment[0]]
-    return words if experiment[1] is None else f"{words} {thousands(experiment[1])}"
+    return words if experiment[1] is None else f"{words} {grouped(experiment[1])}"
 
 
 def _time(row: Measurement) -> str:
@@ -80,7 +81,7 @@ def _set_up(rows: Sequence[Measurement]) -> list[str]:
     body = []
     for experiment in _experiments(rows):
         row = max((row for row in rows if (row.method, row.samples) == experiment), key=lambda row: row.n_bands or 0)
-        evaluations = ABSENT if row.evaluations is None else thousands(row.evaluations)
+        evaluations = ABSENT if row.evaluations is None else grouped(row.evaluations)
         peak = ABSENT if row.peak_mib is None else f"{row.peak_mib:.1f}"
         body.append((_label(experiment), str(row.n_bands), evaluations, milliseconds(row.set_up_milliseconds), peak))
     return table(("", "bands", "evaluations", "set-up ms", "peak MiB"), body)

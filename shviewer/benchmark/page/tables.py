@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Sequence
+
+from shviewer.words import three_digits
 
 ABSENT = "-"
 MOST_COLUMNS = 128
 
 
-def thousands(number: int) -> str:
-    """1000000 as 1 000 000."""
-    return f"{number:,}".replace(",", " ")
-
-
 def milliseconds(value: float | None) -> str:
     """Three digits, and no exponent."""
-    if value is None:
-        return ABSENT
-    if value == 0 or value >= 100:
-        return f"{value:.0f}"
-    return f"{value:.{min(6, max(0, 2 - math.floor(math.log10(value))))}f}"
+    return ABSENT if value is None else three_digits(value)
 
 
 def percent(share: float | None) -> str:

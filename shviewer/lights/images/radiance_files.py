@@ -22,6 +22,7 @@ from shviewer.lights.images.openexr import decode_openexr
 from shviewer.lights.images.rgbe import decode_rgbe
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import Limits
+from shviewer.words import counted
 
 _Decoder = Callable[[bytes, Limits, str], Decoded]
 """Of a file's bytes, the limits and the layer asked for ("" for none)."""
@@ -138,4 +139,4 @@ def _repair(pixels: NDArray[np.float32]) -> tuple[str, ...]:
 
 
 def _negative(count: int) -> str:
-    return f"{count} negative value{'s' if count > 1 else ''}"
+    return counted(count, "negative value")

@@ -6,10 +6,11 @@ from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.extremes import LUMINANCE
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
-from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, grouped, grouped_number, radiance, shortened
+from shviewer.viewer.overlay.lettering import FAINT, GREY, INK
 from shviewer.viewer.overlay.painter import Painter
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_basis, describe_muted, describe_window
+from shviewer.words import counted, grouped, grouped_number, radiance, shortened
 
 
 def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
@@ -18,8 +19,7 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     y = at.caption_y
     left, right = (sphere.x for sphere in at.spheres[:2])
     muted = describe_muted(state)
-    plural = "s" if state.n_bands > 1 else ""
-    bands = f"{caption(state)}{state.n_bands} band{plural}, {state.n_bands**2} coefficient{plural}"
+    bands = f"{caption(state)}{counted(state.n_bands, 'band')}, {counted(state.n_bands**2, 'coefficient')}"
     original = "Original" if state.quantity == "radiance" else "Irradiance"
     suns = len(picture.subject.suns)
     surfaces = picture.drawn.shown if isinstance(picture.drawn, Surfaces) else ()
@@ -76,7 +76,7 @@ def describe_light(picture: Picture) -> list[str]:
     light = picture.subject.whole
     encoding = getattr(getattr(light, "source", light), "encoding", None) or ""
     count = len(light.notes)
-    marks = ["LDR"] * ("(LDR)" in encoding) + [f"{count} note{'s' if count > 1 else ''}"] * (count > 0)
+    marks = ["LDR"] * ("(LDR)" in encoding) + [counted(count, "note")] * (count > 0)
     return [", ".join(words) for words in ([light.description, *marks], marks, marks[:1]) if words]
 
 

@@ -15,8 +15,9 @@ from PIL import Image, ImageDraw
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composition import Box, Composition, Sphere
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import GREY, INK, MIN_TYPE, Ink, font, percent, radiance
+from shviewer.viewer.overlay.lettering import GREY, INK, MIN_TYPE, Ink, font
 from shviewer.viewer.picture import Picture
+from shviewer.words import percent, radiance
 
 RING, THICKNESS, SHADOW = 6.0, 1.5, 1.25
 """Radius, line and dark rim of a ring, in pixels of the design."""

@@ -19,12 +19,13 @@ from shviewer.viewer.overlay.colour_bar import draw_colour_bar
 from shviewer.viewer.overlay.figure_strip import write_figures
 from shviewer.viewer.overlay.help_sheet import draw_help
 from shviewer.viewer.overlay.layers import Layer, strips
-from shviewer.viewer.overlay.lettering import FAINT, GREY, WARNING, radiance
+from shviewer.viewer.overlay.lettering import FAINT, GREY, WARNING
 from shviewer.viewer.overlay.painter import Painter
 from shviewer.viewer.overlay.plots.convergence import Convergence, draw_convergence
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_exposure
+from shviewer.words import radiance, theta_phi_degrees
 
 HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
 NO_ROOM = {
@@ -114,8 +115,7 @@ def _describe_suns(picture: Picture) -> list[str]:
     counts = (str(count or f"over {before.searched}") for count in (before.radiance, before.irradiance))
     unsplit = "with it {} bands, irradiance {}".format(*counts)
     sun = suns[0]
-    theta = np.degrees(np.arctan2(np.hypot(sun.axis[0], sun.axis[1]), sun.axis[2]))
-    phi = np.degrees(np.arctan2(sun.axis[1], sun.axis[0]))
+    theta, phi = theta_phi_degrees(sun.axis)
     place = f"theta {theta:.1f}, phi {phi:z.1f}"
     size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide"
     colour = " ".join(radiance(value, 0.0) for value in sun.irradiance)

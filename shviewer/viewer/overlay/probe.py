@@ -12,6 +12,7 @@ from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, Ink, font
 from shviewer.viewer.picture import Picture
+from shviewer.words import theta_phi_degrees
 
 GROUND: Ink = (14, 14, 16, 224)
 AWAY = 18
@@ -32,8 +33,7 @@ class Probe:
 
     @property
     def theta_phi_degrees(self) -> tuple[float, float]:
-        x, y, z = self.direction
-        return float(np.degrees(np.arctan2(np.hypot(x, y), z))), float(np.degrees(np.arctan2(y, x)))
+        return theta_phi_degrees(self.direction)
 
 
 def probe(picture: Picture, composition: Composition, x: float, y: float) -> Probe | None:

@@ -43,7 +43,7 @@ def child_answer(tmp_path, monkeypatch):
     """Gives the child another program: `answer()` with this body, in which `out` is its binary stdout."""
 
     def install(body):
-        folder = tmp_path / "shviewer" / "lights" / "decoders"
+        folder = tmp_path / "shviewer" / "lights" / "images"
         folder.mkdir(parents=True)
         for package in (folder, folder.parent, folder.parent.parent):
             (package / "__init__.py").touch()

@@ -206,7 +206,7 @@ def test_what_is_not_a_regular_file_is_refused_without_blocking(tmp_path):
 def test_a_device_is_not_even_opened(monkeypatch):
     opened = []
     with monkeypatch.context() as patch:
-        patch.setattr(radiance_files.os, "open", lambda *arguments: opened.append(arguments))
+        patch.setattr(files.os, "open", lambda *arguments: opened.append(arguments))
         refused_within_five_seconds(Path("/dev/null"))
     assert not opened
 
@@ -216,7 +216,7 @@ def test_a_pipe_put_in_the_place_of_a_file_does_not_block(tmp_path, monkeypatch)
     (tmp_path / "file.hdr").write_bytes(GOLDEN)
     status = os.stat(tmp_path / "file.hdr")
     with monkeypatch.context() as patch:
-        patch.setattr(radiance_files.os, "stat", lambda path: status)
+        patch.setattr(files.os, "stat", lambda path: status)
         assert "a pipe, socket or device" in refused_within_five_seconds(tmp_path / "pipe.hdr")
 
 
@@ -227,7 +227,7 @@ def test_a_file_that_may_not_be_read_is_refused(tmp_path, monkeypatch):
     def denied(*arguments):
         raise PermissionError(errno.EACCES, "Permission denied")  # chmod would not stop root
 
-    monkeypatch.setattr(radiance_files.os, "open", denied)
+    monkeypatch.setattr(files.os, "open", denied)
     with pytest.raises(LightError, match="permission to read it is denied"):
         read_radiance_image(path)
 
@@ -243,7 +243,7 @@ def test_a_file_that_changes_while_it_is_read_is_refused(tmp_path, monkeypatch, 
         os.truncate(path, len(GOLDEN) + change)
         return status
 
-    monkeypatch.setattr(radiance_files.os, "fstat", changing_fstat)
+    monkeypatch.setattr(files.os, "fstat", changing_fstat)
     with pytest.raises(LightError, match="changed meanwhile"):
         read_radiance_image(path)
 

@@ -21,7 +21,6 @@ from PIL import Image, ImageSequence
 
 from shviewer.errors import GraphicsError, OutputError
 from shviewer.version import __version__
-from shviewer.viewer import picture_files
 from shviewer.viewer.animation import animation
 from shviewer.viewer.animation.animation import HOLD, Animation, band_sweep, save_animation, turntable
 from shviewer.viewer.composition import Composition, compose
@@ -213,7 +212,7 @@ def test_a_failure_in_the_middle_leaves_the_file_there_was(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(picture_files.os, "fsync", full)
+    monkeypatch.setattr(files.os, "fsync", full)
     with pytest.raises(OutputError, match=rf"a\.{suffix}: cannot be written: No space left on device"):
         save(band_sweep(STATE, 1, 2), kept.name)
     assert ([*tmp_path.iterdir()], kept.read_text()) == ([kept], "kept")

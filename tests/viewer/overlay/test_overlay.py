@@ -14,10 +14,11 @@ from shviewer.lights.function import FunctionLight
 from shviewer.viewer.composition import Box, compose
 from shviewer.viewer.overlay.band_axis import SLOT_COUNTS
 from shviewer.viewer.overlay.captions import describe_light
-from shviewer.viewer.overlay.lettering import ACCENT, WARNING, percent, radiance
+from shviewer.viewer.overlay.lettering import ACCENT, WARNING
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
+from shviewer.words import percent, radiance
 
 SIZES = [
     (320, 160),

@@ -15,7 +15,7 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.actions import with_bands
 from shviewer.viewer.composition import Box, Composition, Sphere, compose
-from shviewer.viewer.overlay.lettering import ACCENT, percent, round_percent, short_count
+from shviewer.viewer.overlay.lettering import ACCENT
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.plots import band_series as numbers
 from shviewer.viewer.overlay.plots.band_series import band_series, errors_by_count
@@ -25,6 +25,7 @@ from shviewer.viewer.overlay.plots.markers import LOOKS
 from shviewer.viewer.overlay.plots.sheet import place
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
+from shviewer.words import percent, round_percent, short_count
 
 SIZES = [
     (320, 160), (400, 300), (640, 320), (700, 400), (800, 800), (1280, 640), (1920, 1080), (2560, 1440), (900, 1200),
