@@ -32,6 +32,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.lights.find import find_light
 from shviewer.version import __version__
 from shviewer.viewer.composition import compose
+from shviewer.viewer.gl import shader_source
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture_files import compare_with_reference, write_numbered, write_png
 from shviewer.viewer.screenshot import render_rgb

@@ -21,6 +21,7 @@ from lights.images.hdr_files import (
 )
 from places import ASSETS
 
+from shviewer import files
 from shviewer.errors import LightError
 from shviewer.lights.images import radiance_files
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES, decode_radiance_image, read_radiance_image

@@ -19,6 +19,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image, ImageSequence
 
+from shviewer import files
 from shviewer.errors import GraphicsError, OutputError
 from shviewer.version import __version__
 from shviewer.viewer.animation import animation
