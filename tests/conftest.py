@@ -1,20 +1,57 @@
-"""One OpenGL context for all tests that draw in this process: two live ones in a thread silently mix."""
+"""What holds for every test, whichever machine, shell or worker process runs it."""
 
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
+# Before NumPy comes: the processors are for tests beside each other. shviewer itself asks for one thread, too.
+os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
+
 from shviewer.errors import GraphicsError
+from shviewer.viewer.memory import MEMORY
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import headless_renderer
+
+MOST_WORKERS = 4
+"""Each of them imports, collects and makes an OpenGL context; more gain little."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Folders are spread over the processors; files and tests that are named run in the one process, at once."""
+    named = [argument for argument in config.args if not Path(argument).is_dir()]
+    affinity = getattr(os, "sched_getaffinity", None)
+    processors = len(affinity(0)) if affinity else os.cpu_count() or 1
+    return 0 if named or processors == 1 else min(processors, MOST_WORKERS)
+
+
+def pytest_configure() -> None:
+    hear_signals()
+
+
+def hear_signals() -> None:
+    """From here on, child processes are ended by Ctrl+C and the like, as if they were started from a terminal.
+
+    A shell starts its background jobs with SIGINT ignored, nohup adds SIGHUP, and what is ignored is inherited. A handler
+    is not: a child has the default again. This process goes on ignoring them.
+    """
+    for name in ("SIGINT", "SIGTERM", "SIGQUIT", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) == signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
 
 
 @pytest.fixture(scope="session")
 def session_renderer() -> Iterator[Renderer]:
-    """Skips with the reason where there is no EGL; on CI that is a failure."""
+    """One OpenGL context for all tests that draw in this process: two live ones in a thread silently mix.
+
+    Skips with the reason where there is no EGL; on CI that is a failure.
+    """
     renderers = headless_renderer()
     try:
         renderer = renderers.__enter__()
@@ -34,3 +71,11 @@ def renderer(session_renderer: Renderer) -> Iterator[Renderer]:
     assert session_renderer.context.error == "GL_NO_ERROR"
     yield session_renderer
     assert session_renderer.context.error == "GL_NO_ERROR"
+
+
+@pytest.fixture
+def fresh_memory() -> Iterator[None]:
+    """Nothing is remembered of any light, neither before the test nor after it."""
+    MEMORY.clear()
+    yield
+    MEMORY.clear()
