@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import struct
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from PIL import Image
 CODECS = ("NO", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K32", "HTJ2K256", "ZSTD")
 
 
+@cache
 def seeds() -> dict[str, bytes]:
     """Name -> file. The suffix is that of its kind."""
     return {**_hdr_seeds(), **_exr_seeds(), **_png_seeds(), **_jpeg_seeds()}
