@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
@@ -45,6 +45,19 @@ def hear_signals() -> None:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) == signal.SIG_IGN:
             signal.signal(number, lambda *_: None)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Modules are collected in every process, and for a single test, too: they prepare no picture on the way."""
+    report = yield
+    if isinstance(collector, pytest.Module) and MEMORY._known:
+        MEMORY.clear()
+        report.outcome = "failed"
+        report.longrepr = "a picture is prepared while the module is imported; helpers.Lazily makes it later"
+    return report
 
 
 @pytest.fixture(scope="session")

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import Lazily
 from numpy.typing import NDArray
 
 from shviewer.lights.environment import EnvironmentLight
@@ -45,22 +46,24 @@ LOW_RANGE = EnvironmentLight(
     notes=("a",),
     encoding="PNG, 8 bit sRGB (LDR)",
 )
-PICTURES = {
-    "green": picture(),
-    "muted": picture(n_bands=12, muted=frozenset({0, 2, 4, 6, 8, 10}), cursor=3, cursor_visible=True),
-    "sampled": picture(lights=("sun-sky",), n_bands=32, method="jittered", samples=1_000_000),
-    "low range": picture(lights=(LOW_RANGE,), n_bands=9),
-    "split": picture(lights=("sun-sky",), split_sun=True),
-    "long name": picture(lights=(FunctionLight(lambda d: 1 + d[:, 2], LONG),), n_bands=128),
-    "message": picture(
-        message="a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); fetch or export it again"
-    ),
-    "zoomed": picture(zoom=3.0),
-    "signed error": picture(error="signed"),
-    "relative error": picture(lights=("venice_sunset",), n_bands=9, error="relative", tone="log"),
-    "tiny error": picture(n_bands=60, error="absolute", muted=frozenset({1, 2})),
-    "zoomed error": picture(error="signed", zoom=2.5, split_sun=True, lights=("sun-sky",)),
-}
+PICTURES = Lazily(
+    {
+        "green": lambda: picture(),
+        "muted": lambda: picture(n_bands=12, muted=frozenset({0, 2, 4, 6, 8, 10}), cursor=3, cursor_visible=True),
+        "sampled": lambda: picture(lights=("sun-sky",), n_bands=32, method="jittered", samples=1_000_000),
+        "low range": lambda: picture(lights=(LOW_RANGE,), n_bands=9),
+        "split": lambda: picture(lights=("sun-sky",), split_sun=True),
+        "long name": lambda: picture(lights=(FunctionLight(lambda d: 1 + d[:, 2], LONG),), n_bands=128),
+        "message": lambda: picture(
+            message="a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); fetch or export it again"
+        ),
+        "zoomed": lambda: picture(zoom=3.0),
+        "signed error": lambda: picture(error="signed"),
+        "relative error": lambda: picture(lights=("venice_sunset",), n_bands=9, error="relative", tone="log"),
+        "tiny error": lambda: picture(n_bands=60, error="absolute", muted=frozenset({1, 2})),
+        "zoomed error": lambda: picture(error="signed", zoom=2.5, split_sun=True, lights=("sun-sky",)),
+    }
+)
 
 
 def overlap(one: Box, other: Box) -> bool:
