@@ -8,6 +8,10 @@ from typing import NoReturn, TypeVar
 
 import pytest
 
+from shviewer.viewer.composition import Box, Composition, compose
+from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.state import ViewState
+
 T = TypeVar("T")
 
 
@@ -16,6 +20,24 @@ def unavailable(reason: str) -> NoReturn:
     if os.environ.get("CI"):
         pytest.fail(reason)
     pytest.skip(reason)
+
+
+def picture_of(light: object = "green", **changes: object) -> Picture:
+    """The picture of a light, an object or a name, with these changes to the state at the start."""
+    return prepare(ViewState(**{"lights": (light,), **changes}))  # type: ignore[arg-type]
+
+
+def frame_of(picture: Picture, width: int = 1280, height: int = 640, content_scale: float = 1.0) -> Composition:
+    """The frame that a picture is drawn in, with its zoom and as many spheres as it has."""
+    return compose(width, height, picture.state.zoom, content_scale, picture.state.n_spheres)
+
+
+def overlap(one: Box, other: Box) -> bool:
+    return one.left < other.right and other.left < one.right and one.top < other.bottom and other.top < one.bottom
+
+
+def centre(box: Box) -> tuple[float, float]:
+    return (box.left + box.right) / 2, (box.top + box.bottom) / 2
 
 
 class Lazily(Mapping[str, T]):

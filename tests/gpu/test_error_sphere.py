@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frames import lobes, picture_of, picture_view, positions, reconstructing, rounding, sum_of_harmonics
+from frames import lobes, picture_view, positions, reconstructing, rounding, sum_of_harmonics
+from helpers import picture_of
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array

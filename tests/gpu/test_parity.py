@@ -13,15 +13,15 @@ import numpy as np
 import pytest
 from frames import (
     lobes,
-    picture_of,
     picture_view,
     positions,
-    random_directions,
     reconstructing,
     rounding,
     square_frame,
     sum_of_harmonics,
 )
+from harmonics.independent import random_directions
+from helpers import picture_of
 from numpy.typing import NDArray
 from PIL import Image
 

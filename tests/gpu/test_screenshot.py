@@ -19,7 +19,8 @@ from typing import Any
 import numpy as np
 import OpenEXR
 import pytest
-from frames import picture_of, square_frame
+from frames import square_frame
+from helpers import picture_of
 from numpy.typing import NDArray
 from PIL import Image
 from scipy.special import sph_harm_y

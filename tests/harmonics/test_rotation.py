@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from harmonics.independent import random_rotation
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
@@ -22,10 +23,6 @@ from shviewer.lights.light import Light, find_light
 from shviewer.lights.lobes import Lobe, LobeLight
 
 REFERENCE = json.loads((Path(__file__).parents[1] / "data" / "hard_cases.json").read_text())["rotation"]
-
-
-def random_rotation(seed: int) -> np.ndarray:
-    return Rotation.random(rng=seed).as_matrix()
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4])

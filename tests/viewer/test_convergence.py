@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers import Lazily
+from helpers import Lazily, centre, overlap
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import evaluate_basis
@@ -73,14 +73,6 @@ def plot_of(picture: Picture, composition: Composition | None = None) -> tuple[O
     drawn = draw_overlay(picture, composition or compose(1280, 640))
     assert drawn.convergence is not None
     return drawn, drawn.convergence
-
-
-def overlap(one: Box, other: Box) -> bool:
-    return one.left < other.right and other.left < one.right and one.top < other.bottom and other.top < one.bottom
-
-
-def centre(box: Box) -> tuple[float, float]:
-    return (box.left + box.right) / 2, (box.top + box.bottom) / 2
 
 
 def coloured(drawn: Overlay, ink: tuple[int, int, int, int], box: Box, spread: int = 2) -> NDArray[np.int64]:

@@ -6,7 +6,6 @@ import gc
 import os
 import sys
 import weakref
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,12 +26,7 @@ from shviewer.viewer.state import ViewState
 from shviewer.viewer.subjects import keep_light, load_light, read_again, stamp_read
 from shviewer.viewer.watching import stamp
 
-
-@pytest.fixture(autouse=True)
-def fresh_memory() -> Iterator[None]:
-    MEMORY.clear()
-    yield
-    MEMORY.clear()
+pytestmark = pytest.mark.usefixtures("fresh_memory")
 
 
 @pytest.fixture

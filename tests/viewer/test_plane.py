@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import centre, overlap
 
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light, find_light
 from shviewer.viewer import plane, projections
-from shviewer.viewer.composition import Box, compose
+from shviewer.viewer.composition import compose
 from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
 from shviewer.viewer.lettering import ACCENT
 from shviewer.viewer.log_axis import Axis
@@ -34,11 +34,7 @@ SIZES = [
 COUNTS = (625, 2_500, 10_000, 40_000, 160_000)
 
 
-@pytest.fixture(autouse=True)
-def fresh_memory() -> Iterator[None]:
-    MEMORY.clear()
-    yield
-    MEMORY.clear()
+pytestmark = pytest.mark.usefixtures("fresh_memory")
 
 
 @pytest.fixture
@@ -78,10 +74,6 @@ def made_up(errors: dict[tuple[str, int, int], tuple[float, float]]) -> tuple[Me
     return tuple(
         Measurement(*key, key[0], time, 1, np.full(MAX_DIRECT_BANDS, error)) for key, (time, error) in errors.items()
     )
-
-
-def overlap(one: Box, other: Box) -> bool:
-    return one.left < other.right and other.left < one.right and one.top < other.bottom and other.top < one.bottom
 
 
 # --- what is measured
@@ -190,10 +182,6 @@ def test_every_axis_has_two_ticks_that_do_not_touch(low: float, factor: float) -
     ticks = axis.ticks(16)
     assert len(ticks) >= 2
     assert all(abs(axis.at(one) - axis.at(two)) >= 16 for one, two in itertools.pairwise(ticks))
-
-
-def centre(box: Box) -> tuple[float, float]:
-    return (box.left + box.right) / 2, (box.top + box.bottom) / 2
 
 
 def test_points_stand_where_the_labels_of_the_axes_say_on_log_scales(monkeypatch: pytest.MonkeyPatch) -> None:
