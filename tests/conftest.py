@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-import signal
 from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
-from helpers import unavailable
+from helpers import hear_signals, unavailable
 
 # Before NumPy comes: the processors are for tests beside each other. shviewer itself asks for one thread, too.
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
 
 from shviewer.errors import GraphicsError
+from shviewer.lights.light import find_light
+from shviewer.report.subjects import Subject, subject_of
 from shviewer.viewer.memory import MEMORY
 from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import headless_renderer
@@ -33,18 +34,6 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
 
 def pytest_configure() -> None:
     hear_signals()
-
-
-def hear_signals() -> None:
-    """From here on, child processes are ended by Ctrl+C and the like, as if they were started from a terminal.
-
-    A shell starts its background jobs with SIGINT ignored, nohup adds SIGHUP, and what is ignored is inherited. A handler
-    is not: a child has the default again. This process goes on ignoring them.
-    """
-    for name in ("SIGINT", "SIGTERM", "SIGQUIT", "SIGHUP"):
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) == signal.SIG_IGN:
-            signal.signal(number, lambda *_: None)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -83,6 +72,12 @@ def renderer(session_renderer: Renderer) -> Iterator[Renderer]:
     assert session_renderer.context.error == "GL_NO_ERROR"
     yield session_renderer
     assert session_renderer.context.error == "GL_NO_ERROR"
+
+
+@pytest.fixture(scope="session")
+def green() -> Subject:
+    """The light of the paper as a report sees it."""
+    return subject_of(find_light("green"))
 
 
 @pytest.fixture

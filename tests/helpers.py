@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Callable, Iterator, Mapping
 from typing import NoReturn, TypeVar
 
@@ -20,6 +21,18 @@ def unavailable(reason: str) -> NoReturn:
     if os.environ.get("CI"):
         pytest.fail(reason)
     pytest.skip(reason)
+
+
+def hear_signals() -> None:
+    """From here on, child processes are ended by Ctrl+C and the like, as if they were started from a terminal.
+
+    A shell starts its background jobs with SIGINT ignored, nohup adds SIGHUP, and what is ignored is inherited. A handler
+    is not: a child has the default again. This process goes on ignoring them.
+    """
+    for name in ("SIGINT", "SIGTERM", "SIGQUIT", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) == signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
 
 
 def picture_of(light: object = "green", **changes: object) -> Picture:

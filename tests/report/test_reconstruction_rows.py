@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
-from shviewer.lights.light import find_light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.report.enough_bands import where_bands_stop_paying
 from shviewer.report.measurement import Measurement
@@ -32,11 +31,6 @@ from shviewer.viewer.screenshot import offscreen
 
 NO_OPENGL = "GraphicsError: no OpenGL here"
 SHADER, CPU = {DIRECT, CACHED}, {SCATTERED, BASIS, MAP_64, MAP_32}
-
-
-@pytest.fixture(scope="module")
-def green() -> Subject:
-    return subject_of(find_light("green"))
 
 
 def by_name(rows: list[Measurement]) -> dict[tuple[str, int | None], Measurement]:
