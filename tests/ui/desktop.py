@@ -30,17 +30,19 @@ def missing_programs() -> list[str]:
 
 @contextmanager
 def virtual_display(size: str = "1400x900x24") -> Iterator[str]:
-    """Start Xvfb on a free number; yields the DISPLAY."""
+    """Start Xvfb on a free number; yields the DISPLAY. No key repeats (-r), however long a busy machine holds it down."""
     reading, writing = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp", "-r"],
         pass_fds=(writing,),
         stderr=subprocess.DEVNULL,
     )
     os.close(writing)
     try:
         with os.fdopen(reading) as pipe:
-            yield f":{pipe.readline().strip()}"
+            number = pipe.readline().strip()
+            assert number, f"Xvfb ended with {server.wait(PATIENCE)}"
+            yield f":{number}"
     finally:
         server.terminate()
         server.wait(PATIENCE)
@@ -66,7 +68,14 @@ class Viewer:
         self.seen: list[str] = []
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
-        self.wait_for("frame 2:")
+        try:
+            self.wait_for("frame 2:")
+            self._find_window()
+        except BaseException:
+            self.close()
+            raise
+
+    def _find_window(self) -> None:
         self.window = self.xdotool("search", "--sync", "--pid", str(self.process.pid), "--name", "shviewer").split()[0]
         self.xdotool("windowfocus", self.window)
 
