@@ -16,13 +16,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from shviewer.errors import ShviewerError
-    from shviewer.exchange.evaluating import evaluate_basis, reconstruct
-    from shviewer.exchange.face import find_light, project, report, screenshot, view
-    from shviewer.exchange.projected import Projected
+from shviewer.version import __version__
 
-__version__ = "0.1.0"
+if TYPE_CHECKING:
+    from shviewer.analysis.projected import Projected
+    from shviewer.api import evaluate_basis, find_light, project, reconstruct, report, screenshot, view
+    from shviewer.errors import ShviewerError
 
 __all__ = [
     "Projected",
@@ -39,14 +38,10 @@ __all__ = [
 
 _HOMES = {
     "ShviewerError": "shviewer.errors",
-    "evaluate_basis": "shviewer.exchange.evaluating",
-    "reconstruct": "shviewer.exchange.evaluating",
-    "Projected": "shviewer.exchange.projected",
-    "find_light": "shviewer.exchange.face",
-    "project": "shviewer.exchange.face",
-    "report": "shviewer.exchange.face",
-    "screenshot": "shviewer.exchange.face",
-    "view": "shviewer.exchange.face",
+    "Projected": "shviewer.analysis.projected",
+    **dict.fromkeys(
+        ("evaluate_basis", "find_light", "project", "reconstruct", "report", "screenshot", "view"), "shviewer.api"
+    ),
 }
 
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from shviewer.cli import main
+from shviewer.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -12,11 +12,11 @@ from helpers import hear_signals, unavailable
 # Before NumPy comes: the processors are for tests beside each other. shviewer itself asks for one thread, too.
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
 
+from shviewer.analysis.cache import MEMORY
+from shviewer.benchmark.subjects import Subject, subject_of
 from shviewer.errors import GraphicsError
-from shviewer.lights.light import find_light
-from shviewer.report.subjects import Subject, subject_of
-from shviewer.viewer.memory import MEMORY
-from shviewer.viewer.renderer import Renderer
+from shviewer.lights.find import find_light
+from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import headless_renderer
 
 MOST_WORKERS = 4

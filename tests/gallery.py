@@ -8,11 +8,10 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from pathlib import Path
 
-from shviewer.cli import main
+from places import ROOT
 
-ROOT = Path(__file__).parents[1]
+from shviewer.cli.main import main
 
 
 def section() -> str:
@@ -29,7 +28,7 @@ def commands() -> list[list[str]]:
 
 
 def pictures() -> list[str]:
-    """The paths of the pictures that the README shows up to there, but for those of the report."""
+    """The paths of the pictures that the README shows up to there."""
     text = (ROOT / "README.md").read_text(encoding="utf-8").partition(section())
     return re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text[0] + text[1])
 

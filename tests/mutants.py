@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
-TESTS = ("tests/harmonics", "tests/lights", "--ignore=tests/lights/test_radiance_files.py")
+TESTS = ("tests/harmonics", "tests/coefficients", "tests/lights", "--ignore=tests/lights/images/test_radiance_files.py")
 
 
 class Mutant(NamedTuple):
@@ -133,19 +133,19 @@ MUTANTS = (
     ),
     Mutant(
         "phase kept for programs without",
-        "shviewer/harmonics/conventions/convention.py",
+        "shviewer/coefficients/convention.py",
         "            found = found * alternating(orders(n_bands))\n        found = found * SCALES",
         "            found = found * 1.0\n        found = found * SCALES",
     ),
     Mutant(
         "axes the other way",
-        "shviewer/harmonics/conventions/axes.py",
+        "shviewer/coefficients/axes.py",
         "(directions @ matrix).T",
         "matrix @ directions.T",
     ),
     Mutant(
         "1/pi forgotten",
-        "shviewer/harmonics/conventions/convention.py",
+        "shviewer/coefficients/convention.py",
         "np.pi if held == OVER_PI else 1 / np.pi",
         "np.pi if held == OVER_PI else 1",
     ),

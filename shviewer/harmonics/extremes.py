@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, safe_unit
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -272,8 +272,7 @@ def _tangents(places: Array) -> tuple[Array, Array]:
 
 def at_directions(synthesis: Synthesis, directions: Array) -> Array:
     """The reconstruction (k, 3) in unit directions (k, 3)."""
-    x, y, z = directions.T
-    return synthesis.at(np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+    return synthesis.at(*angles_from_directions(directions))
 
 
 def _triple(direction: Array) -> Triple:

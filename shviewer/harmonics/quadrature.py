@@ -162,6 +162,12 @@ def column_azimuths(n_columns: int) -> Array:
     return np.asarray(np.pi * (1 - (2 * np.arange(n_columns) + 1) / n_columns))
 
 
+def angles_from_directions(directions: Array) -> tuple[Array, Array]:
+    """The angle to +z and the azimuth from +x towards +y, each (...), radians, of vectors (..., 3) of any length."""
+    x, y, z = np.moveaxis(directions, -1, 0)
+    return np.arctan2(np.hypot(x, y), z), np.arctan2(y, x)
+
+
 def directions_from_angles(theta: Array, phi: Array) -> Array:
     """Unit vectors (..., 3) from the angle to +z and the azimuth from +x towards +y, both broadcast, in radians."""
     sine = np.sin(theta)

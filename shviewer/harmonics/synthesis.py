@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, normalise
+from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
 from shviewer.harmonics.theta_series import azimuth_functions, theta_series
 
@@ -27,8 +28,8 @@ def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
     ValueError if n**2 is no square, or for a direction that is zero or not finite.
     """
     unit = normalise(directions)
-    x, y, z = unit.reshape(-1, 3).T
-    values = Synthesis(np.asarray(coefficients, dtype=np.float64)).at(np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+    angles = angles_from_directions(unit.reshape(-1, 3))
+    values = Synthesis(np.asarray(coefficients, dtype=np.float64)).at(*angles)
     return values.reshape(unit.shape)
 
 

@@ -14,11 +14,12 @@ from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Indices, Layout
 from shviewer.lights.layouts.recognise import recognise
-from shviewer.lights.radiance_files import DEFAULT_READING, Reading, read_radiance_image
+from shviewer.lights.reading import DEFAULT_READING, Reading
 
 MAX_RASTER_WIDTH = 8192
 """Of the lat-long raster that an image is drawn from which is no texture itself."""

@@ -18,7 +18,7 @@ from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, gegenbauer_ratios
-from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight, angle_between

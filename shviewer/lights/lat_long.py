@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.quadrature import angles_from_directions
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,18 +34,18 @@ class LatLongMap:
     def nearest(self, directions: Array) -> Array:
         """The texel (k, 3) in whose area each unit direction (k, 3) lies; for rows at texel centres."""
         height, width = self.texels.shape[:2]
-        x, y, z = directions.T
-        row = (np.arctan2(np.hypot(x, y), z) * (height / np.pi)).astype(np.int64)
-        column = np.floor((0.5 - np.arctan2(y, x) / (2 * np.pi)) * width).astype(np.int64)
+        theta, phi = angles_from_directions(directions)
+        row = (theta * (height / np.pi)).astype(np.int64)
+        column = np.floor((0.5 - phi / (2 * np.pi)) * width).astype(np.int64)
         return np.asarray(self.texels[np.minimum(row, height - 1), column % width], dtype=np.float64)
 
     def sample(self, directions: Array) -> Array:
         """Bilinear radiance (k, 3) in unit directions (k, 3); continuous across the seam and the poles."""
         width = self.texels.shape[1]
-        x, y, z = directions.T
+        theta, phi = angles_from_directions(directions)
         scale, offset = self.row_scale_offset
-        row = np.arctan2(np.hypot(x, y), z) * scale + offset
-        column = (0.5 - np.arctan2(y, x) / (2 * np.pi)) * width - 0.5
+        row = theta * scale + offset
+        column = (0.5 - phi / (2 * np.pi)) * width - 0.5
         top = np.floor(row).astype(np.int64)
         down = (row - top)[:, None]
         return np.asarray(self._row_value(top, column) * (1 - down) + self._row_value(top + 1, column) * down)

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 from shviewer.harmonics.basis import degree_order, index
 from shviewer.lights.light import Light
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.camera import turned_by_drag
-from shviewer.viewer.error_view import ERRORS
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.error_scale import ERRORS
 from shviewer.viewer.state import (
     LAYOUT_CHOICES,
     MAX_EXPOSURE,
@@ -36,7 +36,7 @@ def more_bands(count: int) -> Action:
 
 def with_bands(state: ViewState, n_bands: int) -> ViewState:
     """So many bands, as far as they can be shown; a basis function above them is left."""
-    most = min(state.compare.n_bands, MAX_SHOWN_BANDS) if state.compare else MAX_SHOWN_BANDS
+    most = min(state.compare.n_bands, MAX_BANDS) if state.compare else MAX_BANDS
     if state.compare and n_bands > most:
         state = replace(state, message=state.compare.extent)
     n_bands = min(max(n_bands, 1), most)
@@ -55,7 +55,7 @@ def not_in_use(state: ViewState, band: int) -> ViewState:
 
 def solo_band(state: ViewState, band: int) -> ViewState:
     """Only this band; once more: all of them."""
-    others = frozenset(range(MAX_SHOWN_BANDS)) - {band}
+    others = frozenset(range(MAX_BANDS)) - {band}
     if band >= state.n_bands:
         return not_in_use(state, band)
     return replace(state, muted=frozenset() if state.muted == others else others)

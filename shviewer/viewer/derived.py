@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.analysis.cache import remember
+from shviewer.analysis.figures import error_grid, grid_rows, reconstruct
+from shviewer.analysis.projections import BEST, Projection, project
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes import DISPLAY_ROUNDS, at_directions, climb
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
-from shviewer.viewer.analysis import error_grid, grid_rows, reconstruct
-from shviewer.viewer.error_view import NOISE, ErrorScale, automatic_range, error_values
-from shviewer.viewer.memory import remember
-from shviewer.viewer.projections import BEST, Projection, project
+from shviewer.limits import DIMMEST
+from shviewer.viewer.error_scale import NOISE, ErrorScale, automatic_range, error_values
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
@@ -26,7 +27,6 @@ from shviewer.viewer.surface import (
     surface,
 )
 from shviewer.viewer.tone import TONES, exposed_for
-from shviewer.viewer.view_limits import DIMMEST
 
 WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""

@@ -1,4 +1,4 @@
-"""The one table of keys: it drives the program and makes the help sheet, `--list-keys` and the key list in README.md.
+"""The one table of keys: it drives the program and makes the help sheet, `--list-keys` and the key list of the guide.
 
 Keys are names ("PageUp", "Shift+3"), so nothing here needs a window; viewer/window.py turns what GLFW reports into these.
 """
@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
+from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.actions import (
     Action,
     auto_exposure,
@@ -37,7 +38,6 @@ from shviewer.viewer.actions import (
     toggle_sweep,
     with_bands,
 )
-from shviewer.viewer.layout import MAX_DIRECT_BANDS
 from shviewer.viewer.state import (
     CAMERA_HOME,
     EXPOSURE_STEP,
@@ -213,7 +213,7 @@ def press(state: ViewState, key: str) -> ViewState:
 
 
 def key_table() -> str:
-    """One line per row of the table, grouped: the text of `--list-keys` and of README.md."""
+    """One line per row of the table, grouped: the text of `--list-keys` and of the guide."""
     lines: list[str] = []
     group = ""
     for binding in BINDINGS:

@@ -6,25 +6,24 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from shviewer.analysis.comparison import verdict
+from shviewer.analysis.figures import Figures, Needs, error_grid, grid_rows, needs, reconstruct
+from shviewer.analysis.projections import Projection, project, sampling_of
+from shviewer.analysis.subjects import Subject, subject
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.limits import BRIGHTEST, DIMMEST, MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
-from shviewer.viewer.analysis import Figures, Needs, error_grid, grid_rows, needs, reconstruct
-from shviewer.viewer.comparison import verdict
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
-from shviewer.viewer.error_view import ErrorScale
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS, map_size
-from shviewer.viewer.projections import Projection, project, sampling_of
+from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
+from shviewer.viewer.error_scale import ErrorScale
 from shviewer.viewer.state import ViewState
-from shviewer.viewer.subjects import Subject, subject
-from shviewer.viewer.surface import Surface
 from shviewer.viewer.tone import steepest
-from shviewer.viewer.view_limits import BRIGHTEST, DIMMEST, check
+from shviewer.viewer.view_limits import check
 
 
 class Source(NamedTuple):
@@ -48,15 +47,13 @@ class Picture:
     """Drawn on top of the reconstruction."""
     coefficients: Array
     """Shown, (n_bands**2, 3): muted ones are zero."""
-    reconstruction_map: NDArray[np.float32] | None
-    """Spline coefficients (rows, columns, 4) of the reconstruction, drawn in place of the direct sum."""
+    drawn: Drawn
+    """How the reconstruction is drawn."""
     world_from_view: Array
     light_from_world: Array
     exposure_stops: float
     error_scale: ErrorScale | None
     """Of the error, if it is shown."""
-    surfaces: tuple[Surface, ...]
-    """In place of the spheres, as many as there are; none unless the lobe view is shown."""
     projection: Projection
     figures: Figures
     needs: Needs
@@ -87,7 +84,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     check(state)
     shown = subject(state)
     light, whole = shown.light, shown.whole
-    projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_SHOWN_BANDS
+    projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
     projection = project(light, *sampling_of(state), projected)
     peak = error_grid(whole, grid_rows(1)).peak
     if not (peak == 0 or DIMMEST <= peak <= BRIGHTEST):
@@ -99,9 +96,15 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     scale = None if state.error == "off" else error_scale(light, projection, shape, state.error)
     if scale is not None and state.error_range is not None:
         scale = replace(scale, end=state.error_range)
-    by_map = (by_map or state.n_bands > MAX_DIRECT_BANDS or state.evaluate == "map") and not state.lobe_view
     stops = exposure_stops(state, whole)
-    size = map_size(state.n_bands, _height(figures, scale, 2.0**stops * steepest(state.tone)))
+    drawn: Drawn
+    if state.lobe_view:
+        drawn = Surfaces(surfaces(state, light, projection, shape))
+    elif by_map or state.evaluate == "map" or state.n_bands > MAX_DIRECT_BANDS:
+        size = map_size(state.n_bands, _height(figures, scale, 2.0**stops * steepest(state.tone)))
+        drawn = SplineMap(reconstruction_map(light, projection, shape, size))
+    else:
+        drawn = DirectSum(coefficients)
     return Picture(
         state=state,
         subject=shown,
@@ -109,12 +112,11 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
         compared=_source(light),
         suns=_sun_lobes(shown, state.quantity),
         coefficients=coefficients,
-        reconstruction_map=reconstruction_map(light, projection, shape, size) if by_map else None,
+        drawn=drawn,
         world_from_view=camera.world_from_view(*state.camera),
         light_from_world=camera.light_from_world(state.light_rotation),
         exposure_stops=stops,
         error_scale=scale,
-        surfaces=surfaces(state, light, projection, shape) if state.lobe_view else (),
         projection=projection,
         figures=figures,
         needs=needs(state),

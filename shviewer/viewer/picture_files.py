@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import errno
 import io
 import json
 import math
-import os
-import re
 import tempfile
 import warnings
 from contextlib import suppress
@@ -20,12 +17,17 @@ from numpy.typing import NDArray
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from shviewer import __version__
 from shviewer.errors import OutputError, UsageError
-from shviewer.lights.sun import Sun
+from shviewer.files import write_atomically
+from shviewer.lights.suns.sun import Sun
+from shviewer.version import __version__
 from shviewer.viewer.colour_maps import map_of
 from shviewer.viewer.composition import Composition
+from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.picture import Picture
+
+EVALUATED = {DirectSum: "direct", SplineMap: "map", Surfaces: "surfaces"}
+"""What the description of a picture says of how its reconstruction is drawn."""
 
 PIXEL_STEP = 2
 """Two pixels differ if any channel does by more than this many of 255: rounding differs by 1 between drivers."""
@@ -74,7 +76,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "sheet": state.sheet,
         "lobe_view": state.lobe_view,
         "basis": state.basis,
-        "evaluated": "direct" if picture.reconstruction_map is None else "map",
+        "evaluated": EVALUATED[type(picture.drawn)],
         "size": [composition.width, composition.height],
         "camera_degrees": list(state.camera),
         "zoom": state.zoom,
@@ -147,60 +149,6 @@ def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
         write_atomically(path, file.read_bytes())
 
 
-def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> None:
-    """Write beside and move into place: `path` is what it was or whole. exclusive: FileExistsError if it exists."""
-    try:
-        handle, name = tempfile.mkstemp(prefix=".shv-", suffix=".tmp", dir=path.parent)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            os.chmod(name, 0o666 & ~_umask())
-            if exclusive:
-                _place_exclusively(name, path, data)
-            else:
-                os.replace(name, path)
-        finally:
-            with suppress(FileNotFoundError):
-                os.unlink(name)
-    except FileExistsError:
-        raise
-    except OSError as error:
-        raise _refused(path, error) from error
-
-
-def check_place(path: Path) -> None:
-    """OutputError if nothing can be written there: to be asked before what is to be written is worked on for long."""
-    try:
-        if path.is_dir():
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        with tempfile.TemporaryFile(dir=path.parent):
-            pass
-    except OSError as error:
-        raise _refused(path, error) from error
-
-
-def _refused(path: Path, error: OSError) -> OutputError:
-    reason = "no such folder" if isinstance(error, FileNotFoundError) else error.strerror or error
-    return OutputError(f"{path}: cannot be written: {reason}; choose another place")
-
-
-def _place_exclusively(name: str, path: Path, data: bytes) -> None:
-    try:
-        os.link(name, path)
-    except FileExistsError:
-        raise
-    except OSError:  # a file system without links
-        with path.open("xb") as file:
-            file.write(data)
-
-
-def file_stem(name: str) -> str:
-    """What a light is called, fit for a file's name everywhere."""
-    return re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "light"
-
-
 def write_numbered(stem: str, pixels: NDArray[np.uint8], text: str) -> Path:
     """A PNG under the next free name stem-001.png, stem-002.png, ... in the current folder."""
     for number in range(1, 10_000):
@@ -239,9 +187,3 @@ def compare_with_reference(pixels: NDArray[np.uint8], reference: Path, differenc
         f"{share:.4%} of the pixels differ from {reference} by more than {PIXEL_STEP}/255 (allowed {threshold:.4%}, "
         f"largest {distance.max()}/255); see {difference}"
     )
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

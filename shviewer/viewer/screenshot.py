@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composition import Composition
-from shviewer.viewer.layers import Layer
-from shviewer.viewer.marks import mark_layers
-from shviewer.viewer.overlay import draw_overlay
+from shviewer.viewer.gl.renderer import GL_VERSIONS, Renderer
+from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.overlay.marks import mark_layers
+from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.picture_files import metadata, write_exr, write_png
-from shviewer.viewer.renderer import GL_VERSIONS, Renderer
 
 
 def save_picture(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.layouts.recognise import LAYOUTS
 from shviewer.lights.light import Light
-from shviewer.lights.radiance_files import DEFAULT_READING, Reading
+from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.viewer.camera import IDENTITY, Quaternion
 
 METHODS = ("best", "jittered", "gauss-legendre")

@@ -9,12 +9,12 @@ from math import ceil, log2, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.analysis.cache import remember
 from shviewer.harmonics.basis import Array, count_bands, index
 from shviewer.harmonics.extremes import LUMINANCE
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
-from shviewer.viewer.memory import remember
 
 Floats = NDArray[np.float32]
 
@@ -132,7 +132,7 @@ def _raise_landmarks(values: Floats, light: Light) -> None:
     theta, phi = np.linspace(0, np.pi, len(values)), column_azimuths(values.shape[1])
     places = light.landmarks()
     for place, peak in zip(places, light.radiance(places) @ LUMINANCE, strict=True):
-        row = round(float(np.arctan2(np.hypot(place[0], place[1]), place[2])) / cell)
+        row = round(float(angles_from_directions(place)[0]) / cell)
         rows = slice(max(row - 3, 0), row + 4)
         chord = np.linalg.norm(directions_from_angles(theta[rows, None], phi) - place, axis=-1)
         values_there = values[rows]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from shviewer.errors import UsageError
 from shviewer.harmonics.quadrature import MAX_SAMPLES
+from shviewer.limits import BRIGHTEST, DIMMEST, MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
-from shviewer.viewer.error_view import ERRORS
-from shviewer.viewer.layout import MAX_DIRECT_BANDS, MAX_SHOWN_BANDS
+from shviewer.viewer.error_scale import ERRORS
 from shviewer.viewer.state import (
     EVALUATIONS,
     MAX_EXPOSURE,
@@ -19,17 +19,14 @@ from shviewer.viewer.state import (
 )
 from shviewer.viewer.tone import TONES
 
-DIMMEST, BRIGHTEST = 1e-30, 1e30
-"""The largest radiance of a light that can be drawn: beyond, sums and products would leave float32."""
-
 
 def check(state: ViewState, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> None:
     """UsageError unless state and size (width, height) are within the limits of the viewer."""
-    if not 1 <= state.n_bands <= MAX_SHOWN_BANDS:
-        raise UsageError(f"{state.n_bands} bands: the viewer shows 1 to {MAX_SHOWN_BANDS}")
+    if not 1 <= state.n_bands <= MAX_BANDS:
+        raise UsageError(f"{state.n_bands} bands: the viewer shows 1 to {MAX_BANDS}")
     for band in sorted(state.muted):
-        if not 0 <= band < MAX_SHOWN_BANDS:
-            raise UsageError(f"muted band {band}: bands are counted from 0 to {MAX_SHOWN_BANDS - 1}")
+        if not 0 <= band < MAX_BANDS:
+            raise UsageError(f"muted band {band}: bands are counted from 0 to {MAX_BANDS - 1}")
     if state.method not in METHODS:
         raise UsageError(f"method {state.method!r}: it must be one of {', '.join(METHODS)}")
     if state.quantity not in QUANTITIES:

@@ -14,15 +14,15 @@ from dataclasses import replace
 import numpy as np
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
+from shviewer.analysis.figures import reconstruct
 from shviewer.viewer.actions import rotate_light
-from shviewer.viewer.analysis import reconstruct
 from shviewer.viewer.composition import compose
-from shviewer.viewer.layers import Layer
-from shviewer.viewer.marks import mark_layers
-from shviewer.viewer.overlay import draw_overlay
+from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.overlay.marks import mark_layers
+from shviewer.viewer.overlay.overlay import draw_overlay
+from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.probe import probe, probe_layers
-from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import headless_renderer, offscreen, render_linear
 from shviewer.viewer.state import ViewState
 

@@ -9,8 +9,8 @@ import numpy as np
 import OpenEXR
 from measure import machine, medians
 
-from shviewer.lights.decoders.isolated import decode_isolated
-from shviewer.lights.decoders.openexr import decode_openexr
+from shviewer.lights.images.isolated import decode_isolated
+from shviewer.lights.images.openexr import decode_openexr
 
 
 def half_zip(height: int, width: int) -> bytes:

@@ -16,17 +16,17 @@ import moderngl
 import numpy as np
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
-sys.path.append(str(Path(__file__).parents[1] / "gpu"))
-from silhouettes import coverage, outline
+sys.path.append(str(Path(__file__).resolve().parents[1]))  # tests/
+from viewer.gl.silhouettes import coverage, outline
 
 from shviewer.harmonics.basis import Array, evaluate_basis, index
-from shviewer.resources import load_shader
 from shviewer.viewer.camera import world_from_view
 from shviewer.viewer.composition import compose
+from shviewer.viewer.gl.shader_source import load_shader
+from shviewer.viewer.gl.surface_mesh import surface_mesh
+from shviewer.viewer.gl.surface_renderer import OVERSAMPLING, TILE, SurfaceRenderer
 from shviewer.viewer.screenshot import headless_renderer
 from shviewer.viewer.surface import basis_surface, rows_for, sample_basis
-from shviewer.viewer.surface_mesh import surface_mesh
-from shviewer.viewer.surface_renderer import OVERSAMPLING, TILE, SurfaceRenderer
 
 BANDS = (4, 8, 16)
 VIEW = world_from_view(30.0, 20.0)

@@ -26,6 +26,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = os.environ[
 import numpy as np
 from measure import machine, medians
 
+from shviewer.benchmark.peers import IMAGE_PEERS, ImagePeer, available, sphericart_peer, texel_solid_angles
 from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_image, project_product
@@ -33,8 +34,7 @@ from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import degrees_and_orders, series_by_parity, theta_series
-from shviewer.lights.light import built_in_lights, find_light
-from shviewer.report.peers import IMAGE_PEERS, ImagePeer, available, sphericart_peer, texel_solid_angles
+from shviewer.lights.find import built_in_lights, find_light
 
 WIDTHS = (512, 2048, 4096)
 BANDS = (3, 5, 9, 16, 32, 64)

@@ -18,14 +18,14 @@ from pathlib import Path
 from types import ModuleType
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "lights"))
+sys.path.append(str(Path(__file__).resolve().parents[1]))  # tests/
 
 import numpy as np
 import OpenEXR
-from hdr_files import exr_file, one_value_packets
+from lights.images.hdr_files import exr_file, one_value_packets
 from measure import cpu_milliseconds, machine, medians
 
-from shviewer.lights.radiance_files import read_radiance_image
+from shviewer.lights.images.radiance_files import read_radiance_image
 
 SIZES = ((512, 256), (2048, 1024), (4096, 2048))
 LARGEST = SIZES[-1]

@@ -19,11 +19,12 @@ from pathlib import Path
 import numpy as np
 
 from shviewer.errors import LightError
-from shviewer.lights.decoders.decoded import Decoded
-from shviewer.lights.decoders.limits import Limits
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.images.decoded import Decoded
+from shviewer.lights.images.radiance_files import decode_radiance_image
 from shviewer.lights.layouts.recognise import recognise
-from shviewer.lights.radiance_files import Reading, decode_radiance_image
+from shviewer.lights.reading import Reading
+from shviewer.limits import Limits
 
 LIMITS = Limits(texels=2**20)
 """Below the reader's own, since a header of a few bytes may claim all of them and honest work on those takes seconds."""

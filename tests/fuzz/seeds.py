@@ -6,19 +6,14 @@ Also three files after known faults of another reader of .hdr (stb_image, issues
 from __future__ import annotations
 
 import struct
-import sys
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import OpenEXR
+from lights.images.hdr_files import exr_file, exr_part, exr_parts, hdr_file, random_texels, window
+from lights.images.ldr_files import GREY, GREY_ALPHA, PALETTE, RGB, RGBA, exif, png_file, saved_by_pillow
 from numpy.typing import NDArray
-
-sys.path.append(str(Path(__file__).parents[1] / "lights"))  # the encoders of the readers' tests
-
-from hdr_files import exr_file, exr_part, exr_parts, hdr_file, random_texels, window
-from ldr_files import GREY, GREY_ALPHA, PALETTE, RGB, RGBA, exif, png_file, saved_by_pillow
 from PIL import Image
 
 CODECS = ("NO", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K32", "HTJ2K256", "ZSTD")

@@ -17,9 +17,9 @@ from promise import LIMITS, BrokenPromise, Witness
 from seeds import seeds, stb_seeds
 
 from shviewer.errors import LightError
-from shviewer.lights.decoders.decoded import Decoded
-from shviewer.lights.decoders.limits import Limits
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.images.decoded import Decoded
+from shviewer.limits import Limits
 
 SEED = 0
 

@@ -1,12 +1,10 @@
 """References that share no code with shviewer: SciPy's harmonics, Gauss-Legendre rules of our own, mpmath's figures."""
 
-import json
-from pathlib import Path
-
 import numpy as np
+from places import hard_cases
 from scipy.special import roots_legendre, sph_harm_y
 
-HARD_CASES = json.loads((Path(__file__).parents[1] / "data" / "hard_cases.json").read_text())
+HARD_CASES = hard_cases()
 
 
 def random_directions(count, seed=0):

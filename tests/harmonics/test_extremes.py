@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from shviewer.harmonics.basis import evaluate_basis, index
 from shviewer.harmonics.extremes import ErrorGrid, climb, smallest_value, valleys
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.light import find_light
+from shviewer.lights.find import find_light
 
 
 def grey(coefficients: np.ndarray) -> np.ndarray:

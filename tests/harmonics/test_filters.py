@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from fractions import Fraction
 from math import comb
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from places import hard_cases
 from scipy.optimize import minimize
 
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.deringing import dering, least_distance
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient, window
 from shviewer.harmonics.metrics import band_power
-from shviewer.lights.light import find_light
+from shviewer.lights.find import find_light
 
-REFERENCE = json.loads((Path(__file__).parents[1] / "data" / "hard_cases.json").read_text())
+REFERENCE = hard_cases()
 
 
 def test_windows_are_those_of_the_definitions() -> None:

@@ -17,7 +17,7 @@ from shviewer.harmonics.quadrature import (
     uniform_random,
 )
 from shviewer.harmonics.scattered import project_samples
-from shviewer.lights.light import find_light
+from shviewer.lights.find import find_light
 
 SAMPLE_COUNTS = (1000, 3162, 10_000, 31_623, 100_000)
 

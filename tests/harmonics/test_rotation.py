@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
 from harmonics.independent import random_rotation
 from numpy.testing import assert_allclose
+from places import hard_cases
 from scipy.spatial.transform import Rotation
 
 from shviewer.harmonics.basis import evaluate_basis
@@ -17,12 +15,13 @@ from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.rotation import rotate
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.light import Light, find_light
+from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
 
-REFERENCE = json.loads((Path(__file__).parents[1] / "data" / "hard_cases.json").read_text())["rotation"]
+REFERENCE = hard_cases()["rotation"]
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4])

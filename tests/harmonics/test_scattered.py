@@ -11,7 +11,7 @@ from shviewer.harmonics import scattered
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.quadrature import DirectionSet, jittered
 from shviewer.harmonics.scattered import POWER_BANDS, SLICED_BANDS, WAVE_BANDS, project_samples, project_values
-from shviewer.lights.light import find_light
+from shviewer.lights.find import find_light
 
 GREEN = find_light("green")
 GREEN_EXACT = np.array([float(value) for value in HARD_CASES["lights"]["green"]["coefficients_n4"]])

@@ -16,8 +16,9 @@ from shviewer.harmonics.metrics import (
 )
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
+from shviewer.lights.find import find_light
 from shviewer.lights.function import LAST_ROWS, MOVEMENT, FunctionLight
-from shviewer.lights.light import Light, find_light
+from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
 
 

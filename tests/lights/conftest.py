@@ -1,10 +1,11 @@
 """Reading bytes as if they were a file, for the tests of the readers."""
 
 import pytest
-from hdr_files import checked_message
+from lights.images.hdr_files import checked_message
 
 from shviewer.errors import LightError
-from shviewer.lights.radiance_files import Reading, read_radiance_image
+from shviewer.lights.images.radiance_files import read_radiance_image
+from shviewer.lights.reading import Reading
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 import OpenEXR
 import pytest
 from harmonics.independent import random_directions
-from hdr_files import FORMAT, hdr_file, random_texels
+from lights.images.hdr_files import FORMAT, hdr_file, random_texels
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
@@ -15,14 +15,14 @@ from shviewer.harmonics.metrics import squared_error
 from shviewer.harmonics.projection import project_image
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
-from shviewer.lights.decoders.limits import Limits
 from shviewer.lights.environment import MAX_TEXTURE_SIDE, EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.angular import AngularLayout
 from shviewer.lights.layouts.cube import HORIZONTAL_CROSS, OPENEXR, CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
-from shviewer.lights.radiance_files import Reading
+from shviewer.lights.reading import Reading
+from shviewer.limits import Limits
 
 
 def random_light(height, width, seed=0):

@@ -11,10 +11,11 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.light import Light, find_light
+from shviewer.lights.light import Light
 
 NORMALS = random_directions(30)
 

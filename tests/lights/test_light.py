@@ -5,18 +5,18 @@ import difflib
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
-from hdr_files import exr_file, hdr_file, random_texels
+from lights.images.hdr_files import exr_file, hdr_file, random_texels
 from numpy.testing import assert_allclose
 
 from shviewer.errors import LightError
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.find import built_in_lights, find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.light import built_in_lights, find_light
 from shviewer.lights.lobes import LobeLight
-from shviewer.lights.radiance_files import Reading
+from shviewer.lights.reading import Reading
 
 SCENE = '[[lobe]]\nprofile = "gaussian"\naxis = [1, 2, -1]\nradiance = [3, 2, 1]\nsharpness = 5\n'
 FUNCTION = "import numpy as np\ndef dusk(d):\n    return np.exp(d * [1, -2, 0.5])\n"

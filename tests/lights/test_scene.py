@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from shviewer.errors import LightError
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
-from shviewer.lights.light import built_in_lights
+from shviewer.lights.find import built_in_lights
 from shviewer.lights.scene import MAX_FILE_BYTES, read_scene
 
 ABOVE = "the slope must be positive, above the offset, and neither beyond 1e+15"

@@ -1,4 +1,4 @@
-"""What shviewer.lights.sun promises: suns leave a light as discs, and what is left and the discs are the light."""
+"""What shviewer.lights.suns.sun promises: suns leave a light as discs, and what is left and the discs are the light."""
 
 import numpy as np
 import pytest
@@ -10,9 +10,9 @@ from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc
-from shviewer.lights.caps import Caps, chord, chord_of
-from shviewer.lights.compact_sources import CAP, MOST
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.find import find_light
+from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.layouts.cube import (
     HORIZONTAL_CROSS,
@@ -23,10 +23,10 @@ from shviewer.lights.layouts.cube import (
     CubeLayout,
 )
 from shviewer.lights.layouts.lat_long import LatLongLayout
-from shviewer.lights.light import find_light
 from shviewer.lights.lobes import Lobe, LobeLight
-from shviewer.lights.radiance_files import read_radiance_image
-from shviewer.lights.sun import Sun, split_suns
+from shviewer.lights.suns.caps import Caps, chord, chord_of
+from shviewer.lights.suns.compact_sources import CAP, MOST
+from shviewer.lights.suns.sun import Sun, split_suns
 from shviewer.resources import resource_folder
 
 HEIGHT, WIDTH = 128, 256

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
-
-ROOT = Path(__file__).parents[2]
+from places import ROOT
 
 
 def run(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -45,6 +44,9 @@ def test_an_installed_wheel_draws_every_kind_of_built_in_light_from_another_fold
         assert done.returncode == 0, done.stderr
         with Image.open(tmp_path / f"{light}.png") as image:
             assert json.loads(image.text["shviewer"])["light"] == light  # type: ignore[attr-defined]
+    place = run(programs / "python", "-c", "import shviewer; print(shviewer.__path__[0])", cwd=tmp_path).stdout.strip()
+    pages = {path.name: path.read_bytes() for path in (ROOT / "assets" / "guide").iterdir()}
+    assert {path.name: path.read_bytes() for path in (Path(place) / "assets" / "guide").iterdir()} == pages
     listed = run(programs / "shviewer", "--list-lights", cwd=tmp_path).stdout
     lights = [path.stem for kind in ("scenes", "environments") for path in (ROOT / "assets" / kind).glob("*.*")]
     assert set(lights) == {line.split()[0] for line in listed.splitlines()}

@@ -1,19 +1,12 @@
-"""The camera against formulas that share nothing with pyrr, and the floors of the house."""
+"""The camera against formulas that share nothing with pyrr."""
 
 from __future__ import annotations
-
-import ast
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-import shviewer
 from shviewer.harmonics.basis import Array
 from shviewer.viewer import camera
-
-PACKAGE = Path(shviewer.__file__).parent
-FLOORS = {"harmonics": ("harmonics",), "lights": ("harmonics", "lights", "errors", "resources")}
 
 
 def rodrigues(axis: Array, degrees: float) -> Array:
@@ -100,67 +93,6 @@ def test_dragging_a_light_moves_its_front_with_the_mouse(right: float, up: float
     front = camera.light_from_world(before) @ direction(*view)  # in the frame of the light
     moved = camera.world_from_view(*view).T @ camera.matrix(after) @ front
     np.testing.assert_allclose(moved, [right, up, 1], rtol=0, atol=2e-4)
-
-
-# --- floors
-
-
-def imports(path: Path) -> list[str]:
-    """Full names of every module that a file imports, wherever the import stands."""
-    found: list[str] = []
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            found += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: imports are absolute"
-            assert node.module is not None
-            found += [f"{node.module}.{alias.name}" for alias in node.names]
-    return found
-
-
-FILES = sorted(PACKAGE.rglob("*.py"))
-
-
-@pytest.mark.parametrize(
-    ("module", "owners"),
-    [
-        ("pyrr", ["viewer/camera.py"]),
-        ("glfw", ["viewer/glfw_window.py", "viewer/window.py"]),
-        ("OpenEXR", ["lights/decoders/openexr_library.py", "viewer/picture_files.py"]),
-    ],
-)
-def test_a_delicate_library_is_imported_where_it_is_tamed(module: str, owners: list[str]) -> None:
-    users = [str(path.relative_to(PACKAGE)) for path in FILES if any(n.split(".")[0] == module for n in imports(path))]
-    assert users == owners
-    if module == "OpenEXR":  # one reader, one writer; never where a file begins
-        assert not any(
-            isinstance(node, ast.Import) and node.names[0].name == module
-            for name in users
-            for node in ast.parse((PACKAGE / name).read_text()).body
-        )
-
-
-@pytest.mark.parametrize("floor", FLOORS)
-def test_a_floor_stands_only_on_those_below(floor: str) -> None:
-    files = sorted((PACKAGE / floor).glob("*.py"))
-    assert files
-    for path in files:
-        for name in imports(path):
-            if name.startswith("shviewer."):
-                assert name.split(".")[1] in FLOORS[floor], f"{path.name} imports {name}"
-
-
-def test_nobody_imports_the_command_line_but_main() -> None:
-    users = [path.name for path in FILES if any(name.startswith("shviewer.cli") for name in imports(path))]
-    assert users == ["__main__.py"]
-    below = [
-        path
-        for path in FILES
-        if path.parent.name not in ("viewer", "stability", "report", "exchange")
-        and path.name not in ("cli.py", "from_options.py", "__main__.py")
-    ]
-    assert len(below) > 15
-    assert not [path for path in below if any(name.startswith("shviewer.viewer") for name in imports(path))]
 
 
 @pytest.mark.parametrize("direction", [(1, 0, 0), (0, -1, 0), (0.3, -0.5, 0.7), (0, 0, 1), (0, 0, -1), (-1, 1e-9, 0)])

@@ -11,13 +11,13 @@ from helpers import picture_of
 
 from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.light import find_light
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import compose
-from shviewer.viewer.layout import MAP_COLUMNS, map_size
+from shviewer.viewer.drawn import MAP_COLUMNS, DirectSum, SplineMap, map_size
+from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.renderer import Renderer
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.view_limits import check
@@ -81,8 +81,8 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
     def forbidden(*arguments: object, **named: object) -> None:
         raise AssertionError("compiled or read again")
 
-    monkeypatch.setattr("shviewer.viewer.programs._compile", forbidden)
-    monkeypatch.setattr("shviewer.viewer.subjects.find_light", forbidden)
+    monkeypatch.setattr("shviewer.viewer.gl.programs._compile", forbidden)
+    monkeypatch.setattr("shviewer.analysis.subjects.find_light", forbidden)
     for n_bands in (6, 40, 1):
         render_rgb(renderer, picture_of("studio", n_bands=n_bands), frame)
 
@@ -175,10 +175,10 @@ def test_samples_and_seed_change_the_sampled_methods_alone() -> None:
 
 
 def test_a_map_takes_over_above_32_bands() -> None:
-    assert picture_of(n_bands=32).reconstruction_map is None
+    assert isinstance(picture_of(n_bands=32).drawn, DirectSum)
     above = picture_of(n_bands=33, muted=frozenset({1}))
-    assert above.reconstruction_map is not None
-    splines = above.reconstruction_map
+    assert isinstance(above.drawn, SplineMap)
+    splines = above.drawn.splines
     height, width, components = splines.shape
     assert components == 4
     rng = np.random.default_rng(0)
@@ -208,17 +208,17 @@ def test_a_map_is_as_fine_as_the_bands_and_the_contrast_need() -> None:
 
 @pytest.mark.parametrize("change", [{"exposure_offset": 12.0}, {"tone": "log"}, {"error": "signed"}])
 def test_what_shows_finer_differences_takes_a_finer_map(change: dict[str, object]) -> None:
-    plain = picture_of(n_bands=32, evaluate="map").reconstruction_map
-    finer = picture_of(n_bands=32, evaluate="map", **change).reconstruction_map
+    plain = picture_of(n_bands=32, evaluate="map").drawn.splines
+    finer = picture_of(n_bands=32, evaluate="map", **change).drawn.splines
     assert plain is not None
     assert finer is not None
     assert finer.shape[1] > plain.shape[1]
 
 
 def test_a_map_is_drawn_where_it_is_asked_for_and_refused_nowhere_but_directly_above_32_bands() -> None:
-    assert picture_of(evaluate="map").reconstruction_map is not None
-    assert picture_of(evaluate="direct", n_bands=32).reconstruction_map is None
-    assert prepare(ViewState(), by_map=True).reconstruction_map is not None
+    assert isinstance(picture_of(evaluate="map").drawn, SplineMap)
+    assert isinstance(picture_of(evaluate="direct", n_bands=32).drawn, DirectSum)
+    assert isinstance(prepare(ViewState(), by_map=True).drawn, SplineMap)
     with pytest.raises(UsageError, match="33 bands: at most 32 are summed directly"):
         picture_of(evaluate="direct", n_bands=33)
 

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from shviewer.analysis.figures import needs
+from shviewer.analysis.information import as_text, describe
+from shviewer.analysis.subjects import subject
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
-from shviewer.lights.sun import split_suns
-from shviewer.viewer.analysis import needs
+from shviewer.lights.suns.sun import split_suns
 from shviewer.viewer.composition import compose
-from shviewer.viewer.information import as_text, describe
 from shviewer.viewer.keys import press
-from shviewer.viewer.overlay import draw_overlay
+from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.picture_files import metadata
 from shviewer.viewer.state import ViewState
-from shviewer.viewer.subjects import subject
 
 
 def noon():

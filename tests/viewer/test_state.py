@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shviewer.lights.coefficients.light import CoefficientLight
+from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.radiance_files import Reading
+from shviewer.lights.reading import Reading
+from shviewer.limits import MAX_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.actions import open_light, orbit, rotate_light, step_sweep, zoom
 from shviewer.viewer.keys import ACTIONS, BINDINGS, key_table, press
-from shviewer.viewer.layout import MAX_SHOWN_BANDS
 from shviewer.viewer.state import (
     CAMERA_HOME,
     METHODS,
@@ -99,7 +99,7 @@ def test_bands_go_up_and_down_by_one_and_by_four_and_stop_at_the_ends() -> None:
     keys = ("Up", "Down", "PageUp", "PageDown", "Home", "End")
     assert [press(START, key).n_bands for key in keys] == [6, 4, 9, 1, 1, 32]
     assert pressed(START, *["Down"] * 9).n_bands == 1
-    assert pressed(START, *["PageUp"] * 40).n_bands == MAX_SHOWN_BANDS
+    assert pressed(START, *["PageUp"] * 40).n_bands == MAX_BANDS
 
 
 @pytest.mark.parametrize("digit", range(5))

@@ -8,7 +8,7 @@ import pytest
 from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.harmonics.extremes import LUMINANCE
 from shviewer.harmonics.zonal import Disc
-from shviewer.lights.light import find_light
+from shviewer.lights.find import find_light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.surface import (
     LIGHT_ROWS,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import project_image
-from shviewer.harmonics.quadrature import directions_from_angles
+from shviewer.harmonics.quadrature import angles_from_directions, directions_from_angles
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.layout import Indices
 
@@ -40,9 +40,9 @@ class LatLongLayout:
         return np.asarray(self.solid_angles()[rows, 0])
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
-        x, y, z = directions.T
-        row = (np.arctan2(np.hypot(x, y), z) * (self.height / np.pi)).astype(np.int64)
-        column = np.floor((0.5 - np.arctan2(y, x) / (2 * np.pi)) * self.width).astype(np.int64)
+        theta, phi = angles_from_directions(directions)
+        row = (theta * (self.height / np.pi)).astype(np.int64)
+        column = np.floor((0.5 - phi / (2 * np.pi)) * self.width).astype(np.int64)
         return np.minimum(row, self.height - 1), column % self.width
 
     def centres(self, rows: Indices, columns: Indices) -> Array:

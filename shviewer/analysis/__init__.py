@@ -1,0 +1,1 @@
+"""What is known of a light: projections, figures, comparisons, each computed once."""

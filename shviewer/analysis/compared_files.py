@@ -1,0 +1,72 @@
+"""--compare FILE: coefficients to be compared with the light's own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil, sqrt
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+from shviewer.analysis.projections import BEST, project
+from shviewer.analysis.subjects import load_light
+from shviewer.coefficients.finding import FITS, Found, find_convention
+from shviewer.coefficients.reading import interpreted, read_numbers
+from shviewer.errors import LightError
+from shviewer.files import naming
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.find import COEFFICIENT_SUFFIXES, IMAGE_SUFFIXES, built_in_lights
+from shviewer.limits import MAX_BANDS
+from shviewer.viewer.state import ViewState
+from shviewer.words import brief_percent
+
+
+def compared_with(state: ViewState, text: str, option: str = "--compare") -> tuple[ViewState, str]:
+    """The state, comparing with the coefficients in the file `text`, and which convention that was found to have, if any.
+
+    A bare list whose convention nobody names is read in the one that fits the state's light, or is nearest. LightError if the
+    file is bad or no coefficient file; option: what the caller calls it.
+    """
+    file = Path(text)
+    if file.suffix.lower() not in COEFFICIENT_SUFFIXES:
+        raise LightError(
+            f"{text} is {_kind(text)}; {option} takes coefficients ({', '.join(COEFFICIENT_SUFFIXES)}): shviewer project "
+            "makes them of a light"
+        )
+    with naming(text):
+        numbers, stamp = read_numbers(file, state.reading.limits)
+        if stamp or state.reading.convention:
+            read, found = interpreted(numbers, stamp, state.reading.convention), None
+        else:
+            found = _found(state, numbers)
+            read = interpreted(numbers, {}, found.best.text)
+    light = CoefficientLight.of_file(read, file.name)
+    return replace(state, compare=light), _said(file.name, found) if found else ""
+
+
+def _found(state: ViewState, numbers: NDArray[Any]) -> Found:
+    """By the radiance of what is projected."""
+    light = load_light(replace(state, quantity="radiance"))
+    most = min(MAX_BANDS, max(1, ceil(sqrt(numbers.size))))  # of a grey list; others have fewer
+    return find_convention(numbers / light.unit, project(light, *BEST, most).coefficients / light.unit)
+
+
+def _said(name: str, found: Found) -> str:
+    best = found.best
+    if not found.fits:
+        return (
+            f"{name} does not name its convention, and none fits within {brief_percent(FITS)}; the nearest is {best.text}, "
+            f"{brief_percent(best.error)} off"
+        )
+    alike = " and ".join(filter(None, [", ".join(found.alike[:-1]), *found.alike[-1:]]))
+    others = f", as {alike} would" if alike else ""
+    return f"{name} does not name its convention: {best.text} fits{others}"
+
+
+def _kind(text: str) -> str:
+    if text in built_in_lights():
+        return "a built-in light"
+    if Path(text).suffix.lower() in IMAGE_SUFFIXES:
+        return "an image"
+    return "a scene" if Path(text).suffix.lower() == ".toml" else "no coefficient file"

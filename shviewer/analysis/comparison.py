@@ -1,0 +1,133 @@
+"""Coefficients that are given: shown as what their file holds, or beside the light that they are said to be of."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.analysis.cache import remember
+from shviewer.analysis.projections import BEST, project
+from shviewer.analysis.subjects import subject
+from shviewer.coefficients.finding import FITS
+from shviewer.coefficients.programs import CONVENTIONS, OURS
+from shviewer.coefficients.suspects import usual_suspects
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.filters import irradiance_factors, per_coefficient
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.lights.light import Light
+from shviewer.limits import MAX_BANDS
+from shviewer.viewer.state import ViewState
+from shviewer.words import brief_percent
+
+BAD = FITS
+"""Given coefficients that are farther off than this, relative to the light's own in the same bands, are looked into."""
+
+FAINT = 1e-3
+"""Bands that hold less than this part of the strongest one are measured by that, and not by themselves."""
+
+LONGEST_NAME = 28
+"""Characters in a caption."""
+
+EXACT = 1e-6
+"""What is no farther off is the same, up to six printed digits."""
+
+EXPLAINED = 0.25
+"""A suspect is named if its error is at most this, and at most this part of the one without it."""
+
+
+def as_the_file_holds(state: ViewState, *, quantity: bool, bands: bool) -> ViewState:
+    """The state, showing the quantity and the bands of the coefficient file it compares with, or whose light it shows.
+
+    quantity, bands: whether to follow the file; more bands than a compared file has are never shown. LightError if the light
+    is bad.
+    """
+    file = state.compare or subject(replace(state, quantity="radiance", split_sun=False)).whole
+    if not isinstance(file, CoefficientLight):
+        return state
+    if bands:
+        state = replace(state, n_bands=min(file.n_bands, MAX_BANDS))
+    elif state.compare and state.n_bands > file.n_bands:
+        state = replace(state, n_bands=file.n_bands, message=file.extent)
+    return replace(state, quantity=file.quantity) if quantity else state
+
+
+def caption(state: ViewState) -> str:
+    """Whose coefficients are shown, to stand before their number; "" for the light's own."""
+    if state.compare is None:
+        return ""
+    name = state.compare.name
+    return f"{name if len(name) <= LONGEST_NAME else f'{name[:11]}...{name[-14:]}'}: "
+
+
+@remember(most=4)
+def verdict(light: Light, given: CoefficientLight) -> str:
+    """One line on given coefficients: how well they agree with the light's own, or by which usual mistake they would."""
+    exact = project(light, *BEST, given.n_bands).coefficients / light.unit
+    shown = project(light, given, 0, 0, given.n_bands).coefficients / light.unit
+    norm, off = float(np.linalg.norm(exact)), float(np.linalg.norm(exact - shown))
+    if off <= BAD * norm:
+        over = f"its {given.n_bands} bands" if given.n_bands > 1 else "its one band"
+        error = brief_percent(max(off / norm if norm else 0.0, EXACT))
+        return f"{given.name} agrees with the light's own to {error} over {over}"
+    says = f"{given.name} is {brief_percent(off / norm) if norm else 'wholly'} off"
+    if not shown.any():
+        return f"{says}: its numbers are all zero"
+    best = usual_suspects(exact, shown, _readings(light, given))[0]
+    if not best.changes or best.error > EXPLAINED * min(1.0, off / norm if norm else 0.0):
+        return f"{says}, which no usual mistake explains{_where(exact, shown)}"
+    left = "not at all" if best.error < EXACT else brief_percent(best.error)
+    return f"{says}, but {left} if its numbers are {best.words}"
+
+
+def agrees(said: str) -> bool:
+    """Whether a verdict is a good one."""
+    return " agrees with the light's own " in said
+
+
+def _where(exact: Array, shown: Array) -> str:
+    """In which bands they disagree, relative to each band of the light's own; "" if it has only one band, or is black."""
+    starts = np.arange(count_bands(exact)) ** 2
+    own = np.sqrt(np.add.reduceat((exact**2).sum(axis=1), starts))
+    off = np.sqrt(np.add.reduceat(((exact - shown) ** 2).sum(axis=1), starts))
+    if len(own) == 1 or not own.any():
+        return ""
+    share = off / np.maximum(own, FAINT * own.max())
+    worst = int(share.argmax())
+    bad = np.flatnonzero(share > BAD)
+    others = "the others fit" if len(bad) == 1 else "most of all" if len(bad) == len(own) else _bad_bands(bad, worst)
+    return f": band {worst} is {brief_percent(share[worst])} off, {others}"
+
+
+def _bad_bands(bad: NDArray[np.int64], worst: int) -> str:
+    others = [str(band) for band in bad if band != worst]
+    return f"{', '.join(others[:6])}{' and more' if len(others) > 6 else ''} less, the others fit"
+
+
+def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Array]:
+    """By how the numbers might have been meant, what they are then, of the quantity shown: other conventions and layouts."""
+    numbers = given.given if given.file is None else given.file.numbers
+    own = OURS if given.file is None else replace(given.file.convention, quantity=None)
+    layouts: dict[tuple[str, ...], NDArray[np.generic]] = {(): numbers}
+    if given.n_bands > 1:
+        layouts[("listed channel by channel",)] = numbers.reshape(3, -1).T
+        layouts[("listed row by row",)] = numbers.T.reshape(-1, 3)
+    cosine = irradiance_factors(given.n_bands) if isinstance(light, IrradianceLight) else np.ones(given.n_bands)
+    found: dict[tuple[str, ...], Array] = {}
+    for convention in CONVENTIONS.values() if given.file else (OURS,):
+        if (convention.most_bands or MAX_BANDS) < given.n_bands or np.iscomplexobj(numbers) != convention.complex:
+            continue
+        same = replace(convention, quantity=None) == own
+        if same and given.file:
+            convention = given.file.convention
+        for layout, table in layouts.items():
+            if same and not layout:
+                continue
+            words = (*layout, *(() if same else (f"in the convention of {convention.name}",)))
+            with suppress(ValueError):  # complex numbers of no real function
+                radiance = CoefficientLight.of_numbers(table, convention).given
+                found[words] = radiance * per_coefficient(cosine) / light.unit
+    return found

@@ -1,0 +1,177 @@
+"""What is known of a light and its reconstruction: figures, and the band counts that a tolerance needs.
+
+What is expensive is remembered (memory.py): a light is sampled once for its error figures.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shviewer.analysis.cache import remember
+from shviewer.analysis.projections import BEST, Projection, project, sampling_of
+from shviewer.analysis.subjects import irradiance_of, load_light
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
+from shviewer.harmonics.extremes import ErrorGrid, Extremes
+from shviewer.harmonics.filters import irradiance_factors, per_coefficient, window
+from shviewer.harmonics.metrics import (
+    PARSEVAL_FLOOR,
+    ChannelFigures,
+    SampleEstimate,
+    band_power,
+    band_weights,
+    channel_figures,
+    errors_by_band_count,
+    relative,
+    smallest_band_count,
+    split_half_estimate,
+    squared_error,
+)
+from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.scattered import project_samples
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.lights.light import Light
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.viewer.state import QUANTITIES, ViewState
+
+MIN_ESTIMATE = 256
+"""Fewer samples than this do not even tell how noisy they are."""
+
+HALF_SEED = 2**31
+"""Added to the seed for the second, independent set of samples."""
+
+
+@dataclass(frozen=True)
+class Needs:
+    """How many bands are within a tolerance, for the radiance and for the irradiance of a light; None if no count is."""
+
+    tolerance: float
+    radiance: int | None
+    irradiance: int | None
+    best: float
+    """The relative L2 error, of the quantity shown, with as many bands as are best."""
+    best_bands: int
+    searched: int
+    """Up to how many bands the quantity shown was searched: fewer for samples, which are rarely good for more."""
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What the overlay and the metadata say. Radiance is linear."""
+
+    channels: dict[str, ChannelFigures]
+    """Of "all" channels together, "red", "green", "blue" and "luminance"."""
+    irradiance_relative_l2: float
+    """The error that the same coefficients have where they shade a white Lambertian surface."""
+    floor: float
+    """Relative L2 errors below this cannot be told from rounding, or from a quadrature's own error."""
+    extremes: Extremes
+    energy_share: tuple[float, ...]
+    """Energy of each band over that of the light; as many bands as were projected exactly."""
+    factors: tuple[float, ...]
+    """What each band in use is multiplied with: the window, 0 if muted."""
+
+    @property
+    def relative_l2(self) -> float:
+        return self.channels["all"].relative_l2
+
+
+def needs(state: ViewState) -> Needs:
+    """How many bands the state's light needs for its tolerance, by the best way and for both quantities.
+
+    With a sampled method the answer for the quantity shown is that of the samples' own error.
+    """
+    answers = {}
+    for quantity in QUANTITIES:
+        light = load_light(replace(state, quantity=quantity))
+        errors = errors_of(light, *(sampling_of(state) if quantity == state.quantity else BEST))
+        answers[quantity] = smallest_band_count(errors, state.tolerance), errors
+    errors = answers[state.quantity][1]
+    best = int(errors.argmin())
+    return Needs(
+        state.tolerance, answers["radiance"][0], answers["irradiance"][0], float(errors[best]), best + 1, len(errors)
+    )
+
+
+def estimate_from_samples(state: ViewState) -> SampleEstimate:
+    """What the state's number of jittered samples alone says, as if the light were not known otherwise.
+
+    Two sets of half as many, drawn independently: the halves of one set would share its cells, and depend on each other.
+    """
+    light = load_light(state)
+    halves = [jittered(max(state.samples // 2, 1), seed) for seed in (state.seed, state.seed + HALF_SEED)]
+    first, second = (project_samples(light.integrand, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
+    squares = np.concatenate([((light.integrand(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
+    deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
+    if len(squares) < MIN_ESTIMATE:
+        return SampleEstimate(None, 1, None)
+    return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
+
+
+@remember(most=16)
+def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
+    """The relative L2 error for every band count that is searched, (MAX_BANDS,) or (MAX_DIRECT_BANDS,) of samples."""
+    exact = project(light, *BEST, MAX_BANDS).coefficients
+    n_bands = MAX_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
+    shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
+    return errors_by_band_count(light.products(), exact[: n_bands**2] / light.unit, shown / light.unit)
+
+
+@remember(most=64)
+def reconstruct(
+    light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
+) -> tuple[Array, Figures]:
+    """What is shown of a projection, (n_bands**2, 3), and how good it is."""
+    exact = project(light, *BEST, projection.n_bands).coefficients
+    shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
+    factors = _window_factors(shown / light.unit, window_name, width)
+    shown = shown * per_coefficient(factors)
+    total = float(np.trace(light.products()))
+    power = band_power(exact / light.unit).sum(axis=1)
+    extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
+    irradiance = light if isinstance(light, IrradianceLight) else irradiance_of(light)
+    cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
+    shaded = squared_error(
+        irradiance.products().diagonal(), cosine * exact[: n_bands**2] / light.unit, cosine * shown / light.unit
+    )
+    figures = Figures(
+        irradiance_relative_l2=relative(sum(shaded), irradiance.products().diagonal()),
+        channels=channel_figures(
+            light.products(), exact[: n_bands**2] / light.unit, shown / light.unit, extremes.peak / light.unit
+        ),
+        floor=max(PARSEVAL_FLOOR, light.accuracy()),
+        extremes=extremes,
+        energy_share=tuple(float(p) / total if total else 0.0 for p in power),
+        factors=tuple(0.0 if band in muted else float(factor) for band, factor in enumerate(factors)),
+    )
+    return shown, figures
+
+
+def _window_factors(coefficients: Array, name: str, width: float | None) -> Array:
+    """The window's factor per band, (n,). UsageError where it cannot be had."""
+    n_bands = count_bands(coefficients)
+    if name == "none":
+        return np.ones(n_bands)
+    if name == "dering":
+        if n_bands > MAX_DERINGED_BANDS:
+            raise UsageError(f"{n_bands} bands: dering takes at most {MAX_DERINGED_BANDS}")
+        try:
+            return dering(coefficients).factors
+        except ValueError as error:
+            raise UsageError(f"dering: {error}") from error
+    return window(name, n_bands, width or n_bands)
+
+
+def grid_rows(n_bands: int) -> int:
+    """At least four rows per band, in few steps, so that a light is seldom looked at anew."""
+    return next(rows for bands, rows in ((16, 96), (32, 128), (64, 256), (MAX_BANDS, 512)) if n_bands <= bands)
+
+
+@remember(most=8)
+def error_grid(light: Light, rows: int) -> ErrorGrid:
+    """The light on a grid of so many rows."""
+    return ErrorGrid(light.radiance, light.landmarks(), rows, getattr(light, "on_rows", None))

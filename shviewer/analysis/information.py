@@ -1,0 +1,353 @@
+"""What a light is, in figures: `shviewer info`. They come from the functions that make the window's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+
+from shviewer.analysis.coefficient_information import (
+    CoefficientInformation,
+    coefficient_rows,
+    describe_coefficients,
+)
+from shviewer.analysis.figures import error_grid, grid_rows, needs
+from shviewer.analysis.subjects import load_light, subject
+from shviewer.errors import LightError, ShviewerError
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes import LUMINANCE, SEARCH_ROUNDS, climb
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.find import IMAGE_SUFFIXES, file_version, split_light
+from shviewer.lights.light import Light
+from shviewer.lights.reading import Reading
+from shviewer.lights.suns.sun import Sun
+from shviewer.viewer.picture import prepare
+from shviewer.viewer.state import ViewState
+from shviewer.words import theta_phi_degrees
+
+TOLERANCES = (0.10, 0.05, 0.01)
+SHOWN_BANDS = 9
+DARK_PERCENTILE = 0.01
+"""The dynamic range begins at this share of the lit sphere: a single dark texel does not make a range."""
+
+BINS_PER_STOP = 32
+LOWEST_STOP, HIGHEST_STOP = -160, 140
+"""More than float32 holds."""
+
+BLOCK = 2**20
+"""Texels looked at together, which bounds the memory."""
+
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Values:
+    """Of the linear radiance over the sphere; a value is one channel in one place."""
+
+    minimum: float
+    maximum: float
+    negative_values: int
+    negative_or_black_area: float
+    """Share of the sphere whose Rec. 709 luminance is not above 0."""
+    darkest: float | None
+    """The luminance below which the darkest DARK_PERCENTILE of the sphere with luminance above 0 is; None if none is."""
+    brightest_luminance: float
+    dynamic_range_stops: float | None
+    """From `darkest` to `brightest_luminance`."""
+    source: str
+    """What was looked at: "texels", or the size of a grid."""
+
+
+@dataclass(frozen=True)
+class BandsNeeded:
+    """The smallest numbers of bands whose relative L2 error is within the tolerance; None if none up to `searched` is."""
+
+    tolerance: float
+    radiance: int | None
+    irradiance: int | None
+    searched: int
+
+
+@dataclass(frozen=True)
+class SunInformation:
+    """A compact source, as a disc."""
+
+    direction: Triple
+    theta_phi_degrees: tuple[float, float]
+    width_degrees: float
+    radiance: Triple
+    irradiance: Triple
+    """Of a surface that faces it."""
+    share_of_flux: float
+    """Of the light's, over the channels' mean."""
+
+
+@dataclass(frozen=True)
+class Information:
+    """About one LIGHT."""
+
+    light_argument: str
+    light: str
+    description: str
+    file: str
+    file_bytes: int
+    encoding: str | None
+    size: tuple[int, int] | None
+    """Width and height of an image as it is stored."""
+    layout: str | None
+    refused: str | None
+    """Why the viewer does not show the image unless it is repaired; what follows is then said of the repaired one."""
+    notes: tuple[str, ...]
+    values: Values
+    mean: Triple
+    """Radiance, weighted by solid angle."""
+    mean_luminance: float
+    peak: float
+    """The radiance that is largest in magnitude in any channel, with its sign."""
+    peak_direction: Triple
+    """In the light's own frame, as all directions here."""
+    peak_theta_phi_degrees: tuple[float, float]
+    irradiance_up: Triple
+    """On a surface that faces +z."""
+    method: str
+    energy_share: tuple[float, ...]
+    """Of each band, of the light's energy over the sphere."""
+    bands_needed: tuple[BandsNeeded, ...]
+    suns: tuple[SunInformation, ...]
+    """What --split-sun takes out, the greatest flux first."""
+    bands_needed_without_suns: tuple[BandsNeeded, ...]
+    """By the rest; none if there are no suns."""
+    coefficients: CoefficientInformation | None = None
+    """Of a coefficient file, its convention and where it comes from."""
+
+
+def describe(text: str, reading: Reading) -> Information:
+    """What is known of the light that `text` names. LightError if it cannot be shown.
+
+    An image that is refused for its values is described as `sanitize` repairs it, with the reason in `refused`.
+    """
+    try:
+        return _describe(text, reading)
+    except LightError as refusal:
+        if reading.sanitize or split_light(text)[0].suffix.lower() not in IMAGE_SUFFIXES:
+            raise
+        try:
+            return replace(_describe(text, replace(reading, sanitize=True)), refused=str(refusal))
+        except ShviewerError:
+            raise refusal from None
+
+
+def as_json_object(information: Information) -> dict[str, object]:
+    return asdict(information)
+
+
+def as_text(information: Information) -> str:
+    """Aligned lines, one screen at most."""
+    values, size, peak = information.values, information.size, information.peak_direction
+    rows = [("file", f"{information.file}, {_bytes(information.file_bytes)}")]
+    if information.encoding:
+        rows.append(("encoding", information.encoding))
+    if size and information.layout:
+        rows.append(("layout", f"{information.layout}, {size[0]} x {size[1]}"))
+    if information.coefficients:
+        rows += coefficient_rows(information.coefficients)
+    if information.refused:
+        rows += [("refused", information.refused), ("", "what follows is said of the image as --sanitize repairs it")]
+    rows += [("note", note) for note in information.notes]
+    rows.append(
+        ("radiance", f"{_number(values.minimum)} to {_number(values.maximum)} in any channel ({values.source})")
+    )
+    if size and not information.refused:
+        repaired = any(note.startswith("sanitised") for note in information.notes)
+        none = f"no NaN, no infinity, {values.negative_values or 'none'} negative"
+        rows.append(("bad values", "repaired, see note" if repaired else none))
+    rows.append(("mean", f"{_numbers(information.mean)}, luminance {_number(information.mean_luminance)}"))
+    rows += _dynamic_range(values)
+    theta, phi = information.peak_theta_phi_degrees
+    place = f"x y z {' '.join(f'{component:z.4f}' for component in peak)}"
+    rows.append(("peak", f"{_number(information.peak)} at theta {theta:.2f}, phi {phi:z.2f} degrees; {place}"))
+    rows.append(("irradiance up", _numbers(information.irradiance_up)))
+    shares = " ".join(f"{100 * share:.2f}" for share in information.energy_share)
+    rows.append(("energy, %", f"{shares} in bands 0 to {len(information.energy_share) - 1}; {information.method}"))
+    rows += _bands("bands", information.bands_needed)
+    rows += _suns(information)
+    lines = [f"{information.light}: {information.description}"]
+    return "\n".join(lines + [f"  {label:<18}{text}" for label, text in rows])
+
+
+def _describe(text: str, reading: Reading) -> Information:
+    state = ViewState(lights=(text,), reading=reading)
+    picture = prepare(state)
+    light = picture.light
+    image = light if isinstance(light, EnvironmentLight) else None
+    values, peak = _image_values(image) if image is not None else _grid_values(light)
+    mean = picture.projection.coefficients[0] / (2 * np.sqrt(np.pi))
+    irradiance = load_light(replace(state, quantity="irradiance"))
+    file = file_version(text)
+    split = subject(replace(state, split_sun=True))
+    total = float(mean.mean()) * 4 * np.pi
+    return Information(
+        light_argument=text,
+        light=light.name,
+        description=light.description,
+        file=str(split_light(text)[0]),
+        file_bytes=file.size if file is not None else 0,
+        encoding=image.encoding if image is not None else None,
+        size=(image.pixels.shape[1], image.pixels.shape[0]) if image is not None else None,
+        layout=image.layout.name if image is not None else None,
+        refused=None,
+        notes=light.notes,
+        values=values,
+        mean=_triple(mean),
+        mean_luminance=float(mean @ LUMINANCE),
+        peak=0.0 + (values.maximum if values.maximum >= -values.minimum else values.minimum),
+        peak_direction=_triple(peak),
+        peak_theta_phi_degrees=theta_phi_degrees(peak),
+        irradiance_up=_triple(irradiance.radiance(np.array([[0.0, 0.0, 1.0]]))[0]),
+        method=picture.projection.method,
+        energy_share=picture.figures.energy_share[:SHOWN_BANDS],
+        bands_needed=_needed(state),
+        suns=tuple(_sun(sun, total) for sun in split.suns),
+        bands_needed_without_suns=_needed(replace(state, split_sun=True)) if split.suns else (),
+        coefficients=describe_coefficients(light),
+    )
+
+
+def _needed(state: ViewState) -> tuple[BandsNeeded, ...]:
+    found = (needs(replace(state, tolerance=tolerance)) for tolerance in TOLERANCES)
+    return tuple(BandsNeeded(need.tolerance, need.radiance, need.irradiance, need.searched) for need in found)
+
+
+def _sun(sun: Sun, total: float) -> SunInformation:
+    """total: the light's flux, of the channels' mean."""
+    return SunInformation(
+        direction=_triple(sun.axis),
+        theta_phi_degrees=theta_phi_degrees(sun.axis),
+        width_degrees=float(np.degrees(2 * sun.half_angle)),
+        radiance=_triple(sun.radiance),
+        irradiance=_triple(sun.irradiance),
+        share_of_flux=float(sun.flux.mean()) / total,
+    )
+
+
+def _image_values(image: EnvironmentLight) -> tuple[Values, Array]:
+    """Those of the texels that show something, and the direction of the brightest, (3,)."""
+    height, width = image.pixels.shape[:2]
+    areas = np.broadcast_to(image.layout.solid_angles(), (height, width))
+    rows = max(1, BLOCK // width)
+
+    def blocks() -> Iterator[tuple[Array, Array]]:
+        for top in range(0, height, rows):
+            shown = areas[top : top + rows] > 0
+            yield image.pixels[top : top + rows][shown].astype(np.float64), areas[top : top + rows][shown]
+
+    return _gather(blocks(), "texels"), image.landmarks()[0]
+
+
+def _grid_values(light: Light) -> tuple[Values, Array]:
+    """Those of a light that is no image: on the window's grid, with the peak climbed to."""
+    grid = error_grid(light, grid_rows(1))
+    values = grid.original.transpose(0, 2, 1)
+    n_rows, n_columns = values.shape[:2]
+    areas = np.repeat(4 * np.pi * grid.row_share, n_columns)
+    row, column = divmod(int(np.abs(values).max(axis=2).argmax()), n_columns)
+    theta, phi = grid.theta[row], grid.phi[column]
+    start = np.array([[np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)]])
+    found = climb(lambda d: np.abs(light.radiance(d)).max(axis=1), start, np.pi / n_rows, SEARCH_ROUNDS)[1]
+    candidates = np.concatenate([grid.landmarks, start, found])
+    there = light.radiance(candidates)
+    peak = candidates[int(np.abs(there).max(axis=1).argmax())]
+    blocks = [(values.reshape(-1, 3), areas), (there, np.zeros(len(there)))]
+    return _gather(iter(blocks), f"on a grid of {n_columns} x {n_rows}"), peak
+
+
+def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
+    """blocks: radiance (k, 3) and solid angles (k,), which are 0 for extra places."""
+    minimum, maximum, smallest, brightest = np.inf, -np.inf, np.inf, -np.inf
+    negative, dark, lit = 0, 0.0, np.zeros((HIGHEST_STOP - LOWEST_STOP) * BINS_PER_STOP)
+    for radiance, areas in blocks:
+        if not len(radiance):
+            continue
+        minimum, maximum = min(minimum, float(radiance.min())), max(maximum, float(radiance.max()))
+        negative += int(np.count_nonzero(radiance < 0))
+        luminance = radiance @ LUMINANCE
+        brightest = max(brightest, float(luminance.max()))
+        above = luminance > 0
+        smallest = min(smallest, float(luminance.min(where=above, initial=np.inf)))
+        dark += float(areas[~above].sum())
+        bins = np.floor((np.log2(luminance[above]) - LOWEST_STOP) * BINS_PER_STOP).astype(np.int64)
+        lit += np.bincount(bins.clip(0, len(lit) - 1), areas[above], len(lit))
+    total = float(lit.sum())
+    darkest = None
+    if total > 0:
+        place = int(np.searchsorted(np.cumsum(lit), DARK_PERCENTILE * total))
+        middle = float(2.0 ** (LOWEST_STOP + (place + 0.5) / BINS_PER_STOP))
+        darkest = min(max(middle, smallest), brightest)
+    return Values(
+        minimum=minimum,
+        maximum=maximum,
+        negative_values=negative,
+        negative_or_black_area=dark / (dark + total),
+        darkest=darkest,
+        brightest_luminance=brightest,
+        dynamic_range_stops=max(0.0, float(np.log2(brightest / darkest))) if darkest else None,
+        source=source,
+    )
+
+
+def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:
+    return [
+        (
+            f"{what}, {quantity}",
+            ", ".join(
+                f"{getattr(need, quantity) or f'over {need.searched}'} for {100 * need.tolerance:g} %"
+                for need in counts
+            ),
+        )
+        for quantity in ("radiance", "irradiance")
+    ]
+
+
+def _suns(information: Information) -> list[tuple[str, str]]:
+    rows = []
+    for sun in information.suns:
+        theta, phi = sun.theta_phi_degrees
+        share = f"{100 * sun.share_of_flux:.3g} % of the flux"
+        place = f"at theta {theta:.2f}, phi {phi:z.2f}, {sun.width_degrees:.3g} deg wide"
+        colour = " ".join(f"{value:.3g}" for value in sun.irradiance)
+        rows.append(("sun", f"{share} {place}; irradiance {colour}"))
+    return rows + (_bands("rest", information.bands_needed_without_suns) if rows else [])
+
+
+def _dynamic_range(values: Values) -> list[tuple[str, str]]:
+    black = values.negative_or_black_area
+    rows = [("black", f"{100 * black:.3g} % of the sphere has no luminance above 0")] if black else []
+    if values.dynamic_range_stops is None or values.darkest is None:
+        return rows
+    ends = f"from {_number(values.darkest)}, the darkest {100 * DARK_PERCENTILE:g} % above 0 left out, to"
+    text = f"{values.dynamic_range_stops:.1f} stops of luminance, {ends} {_number(values.brightest_luminance)}"
+    return [("dynamic range", text), *rows]
+
+
+def _bytes(count: int) -> str:
+    return (
+        f"{count} bytes"
+        if count < 2**10
+        else f"{count / 2**10:.1f} KiB"
+        if count < 2**20
+        else f"{count / 2**20:.1f} MiB"
+    )
+
+
+def _number(value: float) -> str:
+    return f"{value:z.4g}"
+
+
+def _numbers(values: Triple) -> str:
+    return " ".join(map(_number, values))
+
+
+def _triple(values: Array) -> Triple:
+    red, green, blue = (float(value) for value in values)
+    return red, green, blue

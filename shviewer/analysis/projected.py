@@ -1,0 +1,160 @@
+"""What `shviewer project` writes: the coefficients of a state, in our convention, and everything that is known of them."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.analysis.figures import Figures, reconstruct
+from shviewer.analysis.projections import project, sampling_of
+from shviewer.analysis.subjects import Subject, load_light, subject
+from shviewer.coefficients.convention import IRRADIANCE, Convention
+from shviewer.coefficients.programs import parse_convention
+from shviewer.coefficients.stamp import Value, stamp_of
+from shviewer.coefficients.suns import sun_keys
+from shviewer.coefficients.writing import encode
+from shviewer.errors import UsageError
+from shviewer.files import write_atomically
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.lights.suns.sun import Sun
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.version import __version__
+from shviewer.viewer.state import ViewState, light_name
+from shviewer.viewer.view_limits import check
+from shviewer.words import counted
+
+ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")
+"""Keys of the stamp that are figures."""
+
+
+@dataclass(frozen=True, eq=False)
+class Projected:
+    """Coefficients of a light in our convention, (n**2, 3) float64: muted bands are zero and the window is applied.
+
+    `quantity` is "radiance" or "irradiance"; `figures` compare them with the light. `about` says where they come from.
+    """
+
+    coefficients: Array
+    quantity: str
+    figures: Figures
+    about: dict[str, Value]
+    name: str
+    relative_l2_as: dict[str, float] = field(default_factory=dict)
+    """The error of "radiance" and of "irradiance", whichever of them the coefficients are of."""
+    suns: tuple[Sun, ...] = ()
+    """Left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
+
+    @property
+    def n_bands(self) -> int:
+        return count_bands(self.coefficients)
+
+    def numbers(self, convention: str = "shviewer") -> NDArray[np.generic]:
+        """What that program expects, (n**2, 3) float64, or complex128 for "scipy"; a text for `parse_convention`.
+
+        UsageError for an unknown or contradictory convention, or more bands than it has.
+        """
+        try:
+            return parse_convention(convention).from_ours(self.coefficients, self.quantity)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+
+    def save(self, path: str | os.PathLike[str], convention: str = "shviewer") -> None:
+        """Write a .json, .csv, .npz, .h or .glsl file, with everything stamped on it, whole or not at all.
+
+        UsageError for another suffix or a convention that does not fit, OutputError if it cannot be written.
+        """
+        try:
+            chosen = parse_convention(convention)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+        out = Path(path)
+        write_atomically(out, self.encode(chosen, out.suffix.lower()[1:]))
+
+    def encode(self, convention: Convention, kind: str) -> bytes:
+        """The bytes of such a file; kind: one of `coefficients.writing.FORMATS`.
+
+        UsageError if the convention has not so many bands, cannot hold the quantity or not be written so.
+        """
+        try:
+            numbers = convention.from_ours(self.coefficients, self.quantity)
+            return encode(numbers, self.stamp(convention, count_bands(numbers)), convention, kind, self.name)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+
+    def stamp(self, convention: Convention, n_bands: int) -> dict[str, Value]:
+        """What a file with these coefficients in that convention says of itself."""
+        about = {**stamp_of(convention, self.quantity, n_bands), "written-by": f"shviewer {__version__}", **self.about}
+        written = str(about["quantity"]).removesuffix("-over-pi")
+        if written != self.quantity:  # errors of the one are none of the other
+            about = {key: value for key, value in about.items() if key not in ERRORS}
+            if written == IRRADIANCE:
+                about["relative-l2"] = float(self.figures.irradiance_relative_l2)
+        return about | sun_keys([sun.directional_light for sun in self.suns], convention.axes)
+
+
+def project_state(state: ViewState) -> Projected:
+    """The coefficients that the window shows in that state. LightError or UsageError, as in `picture.prepare`."""
+    check(state)
+    shown = subject(state)
+    bands = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
+    projection = project(shown.light, *sampling_of(state), bands)
+    coefficients, figures = reconstruct(
+        shown.light, projection, state.n_bands, state.muted_shown, state.window, state.window_width
+    )
+    both = {"radiance": figures.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
+    if state.quantity == IRRADIANCE:
+        radiance = load_light(replace(state, quantity="radiance"))
+        shape = state.n_bands, state.muted_shown, state.window, state.window_width
+        of_radiance = project(radiance, *sampling_of(state), bands)
+        both = {"radiance": reconstruct(radiance, of_radiance, *shape)[1].relative_l2, IRRADIANCE: figures.relative_l2}
+    about: dict[str, Value] = {
+        **_light(state, shown),
+        "window": _window(state),
+        "muted": " ".join(map(str, state.muted_shown)) or "none",
+        "method": projection.method,
+        "samples": projection.evaluations,
+        "seed": state.seed if state.method == "jittered" else None,
+        **_errors(figures),
+    }
+    about = {key: value for key, value in about.items() if value is not None and value != ""}
+    return Projected(coefficients, state.quantity, figures, about, shown.light.name, both, shown.suns)
+
+
+def _light(state: ViewState, shown: Subject) -> dict[str, Value]:
+    light, suns = shown.light, shown.suns
+    without = f"; {counted(len(suns), 'sun')} left out" if suns else ""
+    return {
+        "light": _one_line(light_name(state.light)),
+        "light-is": _one_line(light.description + without),
+        "light-notes": _one_line("; ".join(light.notes)),
+    }
+
+
+def _window(state: ViewState) -> str:
+    if state.window in ("none", "dering"):
+        return state.window
+    return f"{state.window} of {state.window_width or state.n_bands:g} bands"
+
+
+def _errors(figures: Figures) -> dict[str, Value]:
+    whole, extremes = figures.channels["all"], figures.extremes
+    values = (
+        whole.relative_l2,
+        whole.left_out,
+        whole.added,
+        extremes.max_error,
+        extremes.minimum,
+        extremes.negative_area,
+        figures.irradiance_relative_l2,
+    )
+    return {key: float(value) for key, value in zip(ERRORS, values, strict=True) if np.isfinite(value)}
+
+
+def _one_line(text: str) -> str:
+    """Fit for a comment: no line break could end it, and no `*/`."""
+    printable = "".join(character if character.isprintable() else " " for character in text)
+    return " ".join(printable.replace("*/", "* /").split())

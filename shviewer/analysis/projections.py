@@ -1,0 +1,167 @@
+"""Lights projected by any method, timed, and what each way has cost in this session.
+
+A light is projected once per method to at least MAX_DIRECT_BANDS bands; a band key then costs a sum of what is there.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from shviewer.analysis.cache import MEMORY, remember
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.filters import irradiance_factors, per_coefficient
+from shviewer.harmonics.metrics import (
+    errors_by_band_count,
+)
+from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.harmonics.scattered import project_samples
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.lights.light import Light
+from shviewer.viewer.state import ViewState
+
+BEST = ("best", 0, 0)
+"""Method, samples and seed of the best way, to which the last two do not matter."""
+
+MOST_MEASUREMENTS = 128
+"""Per light, quantity and bands: more than the keys reach, of at most 1 KiB each."""
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """Coefficients (n**2, 3) of all bands computed, by which method, from how many evaluations, in what time."""
+
+    coefficients: Array
+    method: str
+    evaluations: int | None
+    milliseconds: float
+
+    @property
+    def n_bands(self) -> int:
+        return count_bands(self.coefficients)
+
+    @property
+    def evaluation_noun(self) -> str:
+        """What its evaluations are called."""
+        return "samples" if self.method == "jittered" else "points"
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What one way to project a light cost, and how good it is: a few numbers, kept longer than the projection itself."""
+
+    method: str
+    samples: int
+    seed: int
+    words: str
+    """The method as `Projection` names it."""
+    milliseconds: float
+    """The least of all repetitions."""
+    repetitions: int
+    errors: Array = field(compare=False)
+    """Relative L2 error with the first n = 1 ... N bands, (N,); it follows from the other fields and the light."""
+
+    @property
+    def sampling(self) -> tuple[str, int, int]:
+        return self.method, self.samples, self.seed
+
+
+def sampling_of(state: ViewState) -> tuple[str | CoefficientLight, int, int]:
+    """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them.
+
+    Coefficients that are given are a method, too: that of the file they come from.
+    """
+    return way_of(state) if state.compare is None else (state.compare, 0, 0)
+
+
+def way_of(state: ViewState) -> tuple[str, int, int]:
+    """The same by name; coefficients that are given are no way to project, and nothing is measured of them."""
+    if state.compare is not None:
+        return "given", 0, 0
+    return BEST if state.method == "best" else (state.method, state.samples, state.seed)
+
+
+def project(light: Light, method: str | CoefficientLight, samples: int, seed: int, n_bands: int) -> Projection:
+    """Project a light; the irradiance of a sampled light comes from the samples of the light itself.
+
+    method: "best", "jittered" or "gauss-legendre"; or given coefficients, which are taken instead.
+    """
+    if isinstance(method, CoefficientLight):
+        return _given_projection(light, method, n_bands)
+    found = _measured_projection(light, method, samples, seed, n_bands)
+    _known(light, n_bands).move_to_end((method, samples, seed))
+    return found
+
+
+def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
+    """What this session knows of the cost of projecting the light to `n_bands` bands, by method, samples and seed."""
+    return tuple(found for _, found in sorted(_known(light, n_bands).items())) if light in MEMORY else ()
+
+
+def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Measurement]:
+    known: OrderedDict[Any, Measurement] = MEMORY.results(
+        light, (Measurement, isinstance(light, IrradianceLight), n_bands)
+    )
+    return known
+
+
+def _measure(light: Light, sampling: tuple[str, int, int], projection: Projection) -> None:
+    """Add to what is known of the cost of this way to project."""
+    n_bands, shown = projection.n_bands, projection.coefficients
+    exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
+    errors = errors_by_band_count(light.products(), exact / light.unit, shown / light.unit)
+    known = _known(light, n_bands)
+    if isinstance(light, IrradianceLight) and sampling != BEST:  # the only time spent was that on the light itself
+        known[sampling] = replace(_known(light.source, n_bands)[sampling], errors=errors)
+    else:
+        before = known.get(sampling)
+        least = min(projection.milliseconds, before.milliseconds if before else np.inf)
+        repetitions = 1 + (before.repetitions if before else 0)
+        known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
+    if len(known) > MOST_MEASUREMENTS:
+        known.popitem(last=False)
+
+
+@remember(most=8)
+def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Projection:
+    coefficients = given.coefficients(n_bands)
+    if isinstance(light, IrradianceLight):
+        coefficients = coefficients * per_coefficient(irradiance_factors(n_bands))
+    return Projection(coefficients, f"read as {given.convention}", None, 0.0)
+
+
+@remember(most=16)
+def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+    """A projection made, timed and measured."""
+    projection = _timed_projection(light, method, samples, seed, n_bands)
+    _measure(light, (method, samples, seed), projection)
+    return projection
+
+
+def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+    """A projection made and timed."""
+    start = perf_counter()
+    if isinstance(light, IrradianceLight) and method != "best":
+        source = project(light.source, method, samples, seed, n_bands)
+        return replace(source, coefficients=source.coefficients * per_coefficient(irradiance_factors(n_bands)))
+    evaluations = None
+    if method == "jittered":
+        directions = jittered(samples, seed)
+        evaluations = len(directions.weights)
+        coefficients = project_samples(light.integrand, directions, n_bands)
+        words = "jittered"
+    elif method == "gauss-legendre":
+        rule = gauss_legendre(samples)
+        evaluations = len(rule.theta) * rule.n_columns
+        coefficients = project_product(light.integrand, rule, n_bands)[0]
+        words = "Gauss-Legendre"
+    else:
+        coefficients = light.coefficients(n_bands)
+        words = light.best_method
+    return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))

@@ -1,0 +1,209 @@
+"""What a user waits for: from LIGHT to a picture, from a key to the next one, and what an idle window costs.
+
+Cold is a new process, Python's start included; warm is a process that has drawn, but has forgotten every light.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import moderngl
+
+from shviewer.analysis.cache import MEMORY
+from shviewer.benchmark.hard_cases.shader import Shader
+from shviewer.benchmark.measurement import Measurement, timed
+from shviewer.benchmark.timing import Timing, summarise, time_interleaved
+from shviewer.errors import GraphicsError
+from shviewer.viewer.composition import compose
+from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.keys import press
+from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.overlay.overlay import draw_overlay
+from shviewer.viewer.picture import prepare
+from shviewer.viewer.picture_files import metadata, write_png
+from shviewer.viewer.screenshot import offscreen, render_rgb
+from shviewer.viewer.state import ViewState
+
+SECTION = "end to end"
+FRAME = compose(1280, 640)
+KEY_BANDS = (5, 32)
+"""Band counts from which Up is pressed: the first one, and the one from which it leaves the direct sum."""
+
+VERSION, SCREENSHOT = "start, --version", "LIGHT to PNG, new process"
+PICTURE, SAVED = "LIGHT to picture, warm", "LIGHT to PNG, warm"
+NEW_KEY, KNOWN_KEY = "key to picture, new bands", "key to picture, known bands"
+IDLE = "idle window"
+
+NOTES = {
+    VERSION: "a new process; the floor of all others",
+    SCREENSHOT: "a new process, start of Python included",
+    PICTURE: "in a running process that does not know the light",
+    SAVED: "the same, read back and written",
+    NEW_KEY: "Up, to bands not shown before",
+    KNOWN_KEY: "Up, to bands shown before",
+    IDLE: "CPU milliseconds per second",
+}
+
+IDLE_SECONDS = 4
+PATIENCE = 60.0
+"""Seconds that a process may take to start, draw or end."""
+
+WATCHED_WINDOW = """
+import _thread, signal, sys, threading, time
+from shviewer.errors import GraphicsError
+from shviewer.viewer.desktop import window
+from shviewer.viewer.state import ViewState
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a background job is started without
+
+def watch():
+    time.sleep(0.5)
+    for _ in range(int(sys.argv[1])):
+        before, start = time.process_time(), time.perf_counter()
+        time.sleep(1)
+        print((time.process_time() - before) / (time.perf_counter() - start))
+    _thread.interrupt_main()
+
+class Watched(window.Window):
+    def frame(self):
+        super().frame()
+        if self.frame_count == 2:
+            threading.Thread(target=watch, daemon=True).start()
+
+window.Window = Watched
+try:
+    window.run(ViewState(), (1280, 640))
+except KeyboardInterrupt:
+    pass
+except GraphicsError as error:
+    sys.exit(str(error))
+"""
+"""A program that prints the share of one core that its window takes, each second, once two frames are drawn."""
+
+Work = Callable[[], object]
+
+
+def process_rows(text: str, name: str, drawing: Shader | str, *, budget: float, at_least: int = 5) -> list[Measurement]:
+    """New processes: `--version`, the floor of all, and a screenshot of the LIGHT `text`, which the rows call `name`.
+
+    drawing: what draws; a text says why nothing does, and then the screenshot is absent. budget: seconds.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        works = {VERSION: _process("--version")}
+        if isinstance(drawing, Shader):
+            works[SCREENSHOT] = _process("screenshot", str(Path(folder) / "out.png"), text)
+        times = time_interleaved(works, budget=budget, at_least=at_least)
+    return [_row(VERSION, "", None, times[VERSION])] + [
+        _row(SCREENSHOT, name, ViewState().n_bands, times[SCREENSHOT]) for _ in (0,) if SCREENSHOT in times
+    ]
+
+
+def session_rows(
+    text: str,
+    name: str,
+    drawing: Shader | str,
+    *,
+    budget: float,
+    key_bands: Sequence[int] = KEY_BANDS,
+    at_least: int = 5,
+) -> list[Measurement]:
+    """In this process: the LIGHT `text` to its first picture, and Up to the next one. Every light is forgotten on the way.
+
+    A picture is done when OpenGL says so, in the window's size and format, overlay included. No rows where nothing draws.
+    """
+    if isinstance(drawing, str):
+        return []
+    start = ViewState(lights=(text,))
+    works: dict[tuple[str, int], Work] = {}
+    with offscreen(drawing.renderer, FRAME) as target, tempfile.TemporaryDirectory() as folder:
+        session = _Session(drawing.renderer, target)
+        works[PICTURE, start.n_bands] = lambda: session.show(start)
+        works[SAVED, start.n_bands] = lambda: session.save(start, Path(folder) / "out.png")
+        for n_bands in key_bands:
+            works[NEW_KEY, n_bands + 1] = works[KNOWN_KEY, n_bands + 1] = partial(session.press_up, start, n_bands)
+
+        def before(work: tuple[str, int], repeat: int) -> None:
+            if work[0] != KNOWN_KEY:
+                MEMORY.clear()
+            if work[0] == KNOWN_KEY:
+                prepare(replace(start, n_bands=work[1]))
+            if work[0] in (NEW_KEY, KNOWN_KEY):
+                session.upload(replace(start, n_bands=work[1] - 1))
+
+        times = time_interleaved(works, budget=budget, at_least=at_least, before=before)
+    MEMORY.clear()
+    return [_row(method, name, n_bands, timing) for (method, n_bands), timing in times.items()]
+
+
+def idle_row(seconds: int = IDLE_SECONDS) -> Measurement | str:
+    """Milliseconds of CPU time per second in which nothing happens to a window; a text says why there is none."""
+    command = [sys.executable, "-c", WATCHED_WINDOW, str(seconds)]
+    patience = PATIENCE + seconds
+    try:
+        done = subprocess.run(
+            command, env=_environment(), capture_output=True, text=True, timeout=patience, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"no window within {patience:g} s ({type(error).__name__})"
+    if done.returncode:
+        return (done.stderr.strip().splitlines() or [f"the window ended with {done.returncode}"])[-1]
+    shares = [float(line) for line in done.stdout.split()]
+    return _row(IDLE, "green", ViewState().n_bands, summarise([1000 * share for share in shares]))
+
+
+class _Session:
+    """What a window does between an event and the picture, on a framebuffer of its size and format."""
+
+    def __init__(self, renderer: Renderer, target: moderngl.Framebuffer) -> None:
+        self.renderer = renderer
+        self.target = target
+        self.layers: tuple[Layer, ...] = ()
+
+    def upload(self, state: ViewState) -> None:
+        picture = prepare(state)
+        self.renderer.show(picture)
+        self.layers = draw_overlay(picture, FRAME, timing=True).layers
+
+    def show(self, state: ViewState) -> None:
+        self.upload(state)
+        self.renderer.draw(self.target, FRAME, self.layers)
+        self.renderer.context.finish()
+
+    def press_up(self, start: ViewState, n_bands: int) -> None:
+        self.show(press(replace(start, n_bands=n_bands), "Up"))
+
+    def save(self, state: ViewState, out: Path) -> None:
+        picture = prepare(state)
+        write_png(out, render_rgb(self.renderer, picture, FRAME), metadata(picture, FRAME, self.renderer.version))
+
+
+def _process(*arguments: str) -> Work:
+    """A run of the program. GraphicsError where it fails."""
+    command = [sys.executable, "-m", "shviewer", *arguments]
+
+    def run() -> None:
+        done = subprocess.run(
+            command, env=_environment(), capture_output=True, text=True, timeout=PATIENCE, check=False
+        )
+        if done.returncode:
+            raise GraphicsError(f"shviewer {' '.join(arguments)} ended with {done.returncode}: {done.stderr.strip()}")
+
+    return run
+
+
+def _environment() -> dict[str, str]:
+    """An installed program is compiled once, not at every start."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
+def _row(method: str, light: str, n_bands: int | None, timing: Timing) -> Measurement:
+    return Measurement(
+        section=SECTION, method=method, light=light, n_bands=n_bands, **timed(timing), note=NOTES[method]
+    )

@@ -1,0 +1,105 @@
+"""What to use: per light the Pareto front of time and error, and a sentence per tolerance, made of measured rows only."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from shviewer.benchmark.experiments import BEST, PAPER, PAPER_SAMPLES, method
+from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.page.tables import milliseconds, percent
+from shviewer.benchmark.subjects import MOST_BANDS, Subject
+from shviewer.harmonics.metrics import PARSEVAL_FLOOR, pareto_front
+from shviewer.words import grouped
+
+
+def front_of(rows: Sequence[Measurement], accuracy: float = 0.0) -> list[Measurement]:
+    """The front of one light's projections: milliseconds against the total error.
+
+    Errors that rounding or the reference's own accuracy cannot tell apart count as equal, and so do times whose quartiles
+    overlap: what is more accurate then stands for both.
+    """
+    floor = max(PARSEVAL_FLOOR, accuracy)
+    known = [
+        (row, (row.milliseconds, max(row.total_error, floor)))
+        for row in rows
+        if row.milliseconds is not None and row.total_error is not None
+    ]
+    front = [known[i][0] for i in pareto_front([point for _, point in known])]
+    return [row for i, row in enumerate(front) if not any(alike(row, better) for better in front[i + 1 :])]
+
+
+def sentences(subject: Subject, rows: Sequence[Measurement]) -> list[str]:
+    """One per tolerance: what reaches it at the least cost, and what the paper's samples do there.
+
+    rows: the projections of this light. Tolerances that no number of bands reaches share a sentence.
+    """
+    found = []
+    for tolerance in sorted(subject.needs, reverse=True):
+        needed = subject.needs[tolerance]
+        if needed is None:
+            less = "" if tolerance == min(subject.needs) else " or less"
+            left = percent(float(subject.truncation[-1]))
+            found.append(
+                f"for {percent(tolerance)} relative L2{less}: this light needs more than {MOST_BANDS} bands, whatever the"
+                f" method: {MOST_BANDS} leave {left}."
+            )
+            break
+        found.append(_sentence(subject, tolerance, needed, rows))
+    return found
+
+
+def _sentence(subject: Subject, tolerance: float, needed: int, rows: Sequence[Measurement]) -> str:
+    goal = f"for {percent(tolerance)} relative L2: "
+    good = [
+        row
+        for row in rows
+        if row.milliseconds is not None and row.total_error is not None and row.total_error <= tolerance * (1 + 1e-12)
+    ]
+    if not good:
+        return f"{goal}{bands(needed)}, of which nothing that was measured is within it; give it a larger --budget."
+    fewest = min(row.n_bands or 0 for row in good)
+    good = [row for row in good if row.n_bands == fewest]
+    winner = min(good, key=lambda row: (row.milliseconds, row.total_error))
+    winner = next((row for row in good if row.method == BEST and alike(row, winner)), winner)
+    answer = f"{goal}{bands(fewest)}, {name_of(winner, subject)}, {milliseconds(winner.milliseconds)} ms"
+    answer += f", which leaves {percent(winner.total_error)}"
+    rivals = [row for row in rows if row.n_bands == winner.n_bands and row is not winner]
+    best = next((row for row in rivals if row.method == BEST), None)
+    others = [f"{subject.light.best_method} takes {_times(best, winner)}"] if best is not None else []
+    paper = next((row for row in rivals if row.method == PAPER and row.samples == PAPER_SAMPLES), None)
+    if paper is not None and paper.total_error is not None:
+        end = "stop at" if paper.total_error > tolerance else "reach"
+        others.append(
+            f"the paper's {grouped(PAPER_SAMPLES)} jittered samples take {_times(paper, winner)} and {end}"
+            f" {percent(paper.total_error)}"
+        )
+    return "; ".join([answer, *others]) + "."
+
+
+def _times(row: Measurement, other: Measurement) -> str:
+    """How many times as long; nothing where the quartiles of the two overlap."""
+    if row.milliseconds is None or not other.milliseconds:
+        return "an unknown time"
+    if alike(row, other):
+        return "as long, within the spread"
+    ratio = row.milliseconds / other.milliseconds
+    return f"{ratio:.2g} times as long" if ratio < 10 else f"{ratio:.0f} times as long"
+
+
+def alike(first: Measurement, second: Measurement) -> bool:
+    """Whether the quartiles of two times overlap. Times without quartiles are taken at their word."""
+    ends = (first.low_quartile, first.high_quartile, second.low_quartile, second.high_quartile)
+    if any(end is None for end in ends):
+        return first.milliseconds == second.milliseconds
+    low, high, other_low, other_high = (float(end or 0) for end in ends)
+    return low <= other_high and other_low <= high
+
+
+def name_of(row: Measurement, subject: Subject) -> str:
+    """The method in words, with its samples."""
+    words = method(row.method).words_for(subject.light.best_method)
+    return words if row.samples is None else f"{words}, {grouped(row.samples)} samples"
+
+
+def bands(count: int | None) -> str:
+    return f"{count} band{'' if count == 1 else 's'}"

@@ -1,0 +1,96 @@
+"""Hard cases of radiances: none at all, no number, and numbers at the ends of what float64 holds."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.projecting import ProjectImage
+from shviewer.benchmark.hard_cases.views import SEED, SUN_AXIS
+from shviewer.errors import LightError
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.zonal import Disc
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.light import Light
+from shviewer.lights.lobes import Lobe, LobeLight
+
+
+def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
+    """How many of: one NaN, +Inf or -Inf among 8192 texels are read, or refused without saying where. Bound: none."""
+    from shviewer.viewer.picture_files import write_exr
+
+    missed = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for bad in (np.nan, np.inf, -np.inf):
+            texels = np.ones((64, 128, 3), dtype=np.float32)
+            texels[37, 101, 1] = bad
+            write_exr(Path(folder) / "bad.exr", texels, "")
+            try:
+                read(Path(folder) / "bad.exr")
+                missed += 1
+            except LightError as error:
+                missed += "row 37, column 101" not in str(error)
+    return missed
+
+
+def black(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
+    """An image and a scene of radiance 0: relative error and energies read 0. Bound: none; a NaN is an infinite error."""
+    image = EnvironmentLight(LatLongMap(np.zeros((4, 8, 3), dtype=np.float32)))
+    lights: tuple[Light, ...] = (image, LobeLight((Lobe(Disc(0.5), np.array(SUN_AXIS), np.zeros(3)),)))
+    return max(largest((figures or figures_of)(light)) for light in lights)
+
+
+def figures_of(light: Light) -> list[float]:
+    """What a picture of 5 bands says: relative L2 error, and the energy of each band."""
+    from shviewer.analysis.figures import reconstruct
+    from shviewer.analysis.projections import BEST, project
+
+    figures = reconstruct(light, project(light, *BEST, 32), 5, (), "none", None)[1]
+    return [figures.relative_l2, *figures.energy_share]
+
+
+def magnitudes(project: ProjectImage = project_image) -> float:
+    """An image times 2^-900 to 2^900 has the same coefficients times that, exactly. Bound: not one bit of difference."""
+    image = np.random.default_rng(SEED).random((16, 32, 3))
+    plain = project(image, 8)
+    return max(largest(np.ldexp(project(np.ldexp(image, k), 8), -k) - plain) for k in (-900, -500, 500, 664, 900))
+
+
+def subnormal_image(project: ProjectImage = project_image) -> float:
+    """A constant image of 5e-324 to 1e-310, in units of 5e-324.
+
+    Bound: each of 4 x 8 texel products may be rounded to a whole unit, once more per row and order: 64 units.
+    """
+    worst = 0.0
+    for radiance in (5e-324, 1e-320, 1e-310):
+        found = project(np.full((4, 8, 3), radiance), 4)
+        wanted = np.zeros((16, 3))
+        wanted[0] = radiance * np.sqrt(4 * np.pi)
+        worst = max(worst, largest((found - wanted) / 5e-324))
+    return worst
+
+
+def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
+    """The relative figures of a sun of 1e-300 to 1e300 against those of radiance 1. Bound: 1e-12, rounding of sums."""
+
+    def read(radiance: float) -> Array:
+        lobe = Lobe(Disc(0.6), np.array(SUN_AXIS), np.array([1.0, 0.5, 0.25]) * radiance)
+        return np.array((figures or figures_of)(LobeLight((lobe,))))
+
+    plain = read(1.0)
+    return max(largest(read(radiance) - plain) for radiance in (1e-300, 1e-160, 1e-30, 1e30, 1e160, 1e200, 1e300))
+
+
+CASES = (
+    Case("NaN and Inf texels", "refused with their place (number missed)", 0.0, bad_texels),
+    Case("black light", "reads 0", 0.0, black),
+    Case("radiance times 2^-900 to 2^900", "coefficients scale exactly", 0.0, magnitudes),
+    Case("subnormal radiance", "sqrt(4 pi) L, in units of 5e-324", 64.0, subnormal_image),
+    Case("figures of radiance 1e-300 to 1e300", "those of radiance 1", 1e-12, figures_at_any_radiance),
+)

@@ -1,0 +1,119 @@
+"""What the fragment shader makes of coefficients, in its float32, against evaluate_basis in float64."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
+
+if TYPE_CHECKING:
+    from shviewer.viewer.gl.renderer import Renderer
+
+WIDTH, HEIGHT = 320, 160
+CENTRE = (240.5, 79.5)
+"""Of the right sphere, on the centre of a pixel: that one looks exactly along the view's z."""
+
+RADIUS = 78.0
+BLOCK = 2048
+FROM_NORTH, FROM_SOUTH = np.eye(3), np.diag([1.0, -1.0, -1.0])
+"""world_from_view of a camera over a pole, in which the pole is met without rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A sphere showing the sum of `coefficients`, (n**2,)."""
+
+    coefficients: Array
+    world_from_view: Array = field(default_factory=lambda: FROM_NORTH)
+    radius: float = RADIUS
+    """In pixels; a large one is a magnifying glass on the middle."""
+
+
+def bound(views: list[View]) -> float:
+    """1e-6 n of the peak: what float32 rounding makes of the recurrence, measured to n = 128."""
+    return 1e-6 * max(count_bands(view.coefficients) for view in views)
+
+
+class Shader:
+    """A renderer, and how far it is from float64."""
+
+    def __init__(self, renderer: Renderer) -> None:
+        self.renderer = renderer
+
+    @property
+    def version(self) -> str:
+        return self.renderer.version
+
+    def error(self, view: View) -> float:
+        """The largest difference over the pixels, relative to the largest magnitude on the whole sphere.
+
+        Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn on it.
+        """
+        from shviewer.viewer.composition import Box, compose
+        from shviewer.viewer.composition import Sphere as Disc
+        from shviewer.viewer.drawn import DirectSum
+        from shviewer.viewer.picture import prepare
+        from shviewer.viewer.screenshot import render_linear
+        from shviewer.viewer.state import ViewState
+
+        n_bands = count_bands(view.coefficients)
+        coefficients = np.repeat(view.coefficients[:, None], 3, axis=1)
+        picture = replace(
+            prepare(ViewState(n_bands=n_bands)),
+            coefficients=coefficients,
+            drawn=DirectSum(coefficients),
+            world_from_view=view.world_from_view,
+            light_from_world=np.eye(3),
+        )
+        box = Box(WIDTH / 2, 0, WIDTH, HEIGHT)
+        sphere = Disc(*CENTRE, view.radius, box)
+        hidden = Disc(-9.0, -9.0, 1.0, Box(0, 0, 0, 0))
+        drawn = render_linear(self.renderer, picture, replace(compose(WIDTH, HEIGHT), spheres=(hidden, sphere)))
+        x = (np.arange(WIDTH) + 0.5 - sphere.x) / sphere.radius
+        y = (sphere.y - np.arange(HEIGHT) - 0.5) / sphere.radius
+        right, up = np.meshgrid(x, y)
+        facing_squared = 1 - right**2 - up**2
+        inside = (facing_squared > 0.04) & (np.arange(WIDTH) >= WIDTH / 2)
+        normals = np.column_stack([right[inside], up[inside], np.sqrt(facing_squared[inside])])
+        wanted = _sum(normals @ view.world_from_view.T, view.coefficients)
+        difference = float(np.abs(drawn[inside] - wanted[:, None]).max())
+        return difference / max(float(np.abs(wanted).max()), _peak(coefficients))
+
+
+def _sum(directions: Array, coefficients: Array) -> Array:
+    blocks = [directions[start : start + BLOCK] for start in range(0, len(directions), BLOCK)]
+    n_bands = count_bands(coefficients)
+    return np.concatenate([evaluate_basis(block, n_bands) @ coefficients for block in blocks])
+
+
+def _peak(coefficients: Array) -> float:
+    """Of the whole sphere, seen on a grid of eight rows per band."""
+    from shviewer.harmonics.synthesis import Synthesis
+
+    rows = 8 * count_bands(coefficients)
+    return float(np.abs(Synthesis(coefficients).on_rows(np.linspace(0, np.pi, rows), 2 * rows)).max())
+
+
+@contextmanager
+def shader_or_reason(wanted: bool) -> Iterator[Shader | str]:
+    """A Shader, or why there is none."""
+    if not wanted:
+        yield "not asked for"
+        return
+    try:
+        from shviewer.viewer.screenshot import headless_renderer
+
+        renderers = headless_renderer()
+        renderer = renderers.__enter__()
+    except Exception as error:
+        yield f"{type(error).__name__}: {error}"
+        return
+    try:
+        yield Shader(renderer)
+    finally:
+        renderers.__exit__(None, None, None)

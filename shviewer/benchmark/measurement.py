@@ -1,0 +1,96 @@
+"""One measured row of the report. What was not measured is None, never 0."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from shviewer.benchmark.timing import Timing
+
+Key = tuple[str, str, str, int | None, int | None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measurement:
+    """Times are wall milliseconds, errors relative L2 norms, memory is in MiB."""
+
+    section: str
+    """"projection", "reconstruction", "end to end" or "peers"."""
+    method: str
+    light: str = ""
+    """Empty where none is concerned."""
+    n_bands: int | None = None
+    samples: int | None = None
+    """How many were asked for."""
+    evaluations: int | None = None
+    """How often the light was really evaluated; 0 for a closed form."""
+
+    milliseconds: float | None = None
+    """The median of `repeats` runs after a warm-up."""
+    low_quartile: float | None = None
+    high_quartile: float | None = None
+    repeats: int | None = None
+    set_up_milliseconds: float | None = None
+    """What comes before and is kept: samples and tables."""
+
+    error: float | None = None
+    """||c - exact|| / ||exact|| of the coefficients; for random methods the median over seeds. None for the reference."""
+    error_low: float | None = None
+    """The smallest and the largest over the seeds; None where nothing is random."""
+    error_high: float | None = None
+    reference_accuracy: float | None = None
+    """How far the reference itself may be off; 0 where it is exact."""
+    truncation: float | None = None
+    """||what the bands left out|| / ||light||."""
+    total_error: float | None = None
+    """||light - reconstruction|| / ||light||: total^2 = truncation^2 + error^2 (1 - truncation^2)."""
+    arithmetic_error: float | None = None
+    """What rounding adds where the sum is evaluated, over the light's L2 norm, as the errors beside it."""
+
+    peak_mib: float | None = None
+    """The most memory held at once, samples and result included, by a run of its own."""
+    note: str = ""
+
+    @property
+    def key(self) -> Key:
+        """What makes two rows of different runs the same measurement."""
+        return self.section, self.light, self.method, self.n_bands, self.samples
+
+    def as_dict(self) -> dict[str, Any]:
+        """Every column; what is not finite is None, too, since JSON has no word for it."""
+        return {name: _finite(value) for name, value in asdict(self).items()}
+
+    @classmethod
+    def from_dict(cls, columns: Mapping[str, Any]) -> Measurement:
+        """Back again. TypeError or ValueError for a column that is missing, unknown or of another type."""
+        row = cls(**columns)
+        for field in fields(cls):
+            value = getattr(row, field.name)
+            if str(field.type) == "str":
+                good = isinstance(value, str)
+            elif "int" in str(field.type):
+                good = value is None or (isinstance(value, int) and not isinstance(value, bool))
+            else:
+                good = value is None or (isinstance(value, int | float) and not isinstance(value, bool))
+            if not good:
+                raise ValueError(f"{field.name} is {value!r}")
+        return row
+
+
+COLUMNS = tuple(field.name for field in fields(Measurement))
+
+
+def timed(timing: Timing) -> dict[str, Any]:
+    """The four columns that a timing fills: Measurement(..., **timed(timing))."""
+    return {
+        "milliseconds": timing.median,
+        "low_quartile": timing.low_quartile,
+        "high_quartile": timing.high_quartile,
+        "repeats": timing.repeats,
+    }
+
+
+def _finite(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value

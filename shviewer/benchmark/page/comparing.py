@@ -1,0 +1,144 @@
+"""What changed between two reports, beyond the noise measured in both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from shviewer.benchmark.front import alike
+from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.page.document import Report
+from shviewer.benchmark.page.tables import error, milliseconds, table
+from shviewer.words import grouped
+
+LEAST_RATIO = 1.25
+"""Between two runs a shared machine drifts by more than the quartiles of one run show; less than this is no difference."""
+
+ROUNDING = 1e-6, 1e-12
+"""Relative and absolute: errors this close differ by the order of summation."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One row that is in both reports. Verdicts are "faster", "slower", "better", "worse" or "" for no difference."""
+
+    before: Measurement
+    after: Measurement
+    time: str
+    error: str
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """times_comparable: measured on one kind of machine. needed_ratio: how far two times must be apart to differ."""
+
+    changes: tuple[Change, ...]
+    only_before: int
+    only_after: int
+    different: tuple[str, ...]
+    """What of the machines differs, in words."""
+    needed_ratio: float
+
+    def count(self, verdict: str) -> int:
+        return sum(verdict in (change.time, change.error) for change in self.changes)
+
+    def as_markdown(self, name: str) -> list[str]:
+        """Lines of a section; `name`: what the older report is called."""
+        counts = ", ".join(f"{self.count(verdict)} {verdict}" for verdict in ("faster", "slower", "better", "worse"))
+        lines = [f"{len(self.changes)} rows are in this report and in {name}: {counts}."]
+        if self.different:
+            lines.append(f"The times are not comparable, since the machine is another: {'; '.join(self.different)}.")
+        else:
+            lines.append(
+                f"A time differs if the quartiles are apart and the medians by more than {self.needed_ratio:.2f} times."
+            )
+        lines.append("An error differs if it does beyond its spread over the seeds, or beyond rounding.")
+        if self.only_before or self.only_after:
+            lines.append(f"Only there: {self.only_before} rows; only here: {self.only_after}.")
+        rows = [_cells(change) for change in self.changes if change.time or change.error]
+        headings = ("light", "method", "bands", "samples", "ms before", "ms now", "error before", "error now", "")
+        return [*lines, "", *(table(headings, rows, left=2) if rows else [])]
+
+
+def compare(before: Report, after: Report) -> Comparison:
+    """Rows are matched by section, light, method, bands and samples."""
+    different = _differences(before, after)
+    ratio = _needed_ratio(before, after)
+    old = {row.key: row for row in before.rows}
+    new = {row.key: row for row in after.rows}
+    changes = tuple(
+        Change(old[key], row, "" if different else _time_verdict(old[key], row, ratio), _error_verdict(old[key], row))
+        for key, row in new.items()
+        if key in old
+    )
+    return Comparison(changes, len(old.keys() - new.keys()), len(new.keys() - old.keys()), different, ratio)
+
+
+def _differences(before: Report, after: Report) -> tuple[str, ...]:
+    names = [name for name in after.machine if name != "system"]
+    return tuple(
+        f"{name.replace('_', ' ')} {before.machine.get(name)} there, {after.machine[name]} here"
+        for name in names
+        if before.machine.get(name) != after.machine[name]
+    )
+
+
+def _needed_ratio(before: Report, after: Report) -> float:
+    """LEAST_RATIO, or as much as the yardstick moved within and between the two runs."""
+    ends = [
+        report.yardstick[name]
+        for report in (before, after)
+        if report.yardstick is not None
+        for name in ("low_quartile", "high_quartile")
+        if report.yardstick.get(name)
+    ]
+    return max(LEAST_RATIO, max(ends) / min(ends)) if ends else LEAST_RATIO
+
+
+def _time_verdict(before: Measurement, after: Measurement, ratio: float) -> str:
+    if not before.milliseconds or not after.milliseconds or alike(before, after):
+        return ""
+    if after.milliseconds * ratio < before.milliseconds:
+        return "faster"
+    return "slower" if before.milliseconds * ratio < after.milliseconds else ""
+
+
+def _error_verdict(before: Measurement, after: Measurement) -> str:
+    for name in ("error", "arithmetic_error", "total_error"):
+        old, new = getattr(before, name), getattr(after, name)
+        if old is None or new is None:
+            continue
+        if name == "error" and _spreads_meet(before, after):
+            return ""
+        if abs(old - new) <= max(ROUNDING[0] * max(old, new), ROUNDING[1]):
+            return ""
+        return "better" if new < old else "worse"
+    return ""
+
+
+def _spreads_meet(before: Measurement, after: Measurement) -> bool:
+    """False where nothing is random."""
+    ends = (before.error_low, before.error_high, after.error_low, after.error_high)
+    if any(end is None for end in ends):
+        return False
+    low, high, other_low, other_high = (float(end or 0) for end in ends)
+    return low <= other_high and other_low <= high
+
+
+def _cells(change: Change) -> Sequence[str]:
+    row = change.after
+    return (
+        row.light,
+        row.method,
+        "" if row.n_bands is None else str(row.n_bands),
+        "" if row.samples is None else grouped(row.samples),
+        milliseconds(change.before.milliseconds),
+        milliseconds(row.milliseconds),
+        error(_shown_error(change.before)),
+        error(_shown_error(row)),
+        ", ".join(filter(None, (change.time, change.error))),
+    )
+
+
+def _shown_error(row: Measurement) -> float | None:
+    return next((e for e in (row.error, row.arithmetic_error, row.total_error) if e is not None), None)

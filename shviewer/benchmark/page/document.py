@@ -1,0 +1,91 @@
+"""A whole report: its rows, and everything that has to be known to believe or to repeat them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from shviewer.benchmark.measurement import Measurement
+from shviewer.errors import UsageError
+
+SCHEMA = "shviewer-report/1"
+
+
+@dataclass
+class Report:
+    """What report.json holds. It grows section by section."""
+
+    seed: int
+    command: str
+    machine: dict[str, Any]
+    versions: dict[str, str]
+    renderer: str | None = None
+    """The OpenGL that drew; None where there was none."""
+    rows: list[Measurement] = field(default_factory=list)
+    lights: dict[str, dict[str, Any]] = field(default_factory=dict)
+    left_out: list[str] = field(default_factory=list)
+    yardstick: dict[str, float] | None = None
+    complete: bool = False
+    extra: dict[str, Any] = field(default_factory=dict)
+    """What a section has to say beside its rows, under the section's name."""
+
+    def as_json(self) -> str:
+        page = {
+            "schema": SCHEMA,
+            "complete": self.complete,
+            "command": self.command,
+            "seed": self.seed,
+            "versions": self.versions,
+            "machine": self.machine,
+            "renderer": self.renderer,
+            "yardstick_milliseconds": self.yardstick,
+            "left_out": self.left_out,
+            "extra": self.extra,
+        }
+        lights = [f"{json.dumps(name)}: {_line(record)}" for name, record in self.lights.items()]
+        rows = [_line(row.as_dict()) for row in self.rows]
+        head = json.dumps(page, indent=1, allow_nan=False).removesuffix("\n}")
+        return f'{head},\n "lights": {{{_lines(lights)}}},\n "rows": [{_lines(rows)}]\n}}\n'
+
+
+def _line(value: object) -> str:
+    return json.dumps(value, allow_nan=False)
+
+
+def _lines(parts: list[str]) -> str:
+    """One part per line, so that the file can be read and two of them compared."""
+    return "".join(f"\n  {part}{',' if i + 1 < len(parts) else ''}" for i, part in enumerate(parts))
+
+
+def read_report(path: Path) -> Report:
+    """A report.json that this program wrote. UsageError if it cannot be read, or is of another kind or schema."""
+    try:
+        page = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror or error}; name a report.json") from error
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{path}: not JSON: {error}; name a report.json") from error
+    schema = page.get("schema") if isinstance(page, dict) else None
+    if schema != SCHEMA:
+        raise UsageError(
+            f"{path}: its schema is {schema!r}, not {SCHEMA!r}; compare with a report that this version wrote"
+        )
+    try:
+        yardstick = page["yardstick_milliseconds"]
+        return Report(
+            seed=int(page["seed"]),
+            command=str(page["command"]),
+            machine=dict(page["machine"]),
+            versions=dict(page["versions"]),
+            renderer=page["renderer"],
+            rows=[Measurement.from_dict(row) for row in page["rows"]],
+            lights=dict(page["lights"]),
+            left_out=[str(line) for line in page["left_out"]],
+            extra=dict(page["extra"]),
+            yardstick=None if yardstick is None else {str(name): float(value) for name, value in yardstick.items()},
+            complete=bool(page["complete"]),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise UsageError(f"{path}: damaged: {type(error).__name__}: {error}; name a whole report.json") from error

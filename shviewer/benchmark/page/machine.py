@@ -1,0 +1,102 @@
+"""What a report was measured on and with, and a yardstick that says how steady the machine was."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import import_module, metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shviewer.benchmark.timing import summarise, wall_milliseconds
+from shviewer.version import __version__
+
+PACKAGES = ("numpy", "moderngl", "glfw", "Pillow", "OpenEXR", "matplotlib")
+PEERS = ("scipy", "ducc0", "shtns", "pyshtools", "sphericart")
+
+
+def processor() -> str:
+    """The model, where the system says so."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or platform.machine()
+
+
+def machine_record() -> dict[str, Any]:
+    """What has to be the same for two times to be compared."""
+    return {
+        "processor": processor(),
+        "architecture": platform.machine(),
+        "processors": os.cpu_count(),
+        "system": f"{platform.system()} {platform.release()}",
+        "blas": blas(),
+        "blas_threads": blas_threads(),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Of the program, of Python and of every package that is there."""
+    found = {"shviewer": __version__, "Python": platform.python_version()}
+    for name in (*PACKAGES, *PEERS):
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return found
+
+
+def blas() -> str:
+    """What multiplies matrices: the build, and its kernel where threadpoolctl can tell."""
+    build: Any = np.show_config(mode="dicts")
+    names = build.get("Build Dependencies", {}).get("blas", {}) if isinstance(build, Mapping) else {}
+    text = f"{names.get('name', 'unknown')} {names.get('version', '')}".strip()
+    kernels = sorted({str(pool.get("architecture")) for pool in _pools() if pool.get("architecture")})
+    return f"{text}, {' and '.join(kernels)}" if kernels else text
+
+
+def blas_threads() -> int | str:
+    """How many, where threadpoolctl can tell; else what the environment asks for."""
+    threads = [int(pool["num_threads"]) for pool in _pools() if pool.get("user_api") == "blas"]
+    if threads:
+        return max(threads)
+    return next(
+        (os.environ[name] for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS") if os.environ.get(name)), "default"
+    )
+
+
+def _pools() -> list[dict[str, Any]]:
+    try:
+        threadpoolctl = import_module("threadpoolctl")
+    except ImportError:
+        return []
+    return list(threadpoolctl.threadpool_info())
+
+
+@dataclass
+class Yardstick:
+    """A fixed piece of work, timed all along: how much its time moves is how much the machine moves."""
+
+    times: list[float] = field(default_factory=list)
+
+    def measure(self) -> None:
+        values = np.random.default_rng(0).random(50_000)
+
+        def work() -> object:
+            return np.sort(np.sin(values))
+
+        work()
+        self.times += [wall_milliseconds(work) for _ in range(3)]
+
+    def record(self) -> dict[str, float] | None:
+        """Milliseconds; None if it was never measured."""
+        if not self.times:
+            return None
+        timing = summarise(self.times)
+        return {"median": timing.median, "low_quartile": timing.low_quartile, "high_quartile": timing.high_quartile}

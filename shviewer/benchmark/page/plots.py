@@ -1,0 +1,200 @@
+"""The report's plots, made of its rows alone: time against error, error against bands, frame time against bands.
+
+For a column of print: 86 mm wide, 8 pt, a colour, a marker and a dash for each curve (M. Okabe, K. Ito, "Color Universal
+Design", 2008), and its name beside it. Equal rows give equal bytes with one version of matplotlib.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import statistics
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shviewer.benchmark import reconstruction_rows as reconstruction
+from shviewer.benchmark.experiments import METHODS
+from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.page.plot_marks import (
+    INCHES,
+    STYLE,
+    Curve,
+    draw_curves,
+    log_axes,
+    name_ends,
+    padded,
+    place_names,
+    plain,
+    shorten,
+)
+from shviewer.benchmark.projection_rows import SECTION as PROJECTION
+from shviewer.files import write_atomically
+from shviewer.harmonics.metrics import pareto_front
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MISSING = "no plots: matplotlib is not installed; python -m pip install 'shviewer[report]'"
+
+PIXELS_PER_INCH = 240
+FLOOR = 1e-5
+"""Errors below this share stand on the lower edge."""
+
+BAND_FLOOR = 1e-3
+"""The same where errors stand against bands, and tolerances of 10 to 1 % are what is looked for."""
+
+TOLERANCES = (0.1, 0.05, 0.01)
+SIXTY_HERTZ = 1000 / 60
+
+
+def make_plots(rows: Sequence[Measurement], folder: Path) -> tuple[tuple[Path, ...], str]:
+    """Write what the rows allow, each as .svg and .png; returns the files, and why there are none if matplotlib is missing.
+
+    OutputError if a file cannot be written.
+    """
+    try:
+        import matplotlib
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        return (), MISSING
+    written: list[Path] = []
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        for stem, draw in _plots(rows).items():
+            figure = Figure(figsize=INCHES)
+            FigureCanvasAgg(figure)
+            draw(figure)
+            for suffix, metadata in ((".svg", {"Date": None, "Creator": None}), (".png", {"Software": None})):
+                buffer = io.BytesIO()
+                figure.savefig(buffer, format=suffix[1:], dpi=PIXELS_PER_INCH, metadata=metadata)
+                written.append(folder / f"{stem}{suffix}")
+                write_atomically(written[-1], buffer.getvalue())
+    return tuple(written), ""
+
+
+def _plots(rows: Sequence[Measurement]) -> dict[str, Callable[[Figure], None]]:
+    """File stem -> what draws it."""
+    plots: dict[str, Callable[[Figure], None]] = {}
+    for light in _in_order(row.light for row in rows if row.section == PROJECTION):
+        curves = time_error_curves(rows, light)
+        if curves:
+            stem = f"time-error-{''.join(c if c.isalnum() or c in '-_' else '-' for c in light)}"
+            while stem in plots:
+                stem += "-"
+            plots[stem] = lambda figure, light=light, curves=curves: draw_time_error(figure, light, curves)  # type: ignore[misc]
+    errors, frames = error_curves(rows), frame_curves(rows)
+    if errors:
+        plots["error-bands"] = lambda figure: draw_errors(figure, errors)
+    if frames:
+        plots["frame-time"] = lambda figure: draw_frames(figure, frames)
+    return plots
+
+
+def time_error_curves(rows: Sequence[Measurement], light: str) -> list[Curve]:
+    """(milliseconds, percent) of each method with all its band counts and samples, as far as it does not beat itself."""
+    curves = []
+    for look, method in enumerate(METHODS):
+        points = [
+            (row.milliseconds, 100 * max(row.total_error, FLOOR))
+            for row in rows
+            if row.section == PROJECTION and row.light == light and row.method == method.name
+            if row.milliseconds and row.total_error is not None and math.isfinite(row.total_error)
+        ]
+        if points:
+            curves.append(Curve(method.words, tuple(points[i] for i in pareto_front(points)), look))
+    return curves
+
+
+def error_curves(rows: Sequence[Measurement]) -> list[Curve]:
+    """(bands, percent left out) of each light."""
+    curves = []
+    for look, light in enumerate(_in_order(row.light for row in rows if row.truncation is not None)):
+        found = {
+            row.n_bands: 100 * max(row.truncation, BAND_FLOOR)
+            for row in rows
+            if row.light == light and row.truncation is not None and row.n_bands
+        }
+        curves.append(Curve(light, tuple(sorted(found.items())), look))
+    return [curve for curve in curves if len(curve.points) > 1]
+
+
+def frame_curves(rows: Sequence[Measurement]) -> list[Curve]:
+    """(bands, milliseconds) of each way of drawing, and of making the map: medians over the lights, with their quartiles."""
+    drawn = ("milliseconds", "low_quartile", "high_quartile")
+    columns = (
+        ("direct sum", reconstruction.DIRECT, drawn),
+        ("cached map", reconstruction.CACHED, drawn),
+        ("making the map", reconstruction.CACHED, ("set_up_milliseconds",)),
+    )
+    curves = []
+    for look, (name, method, names) in enumerate(columns):
+        found: dict[int, list[Measurement]] = {}
+        for row in rows:
+            known = all(getattr(row, column) for column in names)
+            if row.section == reconstruction.SECTION and row.method == method and row.n_bands and known:
+                found.setdefault(row.n_bands, []).append(row)
+        table = [
+            (float(n), *(statistics.median(getattr(row, column) for row in group) for column in names))
+            for n, group in sorted(found.items())
+        ]
+        spread = tuple((line[2], line[3]) for line in table if len(line) > 2)
+        curves.append(Curve(name, tuple((line[0], line[1]) for line in table), look, spread))
+    return [curve for curve in curves if len(curve.points) > 1]
+
+
+def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None:
+    """Both axes logarithmic; the front of all points is a broad grey staircase: nothing lies to the left and below."""
+    everything = [point for curve in curves for point in curve.points]
+    front = [everything[i] for i in pareto_front(everything)]
+    x, y = padded(x for x, _ in everything), padded((y for _, y in everything), highest=115.0)
+    axes = log_axes(figure, f"{shorten(light)}: total error against the time to project", x, y)
+    axes.set_xlabel("milliseconds")
+    stairs = [(front[0][0], y[1]), *front, (x[1], front[-1][1])]
+    axes.step(*zip(*stairs, strict=True), where="post", color="0.85", linewidth=5, zorder=1, solid_joinstyle="miter")
+    draw_curves(axes, curves)
+    place_names(axes, [*curves, Curve("Pareto front", tuple(stairs[1:]), -1)])
+
+
+def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
+    """What n bands leave out of each light, with the tolerances."""
+    lowest = min(y for curve in curves for _, y in curve.points)
+    bottom = lowest if lowest == 100 * BAND_FLOOR else min(lowest / 1.3, 0.8)
+    axes = log_axes(figure, "relative L2 error of the first bands", _band_range(curves), (bottom, 115.0))
+    ticks = [tick for tick in (0.1, 1, 5, 10, 100) if tick >= bottom]
+    axes.set_yticks(ticks, [f"{'< ' * (tick == 100 * BAND_FLOOR == lowest)}{plain(tick)} %" for tick in ticks])
+    _band_axis(axes)
+    for tolerance in TOLERANCES:
+        axes.axhline(100 * tolerance, color="0.45", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)
+    draw_curves(axes, curves)
+    name_ends(axes, curves)
+
+
+def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
+    """Milliseconds per frame; 60 frames a second leave 16.7."""
+    y = padded((*(y for curve in curves for _, y in curve.points), SIXTY_HERTZ))
+    title = "milliseconds per frame of 1280 \N{MULTIPLICATION SIGN} 640"
+    axes = log_axes(figure, title, _band_range(curves), y, unit="")
+    _band_axis(axes)
+    axes.axhline(SIXTY_HERTZ, color="0.45", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)
+    draw_curves(axes, curves)
+    name_ends(axes, [*curves, Curve("60 a second", ((axes.get_xlim()[1], SIXTY_HERTZ),), -1)])
+
+
+def _band_range(curves: Sequence[Curve]) -> tuple[float, float]:
+    bands = [x for curve in curves for x, _ in curve.points]
+    return min(bands) / 1.12, max(bands) * 1.12
+
+
+def _band_axis(axes: Axes) -> None:
+    low, high = axes.get_xlim()
+    ticks = [n for n in (*reconstruction.BANDS, 128) if low <= n <= high]
+    axes.set_xticks(ticks, [plain(n) for n in ticks])
+    axes.set_xlabel("bands")
+
+
+def _in_order(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(names))

@@ -1,0 +1,87 @@
+"""The projections of every light as tables: times, errors, and what they take to set up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from shviewer.benchmark.experiments import METHODS
+from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error, milliseconds, table, with_spread
+from shviewer.benchmark.projection_rows import SECTION
+from shviewer.benchmark.subjects import Subject
+from shviewer.words import counted, grouped
+
+Experiment = tuple[str, int | None]
+Cell = Callable[[Measurement], str]
+
+__all__ = ["SECTION", "lines"]
+
+
+def lines(subjects: Sequence[Subject], rows: Sequence[Measurement]) -> list[str]:
+    """What the methods are, then three tables per light."""
+    found = [
+        "| method | what it is |",
+        "|---|---|",
+        *(f"| {each.words} | {each.explanation} |" for each in METHODS),
+        "",
+    ]
+    for subject in subjects:
+        own = [row for row in rows if row.light == subject.name]
+        if own:
+            found += [f"### {subject.name}: milliseconds", "", *_matrix(own, _time), ""]
+            found += [f"### {subject.name}: error of the coefficients", "", *_matrix(own, _error), ""]
+            found += [f"### {subject.name}: evaluations, set-up and memory", "", *_set_up(own), ""]
+    return found
+
+
+def _matrix(rows: Sequence[Measurement], cell: Cell) -> list[str]:
+    """A line per experiment and a column per band count; what is too wide continues below."""
+    by_place = {(row.method, row.samples, row.n_bands): cell(row) for row in rows}
+    experiments, bands = _experiments(rows), sorted({row.n_bands for row in rows if row.n_bands is not None})
+    labels = [_label(experiment) for experiment in experiments]
+    found: list[str] = []
+    while bands:
+        count = len(bands)
+        while True:
+            body = [
+                (label, *(by_place.get((*experiment, n), ABSENT) for n in bands[:count]))
+                for label, experiment in zip(labels, experiments, strict=True)
+            ]
+            body = [line for line in body if set(line[1:]) != {ABSENT}]
+            drawn = table(("", *(counted(n, "band") for n in bands[:count])), body)
+            if count == 1 or len(drawn[0]) <= MOST_COLUMNS:
+                break
+            count -= 1
+        found += [*([""] if found else []), *drawn]
+        bands = bands[count:]
+    return found
+
+
+def _experiments(rows: Sequence[Measurement]) -> list[Experiment]:
+    """In the order of the table of methods, then by samples."""
+    order = [each.name for each in METHODS]
+    return sorted({(row.method, row.samples) for row in rows}, key=lambda item: (order.index(item[0]), item[1] or 0))
+
+
+def _label(experiment: Experiment) -> str:
+    words = {each.name: each.words for each in METHODS}[experiment[0]]
+    return words if experiment[1] is None else f"{words} {grouped(experiment[1])}"
+
+
+def _time(row: Measurement) -> str:
+    return with_spread(milliseconds(row.milliseconds), row.milliseconds, row.low_quartile, row.high_quartile)
+
+
+def _error(row: Measurement) -> str:
+    return with_spread(error(row.error), row.error, row.error_low, row.error_high)
+
+
+def _set_up(rows: Sequence[Measurement]) -> list[str]:
+    """At the most bands that each experiment was measured with."""
+    body = []
+    for experiment in _experiments(rows):
+        row = max((row for row in rows if (row.method, row.samples) == experiment), key=lambda row: row.n_bands or 0)
+        evaluations = ABSENT if row.evaluations is None else grouped(row.evaluations)
+        peak = ABSENT if row.peak_mib is None else f"{row.peak_mib:.1f}"
+        body.append((_label(experiment), str(row.n_bands), evaluations, milliseconds(row.set_up_milliseconds), peak))
+    return table(("", "bands", "evaluations", "set-up ms", "peak MiB"), body)

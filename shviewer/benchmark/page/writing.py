@@ -1,0 +1,156 @@
+"""A report as files: report.md to be read, report.json and report.csv with every row."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from shviewer.benchmark.front import front_of, name_of, sentences
+from shviewer.benchmark.measurement import COLUMNS, Measurement
+from shviewer.benchmark.page import projection_tables
+from shviewer.benchmark.page.document import Report
+from shviewer.benchmark.page.tables import bullet, error, milliseconds, table
+from shviewer.benchmark.subjects import Subject
+from shviewer.errors import OutputError
+from shviewer.files import write_atomically
+
+FILES = ("report.md", "report.json", "report.csv")
+
+INTRODUCTION = """\
+How long it takes to project a light onto spherical harmonics, and how wrong the result is, measured together on one machine.
+
+A *time* is the median wall time of repeated runs that took turns with the others of the same light and band count; "±12%" is
+half the distance of its quartiles. An *error* is that of the coefficients, ||c - exact|| / ||exact||, against the light's
+closed form or exact texel integrals; where samples are random it is the median over several seeds, and "±" half of their
+range.
+The *total* error adds what the bands left out hold: it is that of the picture, ||light - reconstruction|| / ||light||.
+A dash is something that was not measured."""
+
+NOT_COVERED = (
+    "Other machines: times hold for the one below. Ratios between rows of one table travel better.",
+    "Times of different tables: they did not take turns.",
+    "Graphics hardware, if the renderer below is software.",
+    "Errors of the peers: texels are points to them and areas to us, which is not an error of theirs.",
+    "How the pictures look: a relative L2 error says nothing about where it is.",
+)
+
+
+def make_folder(folder: Path) -> None:
+    """OutputError if there is none and none can be made."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise OutputError(
+            f"{folder}: cannot be made a folder: {problem.strerror or problem}; choose another place"
+        ) from problem
+
+
+@dataclass
+class Page:
+    """What stands on the page beside the rows."""
+
+    subjects: Sequence[Subject]
+    hosted: dict[str, str] = field(default_factory=dict)
+    """Markdown of further sections, by their titles."""
+    plots: list[str] = field(default_factory=list)
+    """Names of picture files in the report's folder."""
+    plot_message: str = ""
+    """Why there are none, and what to do."""
+
+
+def write(folder: Path, report: Report, page: Page) -> None:
+    """All three files, each whole or as it was. OutputError if one cannot be written."""
+    write_atomically(folder / "report.csv", as_csv(report.rows).encode())
+    write_atomically(folder / "report.json", report.as_json().encode())
+    write_atomically(folder / "report.md", as_markdown(report, page).encode())
+
+
+def as_csv(rows: Sequence[Measurement]) -> str:
+    """One header, one line per row, nothing between two commas where nothing was measured."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(row.as_dict() for row in rows)
+    return text.getvalue()
+
+
+def as_markdown(report: Report, page: Page) -> str:
+    """The page, with what to use first."""
+    lines = ["# Speed against error", ""]
+    if not report.complete:
+        lines += [
+            "**This report is partial: the run did not come to its end, and what it had not measured is missing.**",
+            "",
+        ]
+    lines += [INTRODUCTION, "", "## What to use", ""]
+    for subject in page.subjects:
+        lines += _what_to_use(subject, [row for row in report.rows if row.light == subject.name])
+    pictures = [name for name in page.plots if name.endswith(".svg")]
+    if pictures or page.plot_message:
+        lines += ["## Plots", "", *([f"{page.plot_message}\n"] if page.plot_message else [])]
+        lines += [f"![{Path(name).stem.replace('-', ' ')}]({name})\n" for name in pictures]
+    rows = [row for row in report.rows if row.section == projection_tables.SECTION]
+    if rows:
+        lines += ["## Projection", "", *projection_tables.lines(page.subjects, rows)]
+    for title, text in page.hosted.items():
+        lines += [f"## {title}", "", text.strip(), ""]
+    lines += ["## What this report does not cover", "", *(bullet(line) for line in NOT_COVERED)]
+    if report.renderer is None:
+        lines.append("- Drawing: there was no OpenGL.")
+    if report.left_out:
+        lines += ["", "Left out for want of time; a larger --budget measures more:", ""]
+        lines += [bullet(line) for line in report.left_out]
+    return "\n".join([*lines, "", *_made_with(report)]) + "\n"
+
+
+def _what_to_use(subject: Subject, rows: Sequence[Measurement]) -> list[str]:
+    light = subject.light
+    projections = [row for row in rows if row.section == projection_tables.SECTION]
+    lines = [f"### {subject.name}", "", *([light.description, ""] if light.description else [])]
+    if not projections:
+        return [*lines, "Not measured.", ""]
+    lines += [bullet(sentence) for sentence in sentences(subject, projections)]
+    front = [
+        (
+            name_of(row, subject),
+            str(row.n_bands),
+            milliseconds(row.milliseconds),
+            milliseconds(row.set_up_milliseconds),
+            error(row.error),
+            error(row.truncation),
+            error(row.total_error),
+        )
+        for row in front_of(projections, light.accuracy())
+    ]
+    headings = ("on the front", "bands", "ms", "set-up ms", "error", "left out", "total")
+    accuracy = light.accuracy()
+    if accuracy:
+        lines += ["", f"The reference itself may be off by {error(accuracy)}."]
+    return [
+        *lines,
+        "",
+        "Nothing that was measured is both faster and more accurate than these:",
+        "",
+        *table(headings, front),
+        "",
+    ]
+
+
+def _made_with(report: Report) -> list[str]:
+    machine = [f"- {name.replace('_', ' ')}: {value}" for name, value in report.machine.items()]
+    versions = ", ".join(f"{name} {version}" for name, version in report.versions.items())
+    return [
+        "## Made with",
+        "",
+        *machine,
+        f"- OpenGL renderer: {report.renderer or 'none'}",
+        bullet(f"versions: {versions}"),
+        f"- seed: {report.seed}",
+        "",
+        "```",
+        report.command,
+        "```",
+    ]

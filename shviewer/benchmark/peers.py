@@ -1,0 +1,285 @@
+"""The same projections by other libraries, where they are installed: the extra `bench`.
+
+All start from the same image, interleaved RGB in float32, or from the same jittered samples, and end with the coefficients of
+three channels. What a peer has to copy or convert for that is part of its time. Texels are points to the peers, at the centres
+and weighted by their solid angle, so that their error against our areas is not theirs alone and is not given.
+
+Threads are counted when a library is loaded. The rows are therefore measured by a process of its own with one thread:
+    python -m shviewer.benchmark.peers '{"lights": ["film_studio"], "bands": [9], "budget": 10, "seed": 0}' rows.json
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.benchmark.experiments import lat_long_texels
+from shviewer.benchmark.measurement import Measurement, timed
+from shviewer.benchmark.timing import time_interleaved, wall_milliseconds
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.quadrature import DirectionSet, column_azimuths, directions_from_angles
+from shviewer.harmonics.scattered import project_values
+from shviewer.lights.light import Light
+
+SECTION = "peers"
+OURS = "shviewer"
+ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL", "RAYON", "VECLIB_MAXIMUM", "BLIS")}
+SLOWING = ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE")
+"""May be set in the environment and slow numpy, which would be unfair to nobody but us."""
+
+SPHERICART_BLOCK = 2**22
+"""Basis values at a time."""
+
+SCATTERED_SAMPLES = 10_000
+SPHERICART_DEGREES = 87
+"""Beyond this its float64 is wrong."""
+
+INSTALL = "pip install 'shviewer[bench]'"
+
+ImagePeer = Callable[[NDArray[np.float32], int], object]
+"""Image (height, width, 3), bands -> anything that holds the coefficients."""
+
+SamplePeer = Callable[[DirectionSet, Array, int], object]
+"""Samples, radiance (k, 3), bands -> the same."""
+
+
+Contest = tuple[str, int | None]
+"""Whose projection, and of how many samples; None for the image."""
+
+
+def texel_solid_angles(height: int, width: int) -> Array:
+    """Of a texel of each row, steradians, (height, 1)."""
+    theta = np.pi * (np.arange(height) + 0.5) / height
+    return np.asarray((2 * np.sin(theta) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width)[:, None])
+
+
+def ducc_peer(dtype: type[np.floating[Any]]) -> ImagePeer:
+    """ducc0's adjoint synthesis of the weighted image, which does not alias as its analysis does."""
+    ducc0 = import_module("ducc0")
+
+    def project(image: NDArray[np.float32], n_bands: int) -> object:
+        height, width = image.shape[:2]
+        planes = np.empty((3, 1, height, width), dtype)
+        np.multiply(np.moveaxis(image, 2, 0)[:, None], texel_solid_angles(height, width).astype(dtype), out=planes)
+        return [
+            ducc0.sht.adjoint_synthesis_2d(map=plane, spin=0, lmax=n_bands - 1, geometry="F1", nthreads=1)
+            for plane in planes
+        ]
+
+    return project
+
+
+def shtns_peer() -> ImagePeer:
+    shtns = import_module("shtns")
+
+    @cache
+    def plan(height: int, width: int, n_bands: int) -> Any:
+        transform = shtns.sht(n_bands - 1, n_bands - 1, 1, shtns.sht_orthonormal)
+        transform.set_grid(height, width, flags=shtns.sht_reg_fast | shtns.SHT_PHI_CONTIGUOUS, polar_opt=0.0)
+        return transform
+
+    def project(image: NDArray[np.float32], n_bands: int) -> object:
+        transform = plan(*image.shape[:2], n_bands)
+        planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
+        return [transform.analys(plane) for plane in planes]
+
+    return project
+
+
+def pyshtools_peer() -> ImagePeer:
+    expand = import_module("pyshtools.expand").SHExpandDH
+
+    def project(image: NDArray[np.float32], n_bands: int) -> object:
+        planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
+        return [expand(plane, norm=4, csphase=-1, sampling=2, lmax_calc=n_bands - 1) for plane in planes]
+
+    return project
+
+
+def sphericart_peer(share: int = 1) -> ImagePeer:
+    """Basis by sphericart and a matrix product, block by block, over every `share`-th block of rows."""
+    sphericart = import_module("sphericart")
+
+    @cache
+    def basis(n_bands: int) -> Any:
+        return sphericart.SphericalHarmonics(n_bands - 1)
+
+    def project(image: NDArray[np.float32], n_bands: int) -> object:
+        height, width = image.shape[:2]
+        theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
+        solid_angle = texel_solid_angles(height, width)
+        step = max(1, SPHERICART_BLOCK // (width * n_bands**2))
+        found = np.zeros((n_bands**2, 3))
+        for row in range(0, height, step * share):
+            rows = slice(row, min(row + step, height))
+            directions = directions_from_angles(theta[rows, None], phi).reshape(-1, 3)
+            values = (image[rows] * solid_angle[rows, None]).reshape(-1, 3)
+            found += basis(n_bands).compute(directions).T @ values
+        return found
+
+    return project
+
+
+def sphericart_samples_peer() -> SamplePeer:
+    """The whole basis matrix by sphericart, then one matrix product."""
+    sphericart = import_module("sphericart")
+
+    @cache
+    def basis(n_bands: int) -> Any:
+        return sphericart.SphericalHarmonics(n_bands - 1)
+
+    def project(samples: DirectionSet, radiance: Array, n_bands: int) -> object:
+        return basis(n_bands).compute(samples.directions).T @ (radiance * samples.weights[:, None])
+
+    return project
+
+
+def scipy_samples_peer() -> SamplePeer:
+    """SciPy's complex harmonics of all degrees and orders; those of m >= 0 hold the real ones."""
+    harmonics = import_module("scipy.special").sph_harm_y_all
+
+    def project(samples: DirectionSet, radiance: Array, n_bands: int) -> object:
+        x, y, z = samples.directions.T
+        basis = harmonics(n_bands - 1, n_bands - 1, np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+        weighted = radiance * samples.weights[:, None]
+        return basis[:, :n_bands].reshape(n_bands**2, -1) @ weighted
+
+    return project
+
+
+IMAGE_PEERS: dict[str, Callable[[], ImagePeer]] = {
+    "ducc0 f32": partial(ducc_peer, np.float32),
+    "ducc0 f64": partial(ducc_peer, np.float64),
+    "shtns": shtns_peer,
+    "pyshtools": pyshtools_peer,
+    "sphericart": sphericart_peer,
+}
+SAMPLE_PEERS: dict[str, Callable[[], SamplePeer]] = {
+    "sphericart": sphericart_samples_peer,
+    "SciPy": scipy_samples_peer,
+}
+
+
+def available(makers: dict[str, Callable[[], Any]], missing: Callable[[str, str], object]) -> dict[str, Any]:
+    """Those that are installed; `missing` is told the name and the module of every other."""
+    found = {}
+    for name, make in makers.items():
+        try:
+            found[name] = make()
+        except ImportError as error:
+            missing(name, error.name or str(error))
+    return found
+
+
+def peer_rows(
+    lights: Sequence[str], bands: Sequence[int], budget: float, seed: int
+) -> tuple[list[Measurement], list[str]]:
+    """Rows measured by a process with one thread, and what was missing. Lights are named by text.
+
+    UsageError if the process fails.
+    """
+    request = {"lights": list(lights), "bands": list(bands), "budget": budget, "seed": seed}
+    environment = {name: value for name, value in os.environ.items() if name not in SLOWING} | ONE_THREAD
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "rows.json"  # some peers print on stdout
+        command = [sys.executable, "-m", "shviewer.benchmark.peers", json.dumps(request), str(out)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        if done.returncode:
+            last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+            raise UsageError(f"--peers: measuring them failed: {last}; leave --peers out, or reinstall them: {INSTALL}")
+        answer = json.loads(out.read_text(encoding="utf-8"))
+    return [Measurement.from_dict(row) for row in answer["rows"]], [str(line) for line in answer["missing"]]
+
+
+def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: int) -> dict[str, list[Any]]:
+    """In this process, with however many threads it has: {"rows": as dictionaries, "missing": lines}."""
+    from shviewer.harmonics.quadrature import jittered
+    from shviewer.lights.find import find_light
+
+    missing: list[str] = []
+    images = available(IMAGE_PEERS, lambda name, module: missing.append(f"{name}: {module} is not installed"))
+    scattered = available(SAMPLE_PEERS, lambda name, module: missing.append(f"{name}: {module} is not installed"))
+    rows = []
+    share = budget / max(1, len(lights) * len(bands))
+    for number, light in enumerate(map(find_light, lights)):
+        samples = jittered(SCATTERED_SAMPLES, seed)
+        radiance = light.integrand(samples.directions)
+        too_slow: set[Contest] = set()
+        for n_bands in bands:
+            works = _on_image(light, n_bands, images)
+            if number == 0:  # samples are alike for every light
+                works |= _on_samples(samples, radiance, n_bands, scattered)
+            first: dict[Contest, float] = {}
+            for contest, work in list(works.items()):
+                where = f"{contest[0]}, {light.name}, {n_bands} bands"
+                if contest in too_slow:
+                    missing.append(f"{where}: too slow for the budget with fewer bands")
+                    del works[contest]
+                    continue
+                try:
+                    first[contest] = wall_milliseconds(work)
+                except Exception as error:  # whatever a peer says to a size that it does not take
+                    missing.append(f"{where}: {type(error).__name__}: {error}")
+                    del works[contest]
+                    continue
+                if first[contest] > 1000 * share / 8:
+                    missing.append(
+                        f"{where}: too slow for the budget, one run takes about {first[contest] / 1000:.1g} s"
+                    )
+                    too_slow.add(contest)
+                    del works[contest]
+            for contest, timing in time_interleaved(works, budget=share, warm_up=0).items():
+                row = Measurement(
+                    section=SECTION,
+                    light=light.name,
+                    method=contest[0],
+                    n_bands=n_bands,
+                    samples=contest[1],
+                    **timed(timing),
+                    set_up_milliseconds=max(0.0, first[contest] - timing.median),
+                    note="samples with their radiance" if contest[1] else "image",
+                )
+                rows.append(row.as_dict())
+    return {"rows": rows, "missing": missing}
+
+
+def _on_samples(
+    samples: DirectionSet, radiance: Array, n_bands: int, peers: dict[str, SamplePeer]
+) -> dict[Contest, Callable[[], object]]:
+    """Ours and the peers' on scattered samples whose radiance is known."""
+    if n_bands > SPHERICART_DEGREES:
+        return {}
+    count = len(samples.weights)
+    return {
+        (OURS, count): lambda: project_values(samples.directions, radiance * samples.weights[:, None], n_bands),
+        **{(name, count): partial(peer, samples, radiance, n_bands) for name, peer in peers.items()},
+    }
+
+
+def _on_image(light: Light, n_bands: int, peers: dict[str, ImagePeer]) -> dict[Contest, Callable[[], object]]:
+    """Ours, in both precisions, and the peers' on a lat-long image; nothing for another light."""
+    texels = lat_long_texels(light)
+    if texels is None:
+        return {}
+    return {
+        (OURS, None): lambda: project_image(texels, n_bands),
+        (f"{OURS} f32", None): lambda: project_image(texels, n_bands, np.float32),
+        **{(name, None): partial(peer, texels, n_bands) for name, peer in peers.items()},
+    }
+
+
+if __name__ == "__main__":
+    Path(sys.argv[2]).write_text(json.dumps(measure(**json.loads(sys.argv[1]))), encoding="utf-8")

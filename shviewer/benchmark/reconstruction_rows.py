@@ -1,0 +1,272 @@
+"""What a band costs where the sum is evaluated, against what it brings: in the shader, from a map, and on the CPU.
+
+Two errors stand beside each time: truncation, what the bands left out hold, and what the arithmetic of the evaluation adds.
+Both are relative to the norm of the light, so that they compare: where they meet, more bands are of no use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.benchmark.hard_cases.shader import Shader
+from shviewer.benchmark.measurement import Measurement, timed
+from shviewer.benchmark.subjects import Subject
+from shviewer.benchmark.timing import Timing, time_interleaved
+from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.harmonics.quadrature import angles_from_directions
+from shviewer.harmonics.synthesis import Synthesis
+from shviewer.limits import MAX_DIRECT_BANDS
+from shviewer.viewer import camera
+from shviewer.viewer.composition import compose
+from shviewer.viewer.drawn import DirectSum, SplineMap
+from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.screenshot import offscreen, render_linear
+from shviewer.viewer.state import CAMERA_HOME, ViewState
+
+SECTION = "reconstruction"
+BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
+FRAME = compose(1280, 640)
+MAP_SIZE = (1025, 2048)
+"""Of the maps that the CPU makes, and the largest that the shader draws from."""
+
+
+DIRECT, CACHED = "shader, direct sum", "shader, cached map"
+SCATTERED, BASIS = "CPU, scattered", "CPU, basis matrix"
+MAP_64, MAP_32 = "CPU, map float64", "CPU, map float32"
+MAKING = "making the map"
+"""Not a row: the set-up of CACHED, uploading included."""
+
+PER_FRAME = "per frame of 1280 x 640, both spheres"
+PER_MILLION = "per million directions"
+
+STRIDE = 4
+"""Every fourth pixel of every fourth row is compared: 9 000 directions a camera."""
+
+NEAREST_RIM = 0.2
+"""Normals with less than this along the view are left out: there float32 does not know the normal itself to 1e-6."""
+
+MOST_DIRECTIONS, MOST_VALUES = 32_768, 2**20
+"""Of one timed run on the CPU: directions, and values of their basis."""
+
+BLOCK = 2048
+CHECKED = 512
+"""Directions in which Synthesis is compared with the basis matrix."""
+
+SEED = 20_240_602
+
+Name = tuple[str, int]
+Work = Callable[[], object]
+
+
+def reconstruction_rows(
+    subject: Subject, drawing: Shader | str, *, budget: float, bands: Sequence[int] = BANDS, at_least: int = 3
+) -> list[Measurement]:
+    """Every evaluation of the light at every band count. LightError if it is too dim or too bright to be drawn.
+
+    drawing: what draws; a text says why nothing does, and then the rows of the shader are absent. budget: seconds for all
+    timings, passed only to reach `at_least` runs of each; the errors, which warm everything up, take a few seconds more.
+    """
+    stages = {n_bands: _Stage(subject, n_bands) for n_bands in bands}
+    rows: dict[Name, Measurement] = {}
+    works: dict[Name, Work] = {}
+    for n_bands, stage in stages.items():
+        rows |= {(method, n_bands): stage.row(method, error) for method, error in stage.errors().items()}
+        works |= {(method, n_bands): work for method, work in stage.works().items()}
+    if isinstance(drawing, str):
+        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=0)
+        return _with_times(rows, stages, times)
+    with offscreen(drawing.renderer, FRAME) as target:
+        frame = _Frame(drawing.renderer, target)
+        for n_bands, stage in stages.items():
+            rows |= {(method, n_bands): stage.row(method, error) for method, error in frame.errors(stage).items()}
+            works |= {(method, n_bands): work for method, work in frame.works(stage).items()}
+
+        def before(name: Name, repeat: int) -> None:
+            frame.be_ready_for(name[0], stages[name[1]])
+
+        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=0, before=before)
+    return _with_times(rows, stages, times)
+
+
+def _with_times(
+    rows: dict[Name, Measurement], stages: dict[int, _Stage], times: dict[Name, Timing]
+) -> list[Measurement]:
+    """By band count, then by method."""
+    done = []
+    for (method, n_bands), row in sorted(rows.items(), key=lambda item: item[0][1]):
+        timing = times[method, n_bands]
+        runs_per_million = 1e6 / stages[n_bands].directions_of(method) if row.note == PER_MILLION else 1.0
+        columns = timed(
+            Timing(
+                timing.median * runs_per_million,
+                timing.low_quartile * runs_per_million,
+                timing.high_quartile * runs_per_million,
+                timing.repeats,
+            )
+        )
+        set_up = times[MAKING, n_bands].median if method == CACHED else None
+        done.append(replace(row, **columns, set_up_milliseconds=set_up))
+    return done
+
+
+class _Stage:
+    """One light with one band count: what is evaluated, on the CPU and how exactly."""
+
+    def __init__(self, subject: Subject, n_bands: int) -> None:
+        picture = prepare(ViewState(lights=(subject.light,), n_bands=n_bands))
+        light = subject.light
+        self.n_bands = n_bands
+        self.light_name = subject.name
+        self.coefficients = picture.coefficients
+        self.direct = replace(picture, drawn=DirectSum(picture.coefficients), light_from_world=np.eye(3))
+        self.synthesis = Synthesis(picture.coefficients)
+        self.truncation = float(subject.truncation[n_bands - 1])
+        self.rms = float(np.sqrt(np.trace(light.products()) / (4 * np.pi))) * light.unit
+        count = min(MOST_DIRECTIONS, MOST_VALUES // self.n_bands**2)
+        vectors = np.random.default_rng(SEED).normal(size=(count, 3))
+        self.directions = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+    def map(self) -> NDArray[np.float32]:
+        return self.synthesis.pole_to_pole(*MAP_SIZE)
+
+    def on_a_map(self) -> Picture:
+        """Drawn from a map, however few bands."""
+        splines = self.synthesis.spline_map(*MAP_SIZE)
+        return replace(self.direct, drawn=SplineMap(splines))
+
+    def rows_of_map(self) -> Array:
+        return self.synthesis.on_rows(np.linspace(0, np.pi, MAP_SIZE[0]), MAP_SIZE[1])
+
+    def sum_at(self, directions: Array) -> Array:
+        """(k, 3) -> (k, 3) by Synthesis, in blocks."""
+        return _in_blocks(
+            lambda part: self.synthesis.at(*angles_from_directions(part)),
+            directions,
+        )
+
+    def sum_by_basis(self, directions: Array) -> Array:
+        return _in_blocks(lambda d: evaluate_basis(d, self.n_bands) @ self.coefficients, directions)
+
+    def directions_of(self, method: str) -> int:
+        """How many one timed run evaluates."""
+        return MAP_SIZE[0] * MAP_SIZE[1] if method in (MAP_64, MAP_32) else len(self.directions)
+
+    def relative(self, mean_square: float) -> float:
+        """Of an error's square over the sphere, all channels together; infinite where a black light is not drawn black."""
+        return float(np.sqrt(mean_square)) / self.rms if self.rms else 0.0 if mean_square == 0 else float("inf")
+
+    def errors(self) -> dict[str, float | None]:
+        """By method, against the basis matrix in float64, which is compared with nothing itself."""
+        some = self.directions[:CHECKED]
+        scattered = ((self.sum_at(some) - self.sum_by_basis(some)) ** 2).sum(axis=1).mean()
+        theta, exact = np.linspace(0, np.pi, MAP_SIZE[0]), self.rows_of_map().transpose(0, 2, 1)
+        difference = ((self.map() - exact) ** 2).sum(axis=2).mean(axis=1)
+        on_map = float(np.sin(theta) @ difference / np.sin(theta).sum())
+        return {
+            SCATTERED: self.relative(scattered),
+            BASIS: None,
+            MAP_64: self.relative(self._texel_error(exact)),
+            MAP_32: self.relative(on_map),
+        }
+
+    def _texel_error(self, exact: Array) -> float:
+        """Mean square over CHECKED random texels, each row as often as its solid angle asks for."""
+        random = np.random.default_rng(SEED)
+        rows = np.rint(np.arccos(random.uniform(-1, 1, CHECKED)) * (MAP_SIZE[0] - 1) / np.pi).astype(np.int64)
+        columns = random.integers(0, MAP_SIZE[1], CHECKED)
+        theta = rows * (np.pi / (MAP_SIZE[0] - 1))
+        phi = np.pi * (1 - 2 * (columns + 0.5) / MAP_SIZE[1])
+        directions = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+        return float(((exact[rows, columns] - self.sum_by_basis(directions)) ** 2).sum(axis=1).mean())
+
+    def works(self) -> dict[str, Work]:
+        """By method, what is timed."""
+        return {
+            SCATTERED: lambda: self.sum_at(self.directions),
+            BASIS: lambda: self.sum_by_basis(self.directions),
+            MAP_64: self.rows_of_map,
+            MAP_32: self.map,
+        }
+
+    def row(self, method: str, arithmetic_error: float | None) -> Measurement:
+        """Without its times."""
+        return Measurement(
+            section=SECTION,
+            method=method,
+            light=self.light_name,
+            n_bands=self.n_bands,
+            truncation=self.truncation,
+            arithmetic_error=arithmetic_error,
+            total_error=float(np.hypot(self.truncation, arithmetic_error or 0.0)),
+            note=PER_FRAME if method in (DIRECT, CACHED) else PER_MILLION,
+        )
+
+
+class _Frame:
+    """A renderer and a framebuffer of the window's size and format."""
+
+    def __init__(self, renderer: Renderer, target: moderngl.Framebuffer) -> None:
+        self.renderer = renderer
+        self.target = target
+        self.cached: _Stage | None = None
+        """Whose map is shown."""
+        sphere = FRAME.spheres[1]
+        right, up = np.meshgrid(
+            (np.arange(0, FRAME.width, STRIDE) + 0.5 - sphere.x) / sphere.radius,
+            (sphere.y - np.arange(0, FRAME.height, STRIDE) - 0.5) / sphere.radius,
+        )
+        facing = np.sqrt((1 - right**2 - up**2).clip(min=0))
+        self.inside = facing > NEAREST_RIM
+        self.normals = np.stack([right, up, facing], axis=-1)[self.inside]
+
+    def works(self, stage: _Stage) -> dict[str, Work]:
+        works: dict[str, Work] = {MAKING: lambda: self.make_map(stage), CACHED: self.draw}
+        return works | ({DIRECT: self.draw} if stage.n_bands <= MAX_DIRECT_BANDS else {})
+
+    def be_ready_for(self, method: str, stage: _Stage) -> None:
+        """Show what is going to be drawn, which is not timed."""
+        if method == DIRECT:
+            self.cached = None
+            self.renderer.show(stage.direct)
+        elif method == CACHED and self.cached is not stage:
+            self.make_map(stage)
+        self.renderer.context.finish()
+
+    def make_map(self, stage: _Stage) -> None:
+        self.cached = stage
+        self.renderer.show(stage.on_a_map())
+        self.renderer.context.finish()
+
+    def draw(self) -> None:
+        self.renderer.draw(self.target, FRAME)
+        self.renderer.context.finish()
+
+    def errors(self, stage: _Stage) -> dict[str, float]:
+        """By method."""
+        pictures = {CACHED: stage.on_a_map()}
+        if stage.n_bands <= MAX_DIRECT_BANDS:
+            pictures[DIRECT] = stage.direct
+        return {method: self._error(stage, picture) for method, picture in pictures.items()}
+
+    def _error(self, stage: _Stage, picture: Picture) -> float:
+        """Of the linear radiance read back from the right sphere, seen from the front and from behind."""
+        azimuth, elevation = CAMERA_HOME
+        total = weights = 0.0
+        for place in ((azimuth, elevation), (azimuth + 180, -elevation)):
+            world_from_view = camera.world_from_view(*place)
+            drawn = render_linear(self.renderer, replace(picture, world_from_view=world_from_view), FRAME)
+            difference = drawn[::STRIDE, ::STRIDE][self.inside] - stage.sum_at(self.normals @ world_from_view.T)
+            solid_angle = 1 / self.normals[:, 2]
+            total += float(solid_angle @ (difference**2).sum(axis=1))
+            weights += float(solid_angle.sum())
+        return stage.relative(total / weights)
+
+
+def _in_blocks(function: Callable[[Array], Array], directions: Array) -> Array:
+    return np.concatenate([function(directions[i : i + BLOCK]) for i in range(0, len(directions), BLOCK)])

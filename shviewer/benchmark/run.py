@@ -1,0 +1,99 @@
+"""The report from the first light to the last file. Whatever ends it early leaves what was measured, and says so."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from shviewer.benchmark import experiments
+from shviewer.benchmark.budget import STABILITY_SECONDS, Clock, Progress, allot
+from shviewer.benchmark.front import sentences
+from shviewer.benchmark.options import SECTIONS, Options
+from shviewer.benchmark.page import writing
+from shviewer.benchmark.page.document import Report, read_report
+from shviewer.benchmark.page.machine import machine_record, versions
+from shviewer.benchmark.sections import AGAINST, Run, measure_sections
+from shviewer.benchmark.subjects import QUICK_TOLERANCES, TOLERANCES, Subject, find_subjects
+from shviewer.errors import OutputError
+from shviewer.lights.light import Light
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a run came to. text: some lines for the terminal."""
+
+    folder: Path
+    files: tuple[str, ...]
+    rows: int
+    text: str
+    stability_failed: bool = False
+
+
+def write_report(
+    lights: Sequence[str | Light], folder: Path, options: Options | None = None, progress: Progress | None = None
+) -> Summary:
+    """Measure `lights`, or experiments.LIGHTS if there are none, and write report.md, .json and .csv and plots into `folder`.
+
+    OutputError, LightError or UsageError before anything is measured where that cannot be. An interrupt is raised again,
+    after what was measured has been written as a partial report.
+    """
+    options = options or Options()
+    before = None if options.against is None else read_report(options.against)
+    writing.make_folder(folder)
+    chosen = list(lights) or list(experiments.QUICK_LIGHTS if options.quick else experiments.LIGHTS)
+    subjects = find_subjects(chosen, QUICK_TOLERANCES if options.quick else TOLERANCES, options.reading)
+    wanted = {name: name in options.sections for name in SECTIONS} | {"peers": options.peers}
+    seconds = allot(wanted, options.seconds) | ({"hard cases": STABILITY_SECONDS} if options.stability else {})
+    report = Report(
+        seed=options.seed,
+        command=options.command or shlex.join(["shviewer", *sys.argv[1:]]),
+        machine=machine_record(),
+        versions=versions(),
+        lights={subject.name: _light_record(subject) for subject in subjects},
+    )
+    texts = [text for text in chosen if isinstance(text, str)]
+    run = Run(options, folder, report, writing.Page(subjects), texts, Clock(seconds, progress), before)
+    run.write()
+    try:
+        measure_sections(run, seconds)
+        report.complete = True
+        _plots(run)
+    except BaseException:
+        with suppress(OutputError):
+            run.write()
+        raise
+    run.write()
+    run.clock.finish()
+    return Summary(folder, (*writing.FILES, *run.page.plots), len(report.rows), _summary(run), run.stability_failed)
+
+
+def _plots(run: Run) -> None:
+    """Pictures where matplotlib is installed, else the line that installs it."""
+    from shviewer.benchmark.page.plots import make_plots
+
+    paths, message = make_plots(run.report.rows, run.folder)
+    run.page.plots += [path.name for path in paths]
+    run.page.plot_message = message
+
+
+def _light_record(subject: Subject) -> dict[str, object]:
+    return {
+        "description": subject.light.description,
+        "best_method": subject.light.best_method,
+        "accuracy": subject.light.accuracy(),
+        "bands_within": {f"{tolerance:g}": count for tolerance, count in subject.needs.items()},
+        "error_by_bands": subject.truncation.tolist(),
+    }
+
+
+def _summary(run: Run) -> str:
+    lines = []
+    for subject in run.page.subjects:
+        rows = [row for row in run.report.rows if row.light == subject.name and row.section == "projection"]
+        lines += [f"{subject.name}: {sentence}" for sentence in sentences(subject, rows)] if rows else []
+    against = run.page.hosted.get(AGAINST, "").partition("\n")[0]
+    return "\n".join([*lines, *([against] if against else [])])

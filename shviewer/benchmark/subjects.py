@@ -1,0 +1,56 @@
+"""The lights that a report is about, with what is known of each before anything is timed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
+from shviewer.lights.find import find_light
+from shviewer.lights.light import Light
+from shviewer.lights.reading import DEFAULT_READING, Reading
+
+MOST_BANDS = 128
+"""Up to how many bands a count for a tolerance is searched."""
+
+TOLERANCES = (0.1, 0.05, 0.01)
+QUICK_TOLERANCES = (0.05,)
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A light and its exact answers."""
+
+    name: str
+    light: Light
+    exact: Array
+    """(MOST_BANDS**2, 3)."""
+    products: Array
+    truncation: Array
+    """The relative L2 error of the exact coefficients with n = 1 ... MOST_BANDS bands."""
+    needs: dict[float, int | None]
+    """Tolerance -> the smallest band count within it; None if none up to MOST_BANDS is."""
+
+
+def find_subjects(
+    lights: Sequence[str | Light], tolerances: Sequence[float] = TOLERANCES, reading: Reading = DEFAULT_READING
+) -> list[Subject]:
+    """Every light once; of two files of one stem the second is called by its whole text. LightError if one is bad."""
+    subjects: dict[str, Subject] = {}
+    for number, text in enumerate(lights):
+        if text in lights[:number]:
+            continue
+        light = find_light(text, reading) if isinstance(text, str) else text
+        name = (
+            light.name if light.name not in subjects else str(text) if isinstance(text, str) else f"light {number + 1}"
+        )
+        subjects[name] = subject_of(light, tolerances, name)
+    return list(subjects.values())
+
+
+def subject_of(light: Light, tolerances: Sequence[float] = TOLERANCES, name: str = "") -> Subject:
+    exact, products = light.coefficients(MOST_BANDS), light.products()
+    truncation = errors_by_band_count(products, exact / light.unit, exact / light.unit)
+    needs = {tolerance: smallest_band_count(truncation, tolerance) for tolerance in tolerances}
+    return Subject(name or light.name, light, exact, products, truncation, needs)

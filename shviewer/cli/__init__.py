@@ -1,0 +1,1 @@
+"""The command line: flags and help, one file a mode."""

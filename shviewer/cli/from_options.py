@@ -1,0 +1,172 @@
+"""From the options of a command line to how files are read and what is shown."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from shviewer.cli.option_groups import finite
+from shviewer.cli.options import DEFAULT_BANDS
+from shviewer.errors import UsageError
+
+if TYPE_CHECKING:
+    from shviewer.lights.reading import Reading
+    from shviewer.viewer.state import ViewState
+
+
+def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
+    """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
+    from shviewer.lights.find import COEFFICIENT_SUFFIXES, built_in_lights, split_light
+    from shviewer.viewer.actions import open_light
+    from shviewer.viewer.camera import IDENTITY, towards
+    from shviewer.viewer.state import ViewState
+    from shviewer.viewer.view_limits import check
+
+    elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
+    if any(abs(elevation) > 90 for elevation in elevations):
+        raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
+    window, separator, width = options.window.partition(":")
+    if separator and window in ("none", "dering"):
+        raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
+    state = ViewState(
+        lights=tuple(built_in_lights()) if all_lights else (options.light,),
+        reading=reading_from(options),
+        n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
+        muted=options.mute,
+        quantity=options.quantity or "radiance",
+        split_sun=options.split_sun,
+        window=window,
+        window_width=_finite_width(width) if separator else None,
+        method=options.method,
+        samples=options.samples,
+        seed=options.seed,
+        exposure_stops=options.exposure,
+        error=options.error,
+        error_range=_error_range(options),
+        tone=options.tone,
+        marks=not options.no_marks,
+        lobe_view=options.lobes or options.basis is not None,
+        evaluate=options.evaluate,
+        sheet="convergence" if options.convergence else "",
+        light_rotation=towards(*options.rotate_light) if options.rotate_light else IDENTITY,
+        zoom=options.zoom,
+    )
+    if options.camera:
+        state = replace(state, camera=(options.camera[0] % 360, options.camera[1]))
+    if options.tolerance is not None:
+        state = replace(state, tolerance=options.tolerance)
+    check(state, tuple(options.size))
+    state = open_light(state, options.light)
+    if options.compare:
+        from shviewer.analysis.compared_files import compared_with
+
+        state, found = compared_with(state, options.compare)
+        if found:
+            print(f"shviewer: {found}", file=sys.stderr)
+    if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.analysis.comparison import as_the_file_holds
+
+        any_bands = options.bands is None and options.tolerance is None
+        state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
+    if options.tolerance is not None:
+        state = _fitted(state, options)
+    if options.basis is not None:
+        state = replace(state, basis=(options.basis[0], options.basis[1]))
+        check(state)  # now that its bands are known
+    return state
+
+
+def _error_range(options: argparse.Namespace) -> float | None:
+    """A radiance; of the relative error a share of 1, which may be said in percent."""
+    text = options.error_range
+    if text is None:
+        return None
+    share = text.endswith("%")
+    if share and options.error != "relative":
+        raise UsageError(f"error range {text}: a share is for --error relative; give a radiance, such as 0.5")
+    try:
+        return finite(text.removesuffix("%")) / (100 if share else 1)
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"error range {error}") from error
+
+
+def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:
+    """As many bands as the tolerance needs, said on stderr; where none are enough, the best there is."""
+    from shviewer.analysis.figures import estimate_from_samples, needs
+
+    if options.bands is not None:
+        raise UsageError(f"--bands {options.bands} and --tolerance {options.tolerance:g}: give one of them")
+    found = needs(state)
+    counts = {"radiance": found.radiance, "irradiance": found.irradiance}
+    says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
+    print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
+    wanted = counts[state.quantity]
+    if wanted is None:
+        print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
+    if state.method == "jittered":
+        guess = estimate_from_samples(state)
+        if guess.decided:
+            says = f"{guess.likely} bands" if guess.likely else "no count up to 32"
+        else:
+            says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
+        print(f"shviewer: the samples alone say {says}", file=sys.stderr)
+    return replace(state, n_bands=wanted or found.best_bands)
+
+
+def reading_from(options: argparse.Namespace) -> Reading:
+    """How images are read. UsageError for an unknown layout."""
+    from shviewer.lights.reading import Reading
+    from shviewer.limits import Limits
+
+    if options.layout != "auto":
+        from shviewer.lights.layouts.recognise import LAYOUTS
+
+        if options.layout not in LAYOUTS:
+            raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
+    chosen = {
+        "side": options.max_side,
+        "texels": options.max_megatexels and int(options.max_megatexels * 2**20),
+        "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
+    }
+    limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
+    return Reading(
+        sanitize=options.sanitize, layout=options.layout, limits=limits, convention=_input_convention(options)
+    )
+
+
+def _input_convention(options: argparse.Namespace) -> str:
+    """UsageError for one that is not known."""
+    text: str = options.input_convention
+    if text:
+        from shviewer.coefficients.programs import parse_convention
+
+        try:
+            parse_convention(text)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+        _check_is_of_use(options, text)
+    return text
+
+
+def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
+    """UsageError for a convention that nothing is read in."""
+    from shviewer.lights.find import COEFFICIENT_SUFFIXES, split_light
+
+    given = vars(options)
+    lights: list[str] = given.get("lights") or [given.get("light", "green")]
+    if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
+        return
+    name = "--input-convention" if "convention" in given else "--convention"
+    raise UsageError(
+        f"{name} {convention}: it is of a coefficient file, and {lights[0]} is none; name one as LIGHT"
+        + ("" if name == "--input-convention" else " or with --compare")
+    )
+
+
+def _finite_width(text: str) -> float:
+    try:
+        return finite(text)
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"window width {error}") from error

@@ -1,0 +1,71 @@
+"""The command line. What a mode needs is imported in its branch: --help and --version load neither numpy nor OpenGL.
+
+numpy's matrix products get one thread, unless the environment says otherwise: ours are too small for more, and threads that
+wait for each other on a busy machine take ten times as long.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+
+from shviewer.cli.options import (
+    info_parser,
+    project_parser,
+    report_parser,
+    screenshot_parser,
+    sweep_parser,
+    view_parser,
+)
+from shviewer.errors import ShviewerError, UsageError
+
+THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command line and return its exit code. argparse itself exits with 2 on arguments it cannot read."""
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        arguments = _meant(arguments)
+        mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
+        options = _PARSERS[mode]().parse_intermixed_args(rest)
+        code: int = import_module(f"shviewer.cli.{mode}").run(options)
+        return code
+    except ShviewerError as error:
+        print(f"shviewer: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:  # nobody reads on, as in `shviewer --list-lights | head -1`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+_PARSERS = {
+    "view": view_parser,
+    "screenshot": screenshot_parser,
+    "sweep": sweep_parser,
+    "info": info_parser,
+    "project": project_parser,
+    "report": report_parser,
+}
+"""Of each mode, whose code is the function `run` of the file of its name."""
+
+MODES = tuple(mode for mode in _PARSERS if mode != "view")
+
+
+def _meant(arguments: list[str]) -> list[str]:
+    """The arguments; "help" is --help. UsageError for a first one that is nearly a mode, and no file."""
+    first = arguments[0] if arguments else ""
+    if first == "help":
+        return ["--help", *arguments[1:]]
+    near = difflib.get_close_matches(first, MODES, n=1, cutoff=0.75)
+    if near and first not in MODES and not Path(first).exists():
+        raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {near[0]}?")
+    return arguments

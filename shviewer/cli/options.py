@@ -1,0 +1,207 @@
+"""The modes of the command line and their help. No mode is imported here, so that --help stays fast."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from shviewer.cli.option_groups import (
+    LIGHT_HELP,
+    OneLineParser,
+    add_projection_options,
+    add_reading_options,
+    add_view_options,
+    finite,
+    picture_defaults,
+    share,
+)
+from shviewer.version import __version__
+
+EXIT_CODES = """exit codes:
+  0    done
+  1    --reference: the picture differs; --stability: a case failed; project: one of several lights failed
+  2    bad arguments
+  3    a light that is unknown, unreadable or damaged
+  4    a file that could not be written
+  5    no OpenGL 3.3, or no EGL
+  6    a shader that does not compile
+  130  interrupted"""
+
+DEFAULT_BANDS = 5
+DEFAULT_SWEEP = (1, 16)
+
+
+def view_parser() -> OneLineParser:
+    """shviewer [LIGHT]: the window."""
+    parser = OneLineParser(
+        prog="shviewer",
+        usage="shviewer [LIGHT] [options]\n"
+        "       shviewer screenshot OUT [LIGHT] [options]\n"
+        "       shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]\n"
+        "       shviewer info LIGHT [LIGHT ...] [options]\n"
+        "       shviewer project [LIGHT ...] -o FILE [options]\n"
+        "       shviewer report [LIGHT ...] [-o DIR] [options]",
+        description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
+        epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
+        "\nanimations: shviewer sweep --help"
+        "\nwhat a light is, in figures: shviewer info --help"
+        "\nits coefficients as a file: shviewer project --help",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_view_options(parser)
+    parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
+    parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
+    parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")
+    parser.add_argument("--list-lights", action="store_true", help="print the built-in lights and exit")
+    parser.add_argument("--version", action="version", version=f"shviewer {__version__}")
+    return parser
+
+
+def screenshot_parser() -> OneLineParser:
+    """shviewer screenshot OUT [LIGHT]: a picture without a window."""
+    parser = OneLineParser(
+        prog="shviewer screenshot",
+        description="Write the picture without a window or a display. The same arguments give the same bytes.",
+        epilog=EXIT_CODES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "out", metavar="OUT", type=Path, help="OUT.png: the picture; OUT.exr: linear float32 radiance of the spheres"
+    )
+    add_view_options(parser)
+    parser.add_argument("--no-overlay", action="store_true", help="the spheres alone")
+    parser.add_argument(
+        "--timing", action="store_true", help="also say how long the projection took; then no two runs are equal"
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="REF.png",
+        type=Path,
+        help="compare with a picture; exit 1 and write OUT-difference.png if it differs",
+    )
+    parser.add_argument(
+        "--threshold",
+        metavar="T",
+        type=share,
+        default=0.001,
+        help="share of the pixels, 0 to 1, that may differ from the reference by more than 2/255 (default 0.001)",
+    )
+    return parser
+
+
+def sweep_parser() -> OneLineParser:
+    """shviewer sweep OUT [LIGHT]: an animation without a window."""
+    parser = OneLineParser(
+        prog="shviewer sweep",
+        description="Write an animation of more and more bands, or with --turntable of the camera going round. Every frame is "
+        "the screenshot of its state.",
+        epilog=EXIT_CODES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "out", metavar="OUT", type=Path, help="OUT.webp: lossless; OUT.gif: one palette of 255 colours for all frames"
+    )
+    parser.add_argument("--from", metavar="N", dest="first", type=int, help="bands of the first frame (default 1)")
+    parser.add_argument("--to", metavar="N", dest="last", type=int, help="bands of the last frame (default 16)")
+    parser.add_argument(
+        "--turntable", action="store_true", help="turn the camera once round instead, with --bands N bands"
+    )
+    parser.add_argument("--frames", metavar="K", type=int, help="of --turntable, 2 to 720 (default 72)")
+    parser.add_argument(
+        "--seconds",
+        metavar="S",
+        type=finite,
+        help="that a frame is shown, 0.02 to 60 (default 0.7, the last band three times as long; --turntable 0.08)",
+    )
+    parser.add_argument("--no-overlay", action="store_true", help="the spheres alone")
+    add_view_options(parser)
+    return parser
+
+
+def info_parser() -> OneLineParser:
+    """shviewer info LIGHT [LIGHT ...]: what lights are, in figures."""
+    parser = OneLineParser(
+        prog="shviewer info",
+        description="Say what each LIGHT is: its file, size and range, its mean and peak, the energy of its bands, and how many"
+        " bands it needs. The figures are the window's.",
+        epilog=f"{EXIT_CODES}\n\nA light that cannot be read does not stop the others; the exit code is that of the first.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("lights", metavar="LIGHT", nargs="+", help=LIGHT_HELP)
+    parser.add_argument("--json", action="store_true", help="the same as a JSON array, one object per LIGHT")
+    add_reading_options(parser)
+    return parser
+
+
+def project_parser() -> OneLineParser:
+    """shviewer project [LIGHT ...] -o FILE: coefficients as a file."""
+    parser = OneLineParser(
+        prog="shviewer project",
+        description="Write the coefficients of LIGHT, with the convention stamped on them. Several lights go into a folder.",
+        epilog=f"{EXIT_CODES}\n\nOf several lights those that can be projected are written, whatever becomes of the others.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("lights", metavar="LIGHT", nargs="*", help=f"{LIGHT_HELP} (default green)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        required=True,
+        help="FILE.json, .csv, .npz, .h or .glsl; - is stdout; a folder if there are several lights",
+    )
+    parser.add_argument("--format", metavar="F", help="json, csv, npz, h or glsl, where FILE does not say it")
+    parser.add_argument(
+        "--convention",
+        metavar="C",
+        default="shviewer",
+        help="whose: shviewer (default), filament, three, unity, unreal, ambix, sphericart or scipy; after commas what differs,"
+        " such as shviewer,no-phase,4pi",
+    )
+    parser.add_argument(
+        "--axes",
+        metavar="A",
+        help="y-up or z-up (right-handed), y-up-left or z-up-left, or which of our axes x, y and z are, such as +x+z-y",
+    )
+    parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
+    add_projection_options(parser)
+    add_reading_options(parser, convention="--input-convention")
+    parser.set_defaults(**picture_defaults())
+    return parser
+
+
+def report_parser() -> OneLineParser:
+    """shviewer report [LIGHT ...]: speed against error, measured on this machine."""
+    parser = OneLineParser(
+        prog="shviewer report",
+        description="Measure speed against error on this machine and write report.md, report.json, report.csv and plots. "
+        "Without LIGHT: built-in scenes and two environment maps.",
+        epilog=f"{EXIT_CODES}\n\nWith --stability alone only the hard cases are run and printed (about 15 s). Plots need "
+        "matplotlib:\npip install 'shviewer[report]'.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("lights", metavar="LIGHT", nargs="*", help=LIGHT_HELP)
+    parser.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, help="the folder to write (default shviewer-report)"
+    )
+    parser.add_argument("--quick", action="store_true", help="two lights and few sizes, within 15 s")
+    parser.add_argument(
+        "--budget",
+        metavar="SECONDS",
+        type=finite,
+        help="of measuring (default 120); repeats, then sizes are trimmed to it",
+    )
+    parser.add_argument("--methods", metavar="M,M", help="only these ways to project, and the best way of each light")
+    parser.add_argument("--seed", metavar="S", type=int, default=0, help="of all random samples (default 0)")
+    parser.add_argument(
+        "--against",
+        metavar="OLD.json",
+        type=Path,
+        help="say what is faster, slower, better or worse than in that report",
+    )
+    parser.add_argument(
+        "--peers", action="store_true", help="also ducc0, shtns, pyshtools, sphericart and SciPy, if installed"
+    )
+    parser.add_argument("--stability", action="store_true", help="also the hard cases; exit 1 if one fails")
+    parser.add_argument("--no-shader", action="store_true", help="nothing is drawn; needs no OpenGL")
+    add_reading_options(parser)
+    return parser

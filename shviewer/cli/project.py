@@ -1,0 +1,260 @@
+"""`shviewer project`: one light into one file or onto stdout, or many into a folder, where one that fails stops no other."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from shviewer.analysis.figures import errors_of
+from shviewer.analysis.projected import Projected, project_state
+from shviewer.analysis.projections import sampling_of
+from shviewer.analysis.subjects import load_light, subject
+from shviewer.cli.from_options import state_from
+from shviewer.cli.options import DEFAULT_BANDS
+from shviewer.cli.status_line import status_line
+from shviewer.coefficients.axes import Axes
+from shviewer.coefficients.convention import OVER_PI, Convention
+from shviewer.coefficients.programs import CONVENTIONS, parse_convention
+from shviewer.coefficients.suns import sun_left_out
+from shviewer.coefficients.writing import FORMATS
+from shviewer.errors import OutputError, ShviewerError, UsageError
+from shviewer.files import file_stem, write_atomically
+from shviewer.lights.find import split_light
+from shviewer.viewer.state import ViewState, light_name
+from shviewer.words import counted
+
+STDOUT = "-"
+BATCH_FAILED = 1
+
+ROUNDING = 1e-6
+"""A minimum that is no farther below zero than this part of the largest coefficient is called zero."""
+
+StateOf = Callable[[str], ViewState]
+"""The state that the options ask for, of one LIGHT. It raises what reading the light raises."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Of the summary: what became of one light."""
+
+    light: str
+    file: str
+    projected: Projected | None = None
+    error: str = ""
+
+
+def run(options: argparse.Namespace) -> int:
+
+    convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
+    if convention.quantity:
+        options.quantity = convention.quantity.removesuffix("-over-pi")
+    if options.bands is None and options.tolerance is None and convention.most_bands:
+        options.bands = min(DEFAULT_BANDS, convention.most_bands)
+
+    def state_of(light: str) -> ViewState:
+        state = state_from(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+        if options.tolerance is not None:
+            check_tolerance(state, convention)
+        return state
+
+    lights = options.lights or ["green"]
+    with status_line() as line:
+        show = line.show if line else None
+        return project_lights(lights, options.output, options.format, convention, state_of, show)
+
+
+def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
+    """What --convention, --axes, --no-phase and --for ask for together. UsageError if they contradict each other."""
+    try:
+        convention = parse_convention(",".join([text, *([axes] if axes else []), *(["no-phase"] if no_phase else [])]))
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    held = "irradiance" if convention.quantity == OVER_PI else convention.quantity
+    if held is not None and quantity not in (None, held):
+        raise UsageError(f"--for {quantity} contradicts --convention {text}, which takes {convention.quantity}")
+    own = CONVENTIONS[convention.name]
+    if axes and own.axes != Axes() and convention.axes != own.axes:
+        raise UsageError(
+            f"--axes {axes} contradicts --convention {text}: {own.name} expects {own.axes.words}; for its numbers in other "
+            f"axes write --convention {own.name},{axes}"
+        )
+    return convention
+
+
+def check_tolerance(state: ViewState, convention: Convention) -> None:
+    """UsageError if the state's tolerance needs more bands than the program has: what its bands give, and what may help."""
+    most = convention.most_bands
+    if most is None or state.n_bands <= most:
+        return
+    bands = counted(most, "band")
+    reached = float(errors_of(load_light(state), *sampling_of(state))[most - 1])
+    suns = () if state.split_sun else subject(replace(state, split_sun=True)).suns
+    remedy = "take its sun out, --split-sun, or " if suns else ""
+    raise UsageError(
+        f"{light_name(state.light)}: {100 * state.tolerance:g} % needs more than the {bands} that {convention.name} takes, "
+        f"which reach {100 * reached:.3g} %; {remedy}give --bands {most}"
+    )
+
+
+def project_lights(
+    lights: Sequence[str],
+    out: str,
+    kind: str | None,
+    convention: Convention,
+    state_of: StateOf,
+    status: Callable[[str], None] | None = None,
+) -> int:
+    """Project and write; the exit code. status: shows what is at work, "" clears it.
+
+    One light: `out` is a file, a folder that exists, or "-". Several: `out` is a folder, made if need be; the code is
+    BATCH_FAILED if any of them failed. ShviewerError for one light that fails, or arguments that fit no light.
+    """
+    if kind is not None and kind not in FORMATS:
+        raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
+    if len(lights) > 1:
+        return _batch(lights, out, kind or "json", convention, state_of, status)
+    (light,) = lights
+    if out == STDOUT:
+        if kind is None:
+            raise UsageError(f"-o -: stdout has no suffix to go by; name a format: --format {', '.join(FORMATS)}")
+        projected = _noted(light, state_of, convention)
+        sys.stdout.buffer.write(projected.encode(convention, kind))
+        sys.stdout.buffer.flush()
+        _warn_below_zero(projected)
+        return 0
+    path = Path(out)
+    if path.is_dir():
+        projected = _noted(light, state_of, convention)
+        path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
+    else:
+        kind = _kind_of(path, kind)
+        _check_is_not_read(path, light)
+        projected = _noted(light, state_of, convention)
+    write_atomically(path, projected.encode(convention, kind or "json"))
+    radiance, irradiance = (_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
+    print(
+        f"wrote {path}: {_bands(projected)}, radiance within {radiance.removeprefix('< ')}, as irradiance {irradiance}"
+    )
+    _warn_below_zero(projected)
+    return 0
+
+
+def _batch(
+    lights: Sequence[str],
+    out: str,
+    kind: str,
+    convention: Convention,
+    state_of: StateOf,
+    status: Callable[[str], None] | None,
+) -> int:
+    folder = Path(out)
+    if out == STDOUT or folder.suffix[1:] in FORMATS:
+        raise UsageError(f"-o {out}: {len(lights)} lights are written into a folder, one file each; name a folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: no folder can be made: {error.strerror}; choose another place") from error
+    rows: list[Row] = []
+    for number, light in enumerate(lights):
+        if status:
+            filled = round(24 * number / len(lights))
+            status(f"[{'#' * filled}{'.' * (24 - filled)}] {number + 1} of {len(lights)}  {light[:60]}")
+        rows.append(_one_of_many(light, folder, kind, convention, state_of, {row.file for row in rows}))
+        if rows[-1].error:
+            if status:
+                status("")
+            print(f"shviewer: {rows[-1].error}", file=sys.stderr)
+    if status:
+        status("")
+    print(summary(rows))
+    return BATCH_FAILED if any(row.error for row in rows) else 0
+
+
+def _one_of_many(
+    light: str, folder: Path, kind: str, convention: Convention, state_of: StateOf, taken: set[str]
+) -> Row:
+    """One light of a batch, written under a name of its own."""
+    try:
+        projected = _noted(light, state_of, convention)
+        stem = file_stem(projected.name)
+        names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
+        path = next(folder / name for name in names if str(folder / name) not in taken)
+        _check_is_not_read(path, light)
+        write_atomically(path, projected.encode(convention, kind))
+        _warn_below_zero(projected)
+    except ShviewerError as error:
+        return Row(light, "", error=str(error))
+    return Row(light, str(path), projected)
+
+
+def _noted(light: str, state_of: StateOf, convention: Convention) -> Projected:
+    """Projected; what was done to the light, and what became of its suns, is said on stderr."""
+    state = state_of(light)
+    projected = project_state(state)
+    shown = subject(state)
+    suns = [sun_left_out(sun.directional_light, convention.axes) for sun in projected.suns]
+    for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else []), *suns):
+        print(f"shviewer: note: {shown.light.name}: {note}", file=sys.stderr)
+    return projected
+
+
+def _warn_below_zero(projected: Projected) -> None:
+    """On stderr, of what has been written and is below zero by more than rounding."""
+    minimum = projected.figures.extremes.minimum
+    if minimum >= -ROUNDING * float(np.abs(projected.coefficients).max()):
+        return
+    says = f"the {projected.quantity} of its {_bands(projected)} goes to {minimum:.3g}"
+    remedy = "" if projected.about["window"] == "dering" else "; --window dering takes that away"
+    print(f"shviewer: note: {projected.name}: {says}{remedy}", file=sys.stderr)
+
+
+def _kind_of(path: Path, kind: str | None) -> str:
+    """By the suffix, which must not contradict `kind`."""
+    suffix = path.suffix.lower()[1:]
+    if kind is None and suffix not in FORMATS:
+        raise UsageError(f"{path}: FILE must end in .{', .'.join(FORMATS)}, or name a format: --format json")
+    if kind is not None and suffix in FORMATS and suffix != kind:
+        raise UsageError(f"{path} and --format {kind} contradict each other; leave out --format")
+    return kind or suffix
+
+
+def _check_is_not_read(path: Path, light: str) -> None:
+    source = split_light(light)[0]
+    try:
+        same = path.exists() and source.exists() and path.samefile(source)
+    except OSError:
+        same = False
+    if same:
+        raise UsageError(f"{path}: the light is read from this file; write another one")
+
+
+def summary(rows: Sequence[Row]) -> str:
+    """A table: light, bands, relative L2 errors of both quantities, the minimum of the one that is written, and the file."""
+    width = max(len("light"), *(min(len(row.light), 40) for row in rows))
+    lines = [f"{'light':<{width}}  bands   radiance  irradiance     minimum  file"]
+    for row in rows:
+        label = row.light if len(row.light) <= 40 else f"...{row.light[-37:]}"
+        if row.projected is None:
+            lines.append(f"{label:<{width}}  failed")
+            continue
+        figures = row.projected.figures
+        errors = f"{_percent(row.projected, 'radiance'):>9}  {_percent(row.projected, 'irradiance'):>10}"
+        numbers = f"{row.projected.n_bands:>5}  {errors}  {figures.extremes.minimum:>10.4g}"
+        lines.append(f"{label:<{width}}  {numbers}  {row.file}")
+    failed = sum(1 for row in rows if row.error)
+    return "\n".join([*lines, f"{len(rows) - failed} of {len(rows)} written"])
+
+
+def _bands(projected: Projected) -> str:
+    return counted(projected.n_bands, "band")
+
+
+def _percent(projected: Projected, quantity: str) -> str:
+    """The relative L2 error, or the floor below which it cannot be told from rounding."""
+    error, floor = projected.relative_l2_as[quantity], projected.figures.floor
+    return f"{100 * error:.3g} %" if error >= floor else f"< {100 * floor:.0e} %"

@@ -1,0 +1,49 @@
+"""`shviewer report [LIGHT ...]`: speed against error on this machine, and the hard cases."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from shviewer.cli.from_options import reading_from
+from shviewer.cli.status_line import status_line
+
+
+def run(options: argparse.Namespace) -> int:
+    if options.stability and not (
+        options.lights or options.output or options.quick or options.peers or options.against
+    ):
+        return _hard_cases(options)
+    from shviewer.benchmark.options import DEFAULT_BUDGET, Options
+    from shviewer.benchmark.run import write_report
+
+    wanted = Options(
+        budget=DEFAULT_BUDGET if options.budget is None else options.budget,
+        quick=options.quick,
+        against=options.against,
+        stability=options.stability,
+        peers=options.peers,
+        seed=options.seed,
+        methods=tuple(options.methods.split(",")) if options.methods else (),
+        reading=reading_from(options),
+        shader=not options.no_shader,
+    )
+    with status_line() as line:
+        summary = write_report(
+            options.lights,
+            options.output or Path("shviewer-report"),
+            wanted,
+            progress=line.fraction if line else None,
+        )
+    print(summary.text)
+    print(f"wrote {summary.rows} rows: {', '.join(str(summary.folder / name) for name in summary.files)}")
+    return 1 if summary.stability_failed else 0
+
+
+def _hard_cases(options: argparse.Namespace) -> int:
+    from shviewer.benchmark import hard_cases
+
+    with status_line() as line:
+        outcomes = hard_cases.run(progress=line.show if line else None, shader=not options.no_shader)
+    print(hard_cases.as_text(outcomes))
+    return 0 if all(outcome.passed for outcome in outcomes) else 1

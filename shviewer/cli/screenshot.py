@@ -1,0 +1,41 @@
+"""`shviewer screenshot OUT [LIGHT]`: the picture without a window."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from shviewer.cli.from_options import state_from
+from shviewer.cli.notes import print_notes, print_verdict
+from shviewer.errors import UsageError
+from shviewer.viewer.composition import compose
+from shviewer.viewer.picture import prepare
+from shviewer.viewer.picture_files import compare_with_reference
+from shviewer.viewer.screenshot import save_picture
+
+
+def run(options: argparse.Namespace) -> int:
+
+    if options.out.suffix.lower() not in (".png", ".exr"):
+        raise UsageError(f"{options.out}: OUT must end in .png or .exr")
+    if options.reference and options.out.suffix.lower() != ".png":
+        raise UsageError(f"{options.out}: --reference compares PNG pictures; let OUT end in .png")
+    if options.reference and options.reference.resolve() == options.out.resolve():
+        raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
+    state = state_from(options, all_lights=False)
+    if state.lobe_view and options.out.suffix.lower() == ".exr":
+        raise UsageError(
+            f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
+        )
+    picture = prepare(state)
+    composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
+    pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
+    print_notes(picture.subject)
+    print_verdict(state)
+    if options.reference is None or pixels is None:
+        return 0
+    difference = options.out.with_name(f"{options.out.stem}-difference.png")
+    verdict = compare_with_reference(pixels, options.reference, difference, options.threshold)
+    if verdict:
+        print(f"shviewer: {verdict}", file=sys.stderr)
+    return 1 if verdict else 0

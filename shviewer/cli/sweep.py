@@ -1,0 +1,68 @@
+"""`shviewer sweep OUT [LIGHT]`: an animation without a window."""
+
+from __future__ import annotations
+
+import argparse
+
+from shviewer.cli.from_options import state_from
+from shviewer.cli.notes import print_notes, print_verdict
+from shviewer.cli.options import DEFAULT_SWEEP
+from shviewer.cli.status_line import status_line
+from shviewer.errors import UsageError
+from shviewer.viewer.animation.animation import (
+    ENCODERS,
+    TURN_FRAMES,
+    TURN_SECONDS,
+    band_sweep,
+    save_animation,
+    turntable,
+)
+from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.composition import compose
+
+
+def run(options: argparse.Namespace) -> int:
+    _check_sweep(options)
+    if options.out.suffix.lower() not in ENCODERS:
+        raise UsageError(f"{options.out}: OUT must end in {' or '.join(ENCODERS)}")
+    state = state_from(options, all_lights=False)
+    if options.turntable:
+        frames = TURN_FRAMES if options.frames is None else options.frames
+        animation = turntable(state, frames, TURN_SECONDS if options.seconds is None else options.seconds)
+    else:
+        first = DEFAULT_SWEEP[0] if options.first is None else options.first
+        last = DEFAULT_SWEEP[1] if options.last is None else options.last
+        animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
+    composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
+    with status_line() as line:
+        picture = save_animation(
+            animation,
+            composition,
+            options.out,
+            overlay=not options.no_overlay,
+            progress=line.fraction if line else None,
+        )
+    print_notes(picture.subject)
+    print_verdict(state)
+    return 0
+
+
+def _check_sweep(options: argparse.Namespace) -> None:
+    """UsageError for options that contradict each other."""
+    if options.turntable:
+        for name, value in (("--from", options.first), ("--to", options.last)):
+            if value is not None:
+                raise UsageError(f"{name} {value} with --turntable: a turn has one number of bands; give --bands")
+        return
+    if options.basis is not None:
+        raise UsageError(
+            "--basis: a sweep shows what each number of bands makes of the light; give --turntable, or --lobes"
+        )
+    if options.frames is not None:
+        raise UsageError(f"--frames {options.frames}: a sweep has one for each band count; give --from and --to")
+    if options.bands is not None:
+        raise UsageError(f"--bands {options.bands}: a sweep goes through them; give --from and --to, or --turntable")
+    if options.tolerance is not None:
+        raise UsageError(
+            f"--tolerance {options.tolerance:g}: a sweep goes through all bands; give --from and --to, or --turntable"
+        )

@@ -1,0 +1,44 @@
+"""`shviewer [LIGHT]`: the window, or its picture where there is no display."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from shviewer.cli.from_options import state_from
+
+
+def run(options: argparse.Namespace) -> int:
+    if options.list_keys:
+        from shviewer.viewer.keys import key_table
+
+        print(key_table())
+        return 0
+    if options.list_lights:
+        from shviewer.lights.find import built_in_lights, find_light
+
+        for name in built_in_lights():
+            print(f"{name:<20}{find_light(name).description}")
+        return 0
+    from shviewer.analysis.subjects import subject
+    from shviewer.cli.notes import print_notes, print_verdict
+    from shviewer.files import file_stem
+    from shviewer.viewer.composition import compose
+    from shviewer.viewer.desktop import window
+    from shviewer.viewer.desktop.glfw_window import NoDisplayError
+    from shviewer.viewer.picture import prepare
+    from shviewer.viewer.screenshot import save_picture
+
+    state = state_from(options, all_lights=True)
+    print_notes(subject(state))
+    print_verdict(state)
+    try:
+        window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
+    except NoDisplayError as error:
+        out = Path(f"shviewer-{file_stem(subject(state).light.name)}.png")
+        save_picture(
+            prepare(state), compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres), out
+        )
+        print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
+    return 0

@@ -1,0 +1,81 @@
+"""Coefficients in NumPy's files. Nothing pickled is loaded, and what a header claims is checked before memory is taken."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.coefficients.numbers import MAX_NUMBERS
+from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
+from shviewer.errors import LightError
+
+
+def read_arrays(data: bytes) -> tuple[NDArray[Any], Stamp]:
+    """Of an .npz with `coefficients` and, if project wrote it, `stamp`; or of an .npy. LightError if it is bad."""
+    most = 16 * MAX_NUMBERS + 2**16
+    try:
+        if not data.startswith(b"PK"):
+            return np.lib.format.read_array(_small_npy(data, most), allow_pickle=False), {}
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            members = {Path(info.filename).stem: info for info in archive.infolist()}
+            if "coefficients" not in members:
+                there = ", ".join(sorted(members)[:8]) or "nothing"
+                raise LightError(f'no array "coefficients" in it; there is: {there}')
+            arrays = {
+                name: np.lib.format.read_array(_member(archive, members[name], most), allow_pickle=False)
+                for name in ("coefficients", "stamp")
+                if name in members
+            }
+    except (ValueError, zipfile.BadZipFile, NotImplementedError, EOFError, RuntimeError, OSError) as error:
+        if "pickle" in str(error) or "Object arrays" in str(error):
+            raise LightError(
+                "holds pickled Python objects, which are never loaded; save plain arrays of numbers"
+            ) from None
+        raise LightError(f"no readable NPZ or NPY ({str(error)[:80]}): save it again") from error
+    numbers = arrays["coefficients"]
+    if numbers.dtype.kind not in "fiuc" or numbers.ndim not in (1, 2) or not numbers.size:
+        raise LightError(f"coefficients of type {numbers.dtype} and shape {numbers.shape}; they are (n^2, 3) numbers")
+    if "stamp" not in arrays:
+        return numbers, {}
+    return numbers, _stamp_text(str(arrays["stamp"]))
+
+
+def _stamp_text(text: str) -> Stamp:
+    try:
+        found = json.loads(text)
+    except (json.JSONDecodeError, RecursionError):
+        found = None
+    if not isinstance(found, dict) or SCHEMA_KEY not in found:
+        raise LightError("its stamp is no JSON object of a coefficient file: project the light again")
+    return found
+
+
+def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, most: int) -> io.BytesIO:
+    if info.file_size > most:
+        raise LightError(
+            f"{info.filename} takes {info.file_size} bytes unpacked; the limit is {most}: 128 bands have less"
+        )
+    with archive.open(info) as file:
+        return _small_npy(file.read(most + 1), most)
+
+
+def _small_npy(data: bytes, most: int) -> io.BytesIO:
+    if len(data) > most:
+        raise LightError(f"more than {most} bytes unpacked: 128 bands have less")
+    file = io.BytesIO(data)
+    version = np.lib.format.read_magic(file)
+    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, _, dtype = read(file)
+    size = dtype.itemsize
+    for side in shape:
+        size *= side
+    if size > most:
+        raise LightError(f"an array of shape {shape} claims {size} bytes; the limit is {most}: 128 bands have less")
+    file.seek(0)
+    return file

@@ -1,0 +1,162 @@
+"""Other programs' axes: signed permutations of ours, and what they do to coefficients.
+
+A direction with our components s has M s in the other program, M with one +1 or -1 in each row and column: 24 rotations and 24
+reflections. The function stays what it is, so that its coefficients there are those of g(s') = f(M^T s'). Turns about z and
+mirrors only change signs and swap m with -m, which is exact; axes that move z mix the orders of a degree and are as exact as
+one evaluation and one projection, 1e-14 of the largest coefficient.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import permutations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, count_bands, degrees
+from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.quadrature import angles_from_directions, gauss_legendre
+from shviewer.harmonics.synthesis import Synthesis
+
+NAMED_AXES = {"z-up": "+x+y+z", "y-up": "+x+z-y", "z-up-left": "+x-y+z", "y-up-left": "+x+z+y"}
+"""z-up and y-up are right-handed, the others left-handed. Ours, +x, stays x in all of them."""
+
+NOISE = 1e-15
+"""What is smaller than this part of its degree's norm is taken for the rounding of a zero."""
+
+
+@dataclass(frozen=True)
+class Axes:
+    """text: which of our axes the other program's x, y and z are, such as "+x+z-y". ValueError if it is no such text."""
+
+    text: str = "+x+y+z"
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"(?:[+-][xyz]){3}", self.text) or len(set(self.text[1::2])) < 3:
+            names = ", ".join(NAMED_AXES)
+            raise ValueError(f"axes {self.text!r}: {names}, or which of our axes x, y and z are there, such as +x+z-y")
+
+    @classmethod
+    def named(cls, text: str) -> Axes:
+        """A name of NAMED_AXES, or the axes themselves."""
+        return cls(NAMED_AXES.get(text, text))
+
+    @cached_property
+    def matrix(self) -> Array:
+        """M, (3, 3): directions there are M times directions here."""
+        matrix = np.zeros((3, 3))
+        for row in range(3):
+            matrix[row, "xyz".index(self.text[2 * row + 1])] = float(f"{self.text[2 * row]}1")
+        return matrix
+
+    @property
+    def inverse(self) -> Axes:
+        return Axes.from_matrix(self.matrix.T)
+
+    @classmethod
+    def from_matrix(cls, matrix: Array) -> Axes:
+        places = np.abs(matrix).argmax(axis=1)
+        return cls("".join("+-"[int(row[at] < 0)] + "xyz"[at] for row, at in zip(matrix, places, strict=True)))
+
+    def then(self, other: Axes) -> Axes:
+        """First these axes, then the other program's."""
+        return Axes.from_matrix(other.matrix @ self.matrix)
+
+    @property
+    def right_handed(self) -> bool:
+        return bool(np.linalg.det(self.matrix) > 0)
+
+    @property
+    def words(self) -> str:
+        """ "x y z are our +x +z -y; y up, right-handed" """
+        ours = " ".join(re.findall("..", self.text))
+        sign, up = self.text[self.text.index("z") - 1], "xyz"[self.text.index("z") // 2]
+        hand = "right" if self.right_handed else "left"
+        return f"x y z are our {ours}; {'' if sign == '+' else '-'}{up} up, {hand}-handed"
+
+
+def all_axes() -> list[Axes]:
+    """All 48, our own first."""
+    return [
+        Axes("".join(sign + axis for sign, axis in zip(signs, names, strict=True)))
+        for names in permutations("xyz")
+        for signs in product("+-", repeat=3)
+    ]
+
+
+def turn(coefficients: Array, axes: Axes) -> Array:
+    """Coefficients (n**2, k) of a function -> those of the same function in other axes, (n**2, k)."""
+    n_bands = count_bands(coefficients)
+    matrix, turned = axes.matrix, np.asarray(coefficients, dtype=np.float64)
+    if not axes.right_handed:
+        matrix, turned = -matrix, turned * alternating(degrees(n_bands))  # Y(l, m)(-s) = (-1)^l Y(l, m)(s)
+    if matrix[2, 2] == 0:
+        return _evaluated_again(turned, matrix, n_bands)
+    if matrix[2, 2] < 0:  # half a turn about x: z and y change sign
+        matrix = matrix * np.array([1.0, -1.0, -1.0])
+        turned = (
+            turned * alternating(degrees(n_bands) + orders(n_bands)) * np.where(orders(n_bands) < 0, -1, 1)[:, None]
+        )
+    return _about_z(turned, matrix, n_bands)
+
+
+def orders(n_bands: int) -> NDArray[np.int64]:
+    """The order m of each coefficient, shape (n_bands**2,)."""
+    l = degrees(n_bands)
+    return np.arange(n_bands**2) - l * (l + 1)
+
+
+def alternating(exponents: NDArray[np.int64]) -> Array:
+    """(-1)^exponent as a column, (k, 1)."""
+    return np.where(exponents % 2, -1.0, 1.0)[:, None]
+
+
+def mirrored_orders(n_bands: int) -> NDArray[np.int64]:
+    """The index of (l, -m) for each (l, m), shape (n_bands**2,)."""
+    return np.arange(n_bands**2) - 2 * orders(n_bands)
+
+
+def _about_z(coefficients: Array, matrix: Array, n_bands: int) -> Array:
+    """A turn about z by a multiple of 90 degrees: cos(m phi) becomes cos(m (phi - angle)), and alike for sin."""
+    quarters = next(
+        k for k in range(4) if np.array_equal(matrix[:2, 0], np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][k]))
+    )
+    m = orders(n_bands)
+    eighth = (quarters * np.abs(m)) % 4
+    cosine, sine = np.array([1, 0, -1, 0])[eighth], np.array([0, 1, 0, -1])[eighth]
+    other = coefficients[mirrored_orders(n_bands)]
+    return np.asarray(
+        cosine[:, None] * coefficients + np.where(m > 0, -sine, np.where(m < 0, sine, 0))[:, None] * other
+    )
+
+
+def _evaluated_again(coefficients: Array, matrix: Array, n_bands: int) -> Array:
+    """Evaluated in the turned directions of a product rule that is exact for these bands, and projected."""
+    turned = np.empty_like(coefficients)
+    rule = gauss_legendre(2 * n_bands**2)
+    for first in range(0, coefficients.shape[1], 3):
+        columns = np.zeros((n_bands**2, 3))
+        width = min(3, coefficients.shape[1] - first)
+        columns[:, :width] = coefficients[:, first : first + width]
+        synthesis = Synthesis(columns)
+
+        def before(directions: Array, synthesis: Synthesis = synthesis) -> Array:
+            return synthesis.at(*angles_from_directions(directions @ matrix))  # row vectors: M^T applied to each
+
+        turned[:, first : first + width] = project_product(before, rule, n_bands)[0][:, :width]
+    return _with_the_power_of(coefficients, turned)
+
+
+def _with_the_power_of(before: Array, after: Array) -> Array:
+    """`after` with what is rounding removed, and with the power that each degree had: turns keep it."""
+    starts = np.arange(count_bands(before)) ** 2
+    repeats = 2 * np.arange(len(starts)) + 1
+    norm = np.sqrt(np.add.reduceat(before**2, starts, axis=0))
+    clean = np.where(np.abs(after) > NOISE * np.repeat(norm, repeats, axis=0), after, 0.0)
+    kept = np.sqrt(np.add.reduceat(clean**2, starts, axis=0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factor = np.where(kept > 0, norm / kept, 1.0)
+    return np.asarray(clean * np.repeat(factor, repeats, axis=0))

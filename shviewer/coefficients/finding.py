@@ -1,0 +1,118 @@
+"""Which convention a bare list of numbers has, when the light that it is of is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.coefficients.convention import QUANTITIES, RADIANCE
+from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.reading import CoefficientFile, interpreted
+from shviewer.coefficients.suspects import (
+    ALIKE,
+    AS_IRRADIANCE,
+    NO_PHASE,
+    OVER_PI,
+    OVER_ROOT,
+    SN3D,
+    SWAPPED,
+    TIMES_ROOT,
+    TINY,
+    usual_suspects,
+)
+from shviewer.errors import LightError
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.filters import irradiance_factors, per_coefficient
+
+FITS = 0.02
+"""Coefficients that are no farther off than this, relative to the light's own in the same bands, are taken for them."""
+
+MODIFIER_OF = {
+    frozenset((NO_PHASE,)): "no-phase",
+    frozenset((SWAPPED,)): "m-swapped",
+    frozenset((AS_IRRADIANCE, OVER_PI)): "irradiance-over-pi",
+    frozenset((AS_IRRADIANCE,)): "irradiance",
+    frozenset((SN3D, TIMES_ROOT)): "sn3d",
+    frozenset((OVER_ROOT,)): "4pi",
+}
+"""What was done to our numbers -> the modifier of a convention that does so; the longer ones first."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A file read in a convention, a text for parse_convention, and its relative L2 error, of whichever quantity it holds."""
+
+    text: str
+    file: CoefficientFile
+    error: float
+
+
+@dataclass(frozen=True)
+class Found:
+    """The convention that fits best, or is nearest; and whether it fits, and which others do so as well."""
+
+    best: Fit
+    fits: bool
+    alike: tuple[str, ...] = ()
+
+
+def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
+    """Of a bare list as it was read. exact: radiance of the light in our convention, of at least as many bands, over `unit`.
+
+    The programs' own conventions come first, then ours with modifiers. LightError if the numbers are no table in any of them.
+    """
+    names = [*CONVENTIONS, *(f"shviewer,{quantity}" for quantity in QUANTITIES if quantity != RADIANCE)]
+    fits = list(_fits(numbers, exact, names))
+    if not fits:
+        interpreted(numbers, {}, "shviewer")  # says what is wrong
+        raise LightError("numbers in no known convention: name it, --convention")
+    best = min(fits, key=lambda fit: max(fit.error, TINY))
+    if best.error > FITS:
+        bent = list(_fits(numbers, exact, _bent(numbers, exact)))
+        best = min([best, *bent], key=lambda fit: max(fit.error, TINY))  # of equal ones the simplest, which comes first
+    same = [fit.text for fit in fits if fit is not best and fit.error <= max(ALIKE * best.error, TINY)]
+    return Found(best, best.error <= FITS, tuple(same) if best.error <= FITS else ())
+
+
+def _fits(numbers: NDArray[Any], exact: Array, conventions: list[str]) -> Iterator[Fit]:
+    """The numbers in each convention that can have them."""
+    for text in conventions:
+        with suppress(LightError):
+            file = interpreted(numbers, {}, text)
+            wanted = exact[: file.n_bands**2]
+            if file.quantity != RADIANCE:
+                wanted = wanted * per_coefficient(irradiance_factors(file.n_bands))
+            norm = float(np.linalg.norm(wanted))
+            yield Fit(text, file, float(np.linalg.norm(file.coefficients - wanted)) / norm if norm else np.inf)
+
+
+def _bent(numbers: NDArray[Any], exact: Array) -> list[str]:
+    """Our convention, bent as the usual suspects say, where a convention can be."""
+    found = []
+    for base in ("shviewer", "shviewer,polynomial"):
+        with suppress(LightError):
+            given = interpreted(numbers, {}, base).coefficients
+            for suspect in usual_suspects(exact, given):
+                modifiers = modifiers_of(suspect.changes)
+                if suspect.error <= FITS and modifiers is not None and not ("no-phase" in modifiers and "," in base):
+                    found.append(",".join([base, *modifiers]))
+    return found
+
+
+def modifiers_of(changes: tuple[str, ...]) -> list[str] | None:
+    """The modifiers of a convention that does all this to our numbers; None if there is none."""
+    left, found = set(changes), []
+    for change in changes:
+        if change.startswith("in axes "):
+            found.append(change.split()[2])
+            left.remove(change)
+    for done, modifier in MODIFIER_OF.items():
+        if done <= left:
+            found.append(modifier)
+            left -= done
+    return None if left else found

@@ -1,0 +1,114 @@
+"""Coefficients as C and GLSL: the numbers, and for GLSL the function that evaluates just so many bands.
+
+The shader runs the recurrence of harmonics/basis.py in differences, written out without a loop: no trigonometry, no pole, and
+every constant of the convention in place. Up to three bands the basis is a handful of polynomials, and they are written so.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+
+from shviewer.coefficients.reading import TABLE_BEGINS, TABLE_ENDS
+from shviewer.harmonics.basis import Array, index, normalisation
+
+MAX_GLSL_BANDS = 32
+"""As many as the window sums in its own shader; more belong into a texture."""
+
+Row = tuple[int, int, list[str]]
+"""l, m and the numbers as text."""
+
+POLYNOMIALS = ("", "y", "z", "x", "x * y", "y * z", "3.0 * z * z - 1.0", "x * z", "x * x - y * y")
+LEADING = (1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 0.5, 1.0, 1.0)
+"""What Im and Re (x + iy)^m times G(l, m) are times these polynomials."""
+
+UNITY = 1e-15
+"""A constant that near to 1 is 1: the coefficient holds it already."""
+
+_RowText = Callable[[int, int], str]
+"""(l, m) -> the expression for its coefficient."""
+
+
+def identifier(name: str) -> str:
+    """sh_NAME with what C and GLSL allow in a name: letters, digits, single underscores."""
+    return re.sub(r"_+", "_", "sh_" + re.sub(r"[^A-Za-z0-9]", "_", name)).rstrip("_")
+
+
+def c_header(name: str, comments: Sequence[str], rows: Sequence[Row]) -> str:
+    """A C99 header with one static array of doubles; complex numbers are pairs."""
+    symbol = identifier(name)
+    size = f"[{len(rows)}][3]" + ("[2]" if len(rows[0][2]) == 6 else "")
+    lines = [*comments, "", f"#ifndef {symbol.upper()}_H", f"#define {symbol.upper()}_H", ""]
+    lines += [f"enum {{ {symbol.upper()}_BANDS = {rows[-1][0] + 1}, {symbol.upper()}_ROWS = {len(rows)} }};", ""]
+    lines += [f"static const double {symbol}{size} = {{", f"    // {TABLE_BEGINS}"]
+    for l, m, numbers in rows:
+        pairs = [f"{{{', '.join(numbers[i : i + 2])}}}" for i in range(0, 6, 2)] if len(numbers) == 6 else numbers
+        lines.append(f"    {{{', '.join(pairs)}}},  // l = {l}, m = {m}")
+    return "\n".join([*lines, f"    // {TABLE_ENDS}", "};", "", "#endif", ""])
+
+
+def glsl_source(
+    name: str, quantity: str, comments: Sequence[str], rows: Sequence[Row], factors: Array, mirrored: bool
+) -> str:
+    """Constants and the function `sh_NAME_QUANTITY(vec3 direction)`, GLSL 3.30 and later, without a #version line.
+
+    factors: of Y(l, m) in the program's basis, by our index. ValueError for more than MAX_GLSL_BANDS bands.
+    """
+    n_bands, symbol = rows[-1][0] + 1, identifier(name)
+    if n_bands > MAX_GLSL_BANDS:
+        raise ValueError(
+            f"{n_bands} bands: a shader is written for 1 to {MAX_GLSL_BANDS}; use fewer, or .npz and a texture"
+        )
+    table = f"const vec3 {symbol}[{len(rows)}] = vec3[{len(rows)}]("
+    lines = [*comments, "", table, f"    // {TABLE_BEGINS}"]
+    for place, (l, m, numbers) in enumerate(rows):
+        comma = "," if place + 1 < len(rows) else ""
+        lines.append(f"    vec3({', '.join(numbers)}){comma}  // l = {l}, m = {m}")
+    lines += [f"    // {TABLE_ENDS}", ");", "", "// direction: unit, in the axes named above"]
+    lines += [f"vec3 {symbol}_{quantity}(vec3 direction) {{"]
+    lines += ["    float x = direction.x, y = direction.y, z = direction.z;"]
+
+    def row(l: int, m: int) -> str:
+        return f"{symbol}[{index(l, -m if mirrored else m)}]"
+
+    body = _polynomials(row, factors, n_bands) if n_bands <= 3 else _recurrence(row, factors, n_bands)
+    return "\n".join([*lines, *body, "}", ""])
+
+
+def _polynomials(row: _RowText, factors: Array, n_bands: int) -> list[str]:
+    terms = [row(0, 0) + _times("", float(factors[0] * normalisation(n_bands)[0, 0]))]
+    for l in range(1, n_bands):
+        for m in range(-l, l + 1):
+            place = index(l, m)
+            constant = float(factors[place] * normalisation(n_bands)[l, abs(m)] * LEADING[place])
+            terms.append(row(l, m) + _times(POLYNOMIALS[place], constant))
+    return ["    return " + "\n         + ".join(terms) + ";"]
+
+
+def _times(polynomial: str, constant: float) -> str:
+    """ " * (constant * polynomial)" without what is 1."""
+    text = f"({polynomial})" if " " in polynomial else polynomial
+    if abs(constant - 1) < UNITY:
+        return f" * {text}" if text else ""
+    return f" * ({constant!r} * {text})" if text else f" * {constant!r}"
+
+
+def _recurrence(row: _RowText, factors: Array, n_bands: int) -> list[str]:
+    """G is g(l, m), D its difference and S the sign (south)^(l - m); C and I are the real and imaginary part of (x + iy)^m."""
+    norms = normalisation(n_bands)
+    lines = ["    float t = dot(direction.xy, direction.xy) / (1.0 + abs(z)), south = z < 0.0 ? -1.0 : 1.0;"]
+    lines += ["    float c = 1.0, s = 0.0, g, d, p;", "    vec3 sum = vec3(0.0);"]
+    for m in range(n_bands):
+        if m:
+            lines.append("    p = c * x - s * y; s = s * x + c * y; c = p;")
+        lines.append(f"    g = 1.0; d = 0.0;  // m = {m}")
+        for l in range(m, n_bands):
+            if l > m:
+                q = (2 * l - 1) / (l + m)
+                lines.append(f"    d = {q!r} * (d - t * g) - d; g += d;")
+            sign = "south * " if (l - m) % 2 else ""
+            terms = [f"{float(norms[l, m] * factors[index(l, m)])!r} * c * {row(l, m)}"]
+            if m:
+                terms.append(f"{float(norms[l, m] * factors[index(l, -m)])!r} * s * {row(l, -m)}")
+            lines.append(f"    sum += {sign}g * ({' + '.join(terms)});")
+    return [*lines, "    return sum;"]

@@ -1,0 +1,94 @@
+"""What a coefficient file says of itself: keys and values, the same in JSON, NPZ and in the comments of CSV, C and GLSL.
+
+Schema 1. A reader needs the first three; the rest is for people, and is checked not to contradict them.
+
+    shviewer-coefficients   1
+    convention              a text for parse_convention, such as "three" or "shviewer,y-up,no-phase"
+    quantity                radiance, irradiance, or irradiance-over-pi
+    basis, phase, index, axes, normalisation, one-over-pi     what `convention` and `quantity` mean, in set words
+    program, layout         who reads it, and how the program itself arranges the numbers
+    bands, rows, columns    n, n^2, and what the columns are
+    light, light-is, light-notes, window, muted, method, samples, seed
+    suns                    how many were left out of the light, if any were; of each, sun-1 having the greatest flux,
+    sun-1-direction         x y z in the file's axes, the unit vector towards it,
+    sun-1-irradiance        red green blue, of a surface that faces it, not divided by pi: that of a directional light,
+    sun-1-radiance          red green blue, of a disc of uniform radiance with that irradiance,
+    sun-1-width             the angle across this disc in degrees
+    relative-l2, left-out, added, max-error, minimum, negative-area, irradiance-relative-l2
+
+Errors are of what the rows hold against the light, relative ones over all channels; max-error and minimum are in units of
+the radiance, or of the irradiance before it is divided by pi. A key of a later schema is no mistake, a later schema is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from shviewer.coefficients.convention import OVER_PI, QUANTITIES, Convention
+from shviewer.coefficients.programs import convention_text, parse_convention
+from shviewer.errors import LightError
+
+SCHEMA = 1
+SCHEMA_KEY = "shviewer-coefficients"
+SUNS_KEY = "suns"
+
+Value = str | int | float | None
+Stamp = Mapping[str, Value]
+
+
+def stamp_of(convention: Convention, quantity: str, n_bands: int) -> dict[str, Value]:
+    """Everything that follows from the convention, the quantity held and the number of bands."""
+    columns = "red green blue"
+    if convention.complex:
+        columns = " ".join(f"{name} {name}-imaginary" for name in columns.split())
+    return {
+        SCHEMA_KEY: SCHEMA,
+        "convention": convention_text(convention),
+        "quantity": convention.quantity or quantity,
+        **_in_words(convention, convention.quantity or quantity),
+        "program": convention.program,
+        "layout": convention.layout,
+        "bands": n_bands,
+        "rows": n_bands**2,
+        "columns": columns,
+    }
+
+
+def _in_words(convention: Convention, quantity: str) -> dict[str, Value]:
+    return {
+        "basis": convention.basis,
+        "phase": convention.phase_words,
+        "index": convention.index,
+        "axes": convention.axes.words,
+        "normalisation": convention.scale,
+        "one-over-pi": "divided by pi" if quantity == OVER_PI else "not divided by pi",
+    }
+
+
+def read_stamp(stamp: Stamp) -> Convention:
+    """The convention that a stamp states, with its quantity.
+
+    LightError for a later schema, a missing key or a contradiction.
+    """
+    schema = stamp[SCHEMA_KEY]
+    if str(schema) != str(SCHEMA):
+        raise LightError(
+            f"{SCHEMA_KEY} {schema}: this version reads schema {SCHEMA}; update shviewer, or write the file again with this one"
+        )
+    text, quantity = stamp.get("convention"), stamp.get("quantity")
+    if not isinstance(text, str) or quantity not in QUANTITIES:
+        raise LightError(
+            f"convention {text!r}, quantity {quantity!r}: a stamp needs both, the latter one of {', '.join(QUANTITIES)}"
+        )
+    try:
+        convention = parse_convention(text)
+    except ValueError as error:
+        raise LightError(str(error)) from error
+    if convention.quantity not in (None, quantity):
+        raise LightError(
+            f"convention {text} holds {convention.quantity}, but quantity says {quantity}: correct one of them"
+        )
+    for key, words in _in_words(convention, str(quantity)).items():
+        if key in stamp and stamp[key] != words:
+            raise LightError(f"{key} says {stamp[key]!r}, but convention {text} means {words!r}: correct one of them")
+    return convention.holding(str(quantity))

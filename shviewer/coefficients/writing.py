@@ -1,0 +1,101 @@
+"""Coefficients as files: JSON, CSV, NPZ, C and GLSL, every number exact and every file stating its convention.
+
+Text holds the shortest digits that give the same float64 again. Equal arguments give equal bytes. What the keys of the
+stamp mean is in stamp.py.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.coefficients.axes import orders
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.source_code import c_header, glsl_source
+from shviewer.coefficients.stamp import Stamp, Value
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import count_bands
+
+FORMATS = ("json", "csv", "npz", "h", "glsl")
+
+
+def encode(
+    numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, kind: str, name: str
+) -> bytes:
+    """The bytes of a file that holds `numbers` (n**2, 3) as they are in `convention`, and says what `stamp` says.
+
+    kind: one of FORMATS; name: what a header calls its array. UsageError for another kind, ValueError for numbers that
+    cannot be written so.
+    """
+    if kind not in FORMATS:
+        raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
+    return _ENCODERS[kind](numbers, stamp, convention, name)
+
+
+def real_columns(numbers: NDArray[np.generic]) -> NDArray[np.float64]:
+    """(n**2, 3), or (n**2, 6) of complex ones: real and imaginary part of each channel."""
+    if np.iscomplexobj(numbers):
+        pairs = np.stack([numbers.real, numbers.imag], axis=-1)
+        return np.asarray(pairs.reshape(len(numbers), -1), dtype=np.float64) + 0.0
+    return np.asarray(numbers, dtype=np.float64)
+
+
+def _json(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
+    """One row to a line."""
+    head = json.dumps(stamp, indent=2, allow_nan=False)[:-2]
+    rows = ",\n".join(f"    [{', '.join(_digits(row))}]" for row in real_columns(numbers))
+    return f'{head},\n  "coefficients": [\n{rows}\n  ]\n}}\n'.encode()
+
+
+def _csv(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
+    lines = [*_comment_lines("#", stamp), ",".join(["l", "m", *str(stamp["columns"]).split()])]
+    for l, m, row in _rows(numbers, convention):
+        lines.append(",".join([str(l), str(m), *_digits(row)]))
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _npz(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
+    file = io.BytesIO()
+    np.savez(file, coefficients=numbers, stamp=np.array(json.dumps(stamp, allow_nan=False)))
+    return file.getvalue()
+
+
+def _h(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
+    rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
+    if convention.layout != Convention.layout:  # the program's own, which this array need not have
+        program = convention.program.partition(",")[0]
+        stamp = stamp | {"layout": f"in {program} {convention.layout}; this array is [row][channel]"}
+    return c_header(name, _comment_lines("//", stamp), rows).encode()
+
+
+def _glsl(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
+    factors = convention.basis_factors(count_bands(numbers))
+    rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
+    quantity = str(stamp["quantity"]).replace("-", "_")
+    return glsl_source(name, quantity, _comment_lines("//", stamp), rows, factors, convention.mirrored).encode()
+
+
+_Encoder = Callable[[NDArray[np.generic], dict[str, Value], Convention, str], bytes]
+_ENCODERS: dict[str, _Encoder] = {"json": _json, "csv": _csv, "npz": _npz, "h": _h, "glsl": _glsl}
+
+
+def _digits(row: Iterable[float]) -> list[str]:
+    return [repr(float(value)) for value in row]
+
+
+def _comment_lines(mark: str, stamp: Stamp) -> list[str]:
+    return [
+        f"{mark} {key}: {value!r}" if isinstance(value, float) else f"{mark} {key}: {value}"
+        for key, value in stamp.items()
+    ]
+
+
+def _rows(numbers: NDArray[np.generic], convention: Convention) -> Iterable[tuple[int, int, NDArray[np.float64]]]:
+    """(l, m, numbers) in the order of the file."""
+    n_bands = count_bands(numbers)
+    for index, (m, row) in enumerate(zip(orders(n_bands), real_columns(numbers), strict=True)):
+        yield int(np.sqrt(index)), int(-m if convention.mirrored else m), row

@@ -1,0 +1,147 @@
+"""Files read and written safely: looked at before they are opened, written whole or not at all, and told apart by a look."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import re
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from shviewer.errors import LightError, OutputError
+from shviewer.limits import Limits
+
+
+@contextlib.contextmanager
+def naming(name: str) -> Iterator[None]:
+    """Errors begin with the name; quoted and escaped if it holds a line break or bytes that are no text."""
+    shown = name if name.isprintable() else ascii(name)
+    try:
+        yield
+    except LightError as error:
+        raise LightError(f"{shown}: {error}") from None
+    except MemoryError:
+        raise LightError(f"{shown}: not enough memory to decode it; close something or make it smaller") from None
+
+
+def read_bytes(path: Path, limits: Limits) -> bytes:
+    """The whole file, read once. Looks before it opens, so that no pipe or device can block or be disturbed."""
+    try:
+        _check_is_small_file(os.stat(path), limits)
+        # The file may have been replaced since: without O_NONBLOCK a pipe in its place would block for ever.
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with open(descriptor, "rb") as file:
+            size = _check_is_small_file(os.fstat(descriptor), limits)
+            data = file.read(size + 1)
+    except (OSError, ValueError) as error:
+        raise LightError(_reason(error)) from None
+    if len(data) != size:
+        raise LightError(f"{len(data)} bytes read where it had {size}; it changed meanwhile: try again")
+    return data
+
+
+def _check_is_small_file(status: os.stat_result, limits: Limits) -> int:
+    """The size in bytes."""
+    if stat.S_ISDIR(status.st_mode):
+        raise LightError("a directory; name one image in it")
+    if not stat.S_ISREG(status.st_mode):
+        raise LightError("a pipe, socket or device; only a regular file is read: save it as one first")
+    if status.st_size == 0:
+        raise LightError("an empty file (0 bytes); fetch or export it again")
+    limits.check_file(status.st_size)
+    return status.st_size
+
+
+def _reason(error: OSError | ValueError) -> str:
+    match error:
+        case OSError(errno=errno.ENOENT | errno.ENOTDIR):
+            return "no such file; check the path"
+        case OSError(errno=errno.EACCES | errno.EPERM):
+            return "permission to read it is denied; change its mode (chmod +r) or copy it"
+        case OSError(errno=errno.ELOOP):
+            return "a symbolic link that leads back to itself; name the file itself"
+        case OSError():
+            return f"cannot be read ({error.strerror}); check the path and the disk"
+    return f"not a path ({error}); check its spelling"
+
+
+class FileVersion(NamedTuple):
+    """What tells one content of a file from the next without reading it."""
+
+    modified_ns: int
+    size: int
+    inode: int
+
+
+def version_of(path: Path) -> FileVersion | None:
+    """The version of the file there at the moment; None where there is none."""
+    try:
+        status = path.stat()
+    except (OSError, ValueError):
+        return None
+    return FileVersion(status.st_mtime_ns, status.st_size, status.st_ino)
+
+
+def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> None:
+    """Write beside and move into place: `path` is what it was or whole. exclusive: FileExistsError if it exists."""
+    try:
+        handle, name = tempfile.mkstemp(prefix=".shv-", suffix=".tmp", dir=path.parent)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            os.chmod(name, 0o666 & ~_umask())
+            if exclusive:
+                _place_exclusively(name, path, data)
+            else:
+                os.replace(name, path)
+        finally:
+            with suppress(FileNotFoundError):
+                os.unlink(name)
+    except FileExistsError:
+        raise
+    except OSError as error:
+        raise _refused(path, error) from error
+
+
+def check_place(path: Path) -> None:
+    """OutputError if nothing can be written there: to be asked before what is to be written is worked on for long."""
+    try:
+        if path.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise _refused(path, error) from error
+
+
+def _refused(path: Path, error: OSError) -> OutputError:
+    reason = "no such folder" if isinstance(error, FileNotFoundError) else error.strerror or error
+    return OutputError(f"{path}: cannot be written: {reason}; choose another place")
+
+
+def _place_exclusively(name: str, path: Path, data: bytes) -> None:
+    try:
+        os.link(name, path)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        with path.open("xb") as file:
+            file.write(data)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def file_stem(name: str) -> str:
+    """What a light is called, fit for a file's name everywhere."""
+    return re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "light"

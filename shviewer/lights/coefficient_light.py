@@ -1,0 +1,145 @@
+"""A light that is a coefficient file: band-limited, so that everything about it is a finite sum.
+
+A light is radiance. Of a file that holds irradiance it is the radiance with just that irradiance, so that the viewer shows the
+file's own numbers as irradiance, and they can be written as either.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.coefficients.convention import RADIANCE, Convention, recovered_radiance
+from shviewer.coefficients.programs import CONVENTIONS, OURS, convention_text
+from shviewer.coefficients.reading import CoefficientFile, read_coefficients
+from shviewer.coefficients.stamp import SUNS_KEY
+from shviewer.harmonics.basis import Array, count_bands, safe_unit
+from shviewer.harmonics.quadrature import angles_from_directions
+from shviewer.harmonics.synthesis import Synthesis
+from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.words import counted
+
+MAP_SIZE = (1025, 2048)
+
+
+@dataclass(frozen=True, eq=False)
+class CoefficientLight:
+    """`given`: radiance in our convention, (n**2, 3), float64."""
+
+    given: Array
+    name: str = "coefficients"
+    file: CoefficientFile | None = None
+    """What was read, with its own numbers."""
+
+    best_method = "coefficients as given"
+
+    @classmethod
+    def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> CoefficientLight:
+        """LightError if the file is bad or does not say its convention."""
+        return cls.of_file(read_coefficients(path, reading.convention, reading.limits), path.stem)
+
+    @classmethod
+    def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
+        """Of a file that has been read."""
+        held = file.coefficients
+        return cls(held if file.quantity == RADIANCE else recovered_radiance(held)[0], name, file)
+
+    @classmethod
+    def of_numbers(
+        cls, numbers: NDArray[np.generic], convention: Convention, name: str = "coefficients"
+    ) -> CoefficientLight:
+        """Of a program's own numbers (n**2, 3). ValueError for more bands than it has."""
+        held = convention.quantity or RADIANCE
+        coefficients = convention.to_ours(numbers)
+        return cls(coefficients if held == RADIANCE else recovered_radiance(coefficients)[0], name)
+
+    @property
+    def n_bands(self) -> int:
+        return count_bands(self.given)
+
+    @property
+    def extent(self) -> str:
+        """ "sh.txt has 3 bands": what is said where more are asked for."""
+        return f"{self.name} has {counted(self.n_bands, 'band')}"
+
+    @property
+    def quantity(self) -> str:
+        """Of the file's numbers: "radiance" or "irradiance"."""
+        return self.file.quantity if self.file else RADIANCE
+
+    @property
+    def convention(self) -> str:
+        """Of its file, as a text without the quantity."""
+        if self.file is None:
+            return OURS.name
+        held = self.file.convention
+        return convention_text(replace(held, quantity=CONVENTIONS[held.name].quantity))
+
+    @property
+    def description(self) -> str:
+        origin = self.file.stamp.get("light") if self.file else None
+        return f"{counted(self.n_bands, 'band')}, {self.convention.split(',')[0]}{f', of {origin}' if origin else ''}"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        if self.file is None:
+            return ()
+        suns = str(self.file.stamp.get(SUNS_KEY, 0))
+        left_out = (f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright",)
+        return (left_out if suns != "0" else ()) + self._recovery(self.file)
+
+    def _recovery(self, file: CoefficientFile) -> tuple[str, ...]:
+        """A note on how radiance comes from irradiance, if it has to."""
+        if self.quantity == RADIANCE:
+            return ()
+        lost = recovered_radiance(file.coefficients)[1]
+        unknown = (
+            f", which tells nothing of band{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}" if lost else ""
+        )
+        return (f"holds irradiance; the radiance is recovered from it{unknown}",)
+
+    def radiance(self, directions: Array) -> Array:
+        return self._synthesis.at(*angles_from_directions(directions))
+
+    def integrand(self, directions: Array) -> Array:
+        return self.radiance(directions)
+
+    def on_rows(self, theta: Array, n_columns: int) -> Array:
+        """The radiance on rows of a lat-long image, (rows, 3, n_columns), for a fraction of what as many directions cost."""
+        return self._synthesis.on_rows(theta, n_columns)
+
+    @cached_property
+    def _synthesis(self) -> Synthesis:
+        return Synthesis(self.given)
+
+    def coefficients(self, n_bands: int) -> Array:
+        found = np.zeros((n_bands**2, 3))
+        kept = min(n_bands, self.n_bands) ** 2
+        found[:kept] = self.given[:kept]
+        return found
+
+    @cached_property
+    def unit(self) -> float:
+        return safe_unit(float(np.abs(self.given).max()))
+
+    def products(self) -> Array:
+        scaled = self.given / self.unit
+        return np.asarray(scaled.T @ scaled)
+
+    def accuracy(self) -> float:
+        return 0.0
+
+    def landmarks(self) -> Array:
+        return np.zeros((0, 3))
+
+    def radiance_map(self) -> LatLongMap:
+        return self._map
+
+    @cached_property
+    def _map(self) -> LatLongMap:
+        return LatLongMap(self._synthesis.pole_to_pole(*MAP_SIZE), rows_on_poles=True)

@@ -1,1 +1,0 @@
-"""Coefficient files: what they say of themselves, how they are read, and the light that they are."""

@@ -1,0 +1,103 @@
+"""How the text LIGHT of a command line becomes a light, and which file it is read from."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+
+from shviewer.errors import LightError
+from shviewer.files import FileVersion, version_of
+from shviewer.lights.light import Light
+from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.resources import resource_folder
+
+IMAGE_SUFFIXES = (".hdr", ".pic", ".rgbe", ".exr", ".png", ".jpg", ".jpeg")
+COEFFICIENT_SUFFIXES = (".json", ".csv", ".txt", ".h", ".glsl", ".npz", ".npy")
+
+
+def built_in_lights() -> dict[str, Path]:
+    """Name -> file of every light in assets/: the scenes first, the paper's default first of all."""
+    scenes = sorted(resource_folder("assets").glob("scenes/*.toml"), key=lambda path: (path.stem != "green", path.stem))
+    maps = sorted(path for path in resource_folder("assets").glob("environments/*") if path.suffix in IMAGE_SUFFIXES)
+    return {path.stem: path for path in [*scenes, *maps]}
+
+
+def split_light(text: str) -> tuple[Path, str]:
+    """The file that a LIGHT names, and what in it: the layer of "file.exr:layer", the function of "file.py:function", or "".
+
+    A built-in name comes first, then a file of that very name.
+    """
+    path = built_in_lights().get(text) or Path(text)
+    file, _, part = text.rpartition(":")
+    if part and file.lower().endswith((".exr", ".py")) and not _exists(path):
+        return Path(file), part
+    return path, ""
+
+
+def file_version(text: str) -> FileVersion | None:
+    """The version of the file of the light that `text` names; None where there is none at the moment."""
+    return version_of(split_light(text)[0])
+
+
+def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
+    """The light that `text` names: a built-in, a scene, an image, coefficients, a "file.exr:layer" or a "file.py:function".
+
+    `reading` says how an image is read, and which convention numbers have that do not say it.
+    LightError if there is no such light or its file is bad.
+    """
+    from shviewer.lights.environment import EnvironmentLight
+    from shviewer.lights.function import load_function
+    from shviewer.lights.scene import read_scene
+
+    path, part = split_light(text)
+    if path.suffix.lower() == ".toml":
+        return read_scene(path)
+    if path.suffix.lower() in IMAGE_SUFFIXES:
+        return EnvironmentLight.read(path, reading, part)
+    if path.suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.lights.coefficient_light import CoefficientLight
+
+        return CoefficientLight.read(path, reading)
+    if part:
+        return load_function(path, part)
+    raise LightError(_unknown(text))
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # too long for a file name, or with a zero byte
+        return False
+
+
+def _what_it_is(text: str) -> str:
+    """What a path is that cannot be a light, and what to do; "" if there is nothing of that name."""
+    path = Path(text)
+    if not _exists(path):
+        return _what_the_colon_is(text)
+    if path.is_dir():
+        return "a directory; name one file in it"
+    if path.suffix == ".py":
+        return f"a Python file; name a function in it, such as {path.name}:light"
+    known = (".toml", *IMAGE_SUFFIXES, *COEFFICIENT_SUFFIXES)
+    return f"a file must end in {', '.join(known[:-1])} or {known[-1]}: convert it"
+
+
+def _what_the_colon_is(text: str) -> str:
+    """What is wrong with the part after a file's last colon; "" if there is none, or no file of a known kind before it."""
+    file, _, part = text.rpartition(":")
+    suffix = Path(file).suffix.lower()
+    if suffix == ".exr" and not part:
+        return "no layer is named after ':'; name one or leave out the ':'"
+    if suffix == ".py" and not part:
+        return f"no function is named after ':'; name one, such as {Path(file).name}:light"
+    if suffix in (*IMAGE_SUFFIXES, ".toml"):
+        return f"only .exr files have layers; leave out :{part}"
+    return ""
+
+
+def _unknown(text: str) -> str:
+    names = list(built_in_lights())
+    near = difflib.get_close_matches(text, names, n=3, cutoff=0.5)
+    offer = f"did you mean {' or '.join(near)}?" if near else f"there is: {', '.join(names)}"
+    return f"unknown light {text!r}: {_what_it_is(text) or offer}"

@@ -1,0 +1,1 @@
+"""Image files: one decoder a format, from bytes to linear radiance."""

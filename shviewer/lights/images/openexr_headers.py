@@ -1,0 +1,115 @@
+"""What matters of the headers of an OpenEXR file, in plain Python."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from shviewer.lights.images.openexr_attributes import read_attributes
+from shviewer.lights.images.openexr_library import damaged, open_openexr
+
+
+class Window(NamedTuple):
+    """A rectangle of texels, y downwards, both ends included as in the file."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+    @property
+    def width(self) -> int:
+        return self.right - self.left + 1
+
+    @property
+    def height(self) -> int:
+        return self.bottom - self.top + 1
+
+
+class Channel(NamedTuple):
+    name: str
+    subsampling: tuple[int, int]
+    """There is a sample at every such x and y, counted from 0 of the file's coordinates."""
+
+
+class Part(NamedTuple):
+    """One image of the file; most files have one."""
+
+    name: str
+    deep: bool
+    storage: tuple[str, ...]
+    """How the texels are stored, such as ("PIZ", "tiled", "mip-mapped")."""
+    layout: str | None
+    """What the envmap attribute says: "lat-long", "cube", or None for no such attribute."""
+    chromaticities: tuple[float, ...] | None
+    """CIE x and y of red, green, blue and white, eight numbers; None: those of Rec. 709."""
+    window: Window
+    """Where the file has data."""
+    display: Window
+    """What the image is meant to show."""
+    channels: tuple[Channel, ...]
+    tile: tuple[int, int] | None
+    """Texels across and down of each tile, on every level; None for scanlines."""
+
+    @property
+    def samples(self) -> int:
+        """Values in all channels of the finest level."""
+        across, down = self.window.width, self.window.height
+        return sum(-(-across // c.subsampling[0]) * -(-down // c.subsampling[1]) for c in self.channels)
+
+
+def read_headers(openexr: ModuleType, data: bytes) -> tuple[Part, ...]:
+    """Every part, without its pixels. Raises LightError."""
+    raw = read_attributes(data)
+    windows = [(Window(*own.window(b"dataWindow")), Window(*own.window(b"displayWindow"))) for own in raw]
+    file = open_openexr(openexr, data, header_only=True)
+    if len(raw) != len(file.parts):
+        raise damaged(f"{len(file.parts)} parts where there are {len(raw)} headers")
+    try:  # the library converts an attribute when it is asked for: UnicodeDecodeError, KeyError, ...
+        headers = [part.header for part in file.parts]
+        shared = _chromaticities(openexr, headers[0])  # one attribute for all parts, often in the first only
+        return tuple(_plain(openexr, *both, shared) for both in zip(headers, windows, strict=True))
+    except Exception as error:
+        raise damaged(f"header unreadable ({error})") from None
+
+
+def _plain(
+    openexr: ModuleType,
+    header: dict[str, Any],
+    windows: tuple[Window, Window],
+    chromaticities: tuple[float, ...] | None,
+) -> Part:
+    """windows: of the data and of the display."""
+    tiles = header.get("tiles")
+    return Part(
+        name=str(header.get("name", "")),
+        deep=header.get("type") in (openexr.deepscanline, openexr.deeptile),
+        storage=_storage(openexr, header),
+        layout={openexr.ENVMAP_LATLONG: "lat-long", openexr.ENVMAP_CUBE: "cube"}.get(header.get("envmap")),
+        chromaticities=_chromaticities(openexr, header) or chromaticities,
+        window=windows[0],
+        display=windows[1],
+        channels=tuple(
+            Channel(channel.name, (max(1, channel.xSampling), max(1, channel.ySampling)))
+            for channel in header["channels"]
+        ),
+        tile=None if tiles is None else (int(tiles.xSize), int(tiles.ySize)),
+    )
+
+
+def _storage(openexr: ModuleType, header: dict[str, Any]) -> tuple[str, ...]:
+    codec = header["compression"]
+    words = ["uncompressed" if codec == openexr.NO_COMPRESSION else codec.name.removesuffix("_COMPRESSION")]
+    if "tiles" in header:
+        words.append("tiled")
+        levels = {openexr.MIPMAP_LEVELS: "mip-mapped", openexr.RIPMAP_LEVELS: "rip-mapped"}
+        words += [levels[header["tiles"].mode]] if header["tiles"].mode in levels else []
+    return tuple(words)
+
+
+def _chromaticities(openexr: ModuleType, header: dict[str, Any]) -> tuple[float, ...] | None:
+    """From the attribute of that name, else from the name of a linear colour space in colorInteropID."""
+    values = header.get("chromaticities")
+    if values is None and "colorInteropID" in header:
+        values = openexr.colorInteropIDToChromaticities(header["colorInteropID"])
+    return None if values is None else tuple(float(value) for value in values)

@@ -1,0 +1,144 @@
+"""Which channels of an OpenEXR file are the radiance: by their names, or by the layer that the user names.
+
+A channel "diffuse.R" is R of the layer "diffuse"; layers nest ("key.diffuse.R"). In a file of several parts each part has
+a name too, and a layer is named "part:layer", or "part" for the channels of that part that are in no layer.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from shviewer.errors import LightError
+from shviewer.lights.images.openexr_headers import Part
+
+_RGB, _LUMINANCE_CHROMA, _LUMINANCE = ("R", "G", "B"), ("Y", "RY", "BY"), ("Y",)
+_SHOWN = 12  # names in an error
+
+
+class Source(NamedTuple):
+    """Where the radiance is."""
+
+    part: int
+    layer: str
+    """"" for channels without a layer."""
+    kind: tuple[str, ...]
+    """What the channels are called within the layer: R, G, B; Y, RY, BY; or Y alone."""
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Their names in the file."""
+        return tuple(f"{self.layer}.{name}" if self.layer else name for name in self.kind)
+
+    @property
+    def grey(self) -> bool:
+        return self.kind == _LUMINANCE
+
+    @property
+    def luminance_chroma(self) -> bool:
+        return self.kind == _LUMINANCE_CHROMA
+
+
+def find_source(parts: tuple[Part, ...], layer: str = "") -> tuple[Source, tuple[str, ...]]:
+    """The channels to read, and what to tell about the choice.
+
+    layer: "diffuse", "part:diffuse" or "part"; "" for the colours without a layer, else the only layer that has
+    colours, else the only luminance.
+    Raises LightError if there is no such layer, more than one, or if it is deep.
+    """
+    sources = [source for i, part in enumerate(parts) for source in _sources(i, part)]
+    notes: tuple[str, ...] = ()
+    if layer:
+        found = _named(sources, parts, layer)
+    else:
+        flat = [source for source in sources if not parts[source.part].deep]
+        found = _unnamed(flat or sources)
+    if not found:
+        raise _nothing(sources, parts, layer)
+    if len(found) > 1:
+        names = _listed([_label(source, parts) for source in found])
+        raise LightError(f"{len(found)} layers to choose from: {names}; name one with FILE.exr:LAYER")
+    (source,) = found
+    part = parts[source.part]
+    if part.deep:
+        raise _deep(part)
+    needed = source.channels[:1] if source.luminance_chroma else source.channels
+    coarse = [_plain(c.name) for c in part.channels if c.name in needed and c.subsampling != (1, 1)]
+    if coarse:
+        raise LightError(f"subsampled channels {', '.join(coarse)}; one value per texel is needed: export it as RGB")
+    if source.layer and not layer:
+        what = "luminance" if source.grey else "colours"
+        notes = (f"layer {_plain(_label(source, parts))} read, the only one with {what}",)
+    return source, notes
+
+
+def _sources(i: int, part: Part) -> list[Source]:
+    """One for each layer of a part that has colours or a luminance."""
+    layers: dict[str, set[str]] = {}
+    for channel in part.channels:
+        layer, _, name = channel.name.rpartition(".")
+        layers.setdefault(layer, set()).add(name)
+    sources = []
+    for layer, names in layers.items():
+        for kind in (_RGB, _LUMINANCE_CHROMA, _LUMINANCE):
+            if names.issuperset(kind) and not (kind == _LUMINANCE and "X" in names):  # X, Y, Z: a vector
+                sources.append(Source(i, layer, kind))
+                break
+    return sources
+
+
+def _unnamed(sources: list[Source]) -> list[Source]:
+    """The best there are: no layer before layers, but colours before grey."""
+    ranked = [(source.grey, source.layer != "") for source in sources]
+    return [source for source, rank in zip(sources, ranked, strict=True) if rank == min(ranked)]
+
+
+def _named(sources: list[Source], parts: tuple[Part, ...], layer: str) -> list[Source]:
+    """By the full name; else by the layer's alone; else by the part's."""
+    by_label = [source for source in sources if _label(source, parts) == layer]
+    by_layer = [source for source in sources if source.layer == layer]
+    by_part = [source for source in sources if len(parts) > 1 and parts[source.part].name == layer]
+    return by_label or by_layer or by_part
+
+
+def _label(source: Source, parts: tuple[Part, ...]) -> str:
+    """What a user would call it."""
+    part = parts[source.part].name if len(parts) > 1 else ""
+    return ":".join(filter(None, (part, source.layer)))
+
+
+def _nothing(sources: list[Source], parts: tuple[Part, ...], layer: str) -> LightError:
+    names = [_label(source, parts) for source in sources]
+    if layer and any(names):
+        return LightError(
+            f"no layer {_plain(layer)} with colours or luminance; there are {_listed(list(filter(None, names)))}:"
+            " name one of them"
+        )
+    if layer and names:
+        return LightError(f"no layer {_plain(layer)}; it has no layers at all: leave the name out")
+    for part in parts:
+        if part.deep:
+            return _deep(part)
+    return LightError(f"no R, G and B among its channels {_channels(parts)}; RGB or Y is needed: export it as RGB")
+
+
+def _deep(part: Part) -> LightError:
+    where = f" in part {_plain(part.name)}" if part.name else ""
+    return LightError(f"deep data (several samples per texel){where}; only flat images are read: flatten it first")
+
+
+def _channels(parts: tuple[Part, ...]) -> str:
+    """The channels of all parts in the file's order, with the part's name where there are several."""
+    prefixes = [f"{part.name}:" if len(parts) > 1 else "" for part in parts]
+    return _listed(
+        [prefix + channel.name for prefix, part in zip(prefixes, parts, strict=True) for channel in part.channels]
+    )
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return ", ".join(_plain(name) for name in names[:_SHOWN]) + more
+
+
+def _plain(name: str) -> str:
+    """In one line of bounded length, whatever the file holds."""
+    return ascii(name[:60])[1:-1]

@@ -1,0 +1,96 @@
+"""The container of a PNG: its chunks, their checksums, whether all texels are there, and a plain file of what matters.
+
+Pillow asks for none of this where it matters: it leaves missing texels black, decodes damaged ones, and believes the
+last of several headers and the rectangles of animations.
+
+Source
+    [PNG] Portable Network Graphics, third edition, 5.3 (chunks), 8 (interlacing), 11.2.1 (the header)
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+
+from shviewer.errors import LightError
+from shviewer.limits import Limits
+
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+_MOST_CHUNKS = 2**18  # encoders write one for each 8 KiB or more
+_PLAIN = (b"IHDR", b"iCCP", b"PLTE", b"tRNS", b"eXIf")
+_AT_ONCE = 2**14  # bytes, which inflate to 16 MiB at most
+
+_SAMPLES = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # of a texel, by colour type
+_ADAM7 = ((0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), (0, 1, 2, 2), (1, 0, 2, 1))
+"""First row and column, step of rows and columns of each pass of an interlaced image."""
+
+
+def damaged(reason: str) -> LightError:
+    """The error for a file that is not what it should be."""
+    return LightError(f"damaged or cut short, {reason}; fetch or export the file again")
+
+
+def read_chunks(data: bytes) -> tuple[dict[bytes, bytes], list[memoryview]]:
+    """Type -> what the first chunk of that type holds, and the pieces of the image; all checksums are right.
+
+    Raises LightError if one is not, or if the end is missing.
+    """
+    if not data.startswith(_SIGNATURE):
+        raise damaged("its signature is not that of a PNG")
+    chunks: dict[bytes, bytes] = {}
+    compressed = []
+    position, view = len(_SIGNATURE), memoryview(data)
+    for _ in range(_MOST_CHUNKS):
+        if len(data) - position < 12:
+            raise damaged(f"it ends at byte {len(data)} without an IEND chunk")
+        length, kind = struct.unpack_from(">I4s", data, position)
+        end = position + 8 + length
+        if end + 4 > len(data):
+            raise damaged(f"the chunk at byte {position} goes past the end of the file")
+        if zlib.crc32(view[position + 4 : end]) != struct.unpack_from(">I", data, end)[0]:
+            raise damaged(f"the chunk at byte {position} does not match its checksum")
+        if kind != b"IHDR" and b"IHDR" not in chunks:
+            raise damaged("it does not begin with an IHDR chunk")
+        if kind == b"IDAT":
+            compressed.append(view[position + 8 : end])
+        else:
+            chunks.setdefault(kind, data[position + 8 : end])
+        if kind == b"IEND":
+            return chunks, compressed
+        position = end + 4
+    raise LightError(f"more than {_MOST_CHUNKS} chunks; no picture needs as many: export it again")
+
+
+def check_texels(header: bytes, compressed: list[memoryview], limits: Limits) -> None:
+    """LightError if they inflate to fewer bytes than the image has: Pillow leaves the rest black."""
+    if len(header) != 13 or header[9] not in _SAMPLES:
+        raise damaged("its IHDR chunk is not that of an image")
+    width, height, bits, colour_type, _, _, interlaced = struct.unpack(">IIBBBBB", header)
+    limits.check_size(width, height)
+    passes = _ADAM7 if interlaced else ((0, 0, 1, 1),)
+    sizes = [(-(-(height - top) // down), -(-(width - left) // right)) for top, left, down, right in passes]
+    missing = sum(
+        rows * (1 + -(-columns * bits * _SAMPLES[colour_type] // 8)) for rows, columns in sizes if columns > 0
+    )
+    inflater = zlib.decompressobj()
+    try:
+        for piece in compressed:
+            for start in range(0, len(piece), _AT_ONCE):
+                if missing > 0 and not inflater.eof:
+                    missing -= len(inflater.decompress(piece[start : start + _AT_ONCE]))
+    except zlib.error as error:
+        raise damaged(str(error)) from None
+    if missing > 0:
+        raise damaged(f"the last {missing} bytes of its texels are missing")
+
+
+def plain_png(chunks: dict[bytes, bytes], compressed: list[memoryview]) -> bytes:
+    """A file of the image and of what its colours and its orientation depend on, each once and nothing else."""
+    parts = [_chunk(kind, chunks[kind]) for kind in _PLAIN if kind in chunks]
+    return b"".join((_SIGNATURE, *parts, _chunk(b"IDAT", b"".join(compressed)), _chunk(b"IEND", b"")))
+
+
+def _chunk(kind: bytes, content: bytes) -> bytes:
+    return b"".join(
+        (struct.pack(">I", len(content)), kind, content, struct.pack(">I", zlib.crc32(content, zlib.crc32(kind))))
+    )

@@ -1,0 +1,142 @@
+"""Radiance from a file: which kind it is, whether it may be read, and what to do about bad values.
+
+The decoders are in decoders/, one per format. A *value* is one channel of one texel; counts in messages and notes are of
+values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.errors import LightError
+from shviewer.files import naming, read_bytes
+from shviewer.lights.images.decoded import Decoded
+from shviewer.lights.images.display_referred import decode_jpeg, decode_png
+from shviewer.lights.images.isolated import decode_isolated
+from shviewer.lights.images.openexr import decode_openexr
+from shviewer.lights.images.rgbe import decode_rgbe
+from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.limits import Limits
+from shviewer.words import counted
+
+_Decoder = Callable[[bytes, Limits, str], Decoded]
+"""Of a file's bytes, the limits and the layer asked for ("" for none)."""
+
+
+@dataclass(frozen=True)
+class _Kind:
+    name: str
+    magic: bytes
+    suffixes: tuple[str, ...]
+    decode: _Decoder
+
+
+_KINDS = (
+    _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), lambda data, limits, layer: decode_rgbe(data, limits)),
+    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), decode_openexr),
+    _Kind("PNG", b"\x89PNG", (".png",), lambda data, limits, layer: decode_png(data, limits)),
+    _Kind("JPEG", b"\xff\xd8\xff", (".jpg", ".jpeg"), lambda data, limits, layer: decode_jpeg(data, limits)),
+)
+
+IMAGE_SUFFIXES = tuple(suffix for kind in _KINDS for suffix in kind.suffixes)
+
+_OTHER_MAGICS = (
+    (b"II*\0", "a TIFF"),
+    (b"MM\0*", "a TIFF"),
+    (b"II+\0", "a BigTIFF"),
+    (b"GIF8", "a GIF"),
+    (b"BM", "a BMP"),
+    (b"RIFF", "a WebP or other RIFF"),
+    (b"DDS ", "a DDS"),
+    (b"\xabKTX", "a KTX"),
+    (b"8BPS", "a Photoshop"),
+    (b"PF\n", "a PFM"),
+    (b"Pf\n", "a PFM"),
+    (b"PK\x03\x04", "a ZIP"),
+    (b"\x1f\x8b", "a gzip"),
+    (b"version https://git-lfs", "a Git LFS pointer"),
+    (b"<", "an HTML or XML"),
+)
+
+
+def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
+    """Reads an image file, whose kind its first bytes decide; the notes then also say what was done about bad values.
+
+    layer: of an OpenEXR file, such as "diffuse"; "" for the plain or only one.
+    Raises LightError, one line with file, finding, rule and next step, for whatever is wrong with the file.
+    """
+    with naming(str(path)):
+        data = read_bytes(path, reading.limits)
+    return decode_radiance_image(data, str(path), reading, layer)
+
+
+def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
+    """`read_radiance_image` of a file that is in memory already; `name` is the path it has or might have."""
+    with naming(name):
+        decode = _decoder(data, Path(name).suffix.lower())
+        if reading.isolated and decode is decode_openexr:
+            decode = decode_isolated
+        decoded = decode(data, reading.limits, layer)
+        notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
+    return replace(decoded, notes=decoded.notes + notes)
+
+
+def _decoder(data: bytes, suffix: str) -> _Decoder:
+    """By the first bytes; a suffix that says otherwise is refused, since one of the two is a mistake."""
+    for kind in _KINDS:
+        if not data.startswith(kind.magic):
+            continue
+        if any(suffix in other.suffixes for other in _KINDS if other is not kind):
+            raise LightError(f"named {suffix} but holds {kind.name}; rename it to end in {kind.suffixes[0]}")
+        return kind.decode
+    wanted = "an image is read as .hdr (Radiance), .exr (OpenEXR), .png or .jpg: convert it"
+    for magic, name in _OTHER_MAGICS:
+        if data.startswith(magic):
+            raise LightError(f"seems to be {name} file; {wanted}")
+    raise LightError(f"begins with {data[:8]!r}, which is no known image; {wanted}")
+
+
+def _check(pixels: NDArray[np.float32]) -> tuple[str, ...]:
+    """Refuses NaN and Inf; negative values are worth a note."""
+    finite = np.isfinite(pixels)
+    if not finite.all():
+        row, column = (int(i) for i in np.argwhere(~finite.all(axis=2))[0])
+        nan, up, down = int(np.isnan(pixels).sum()), int(np.isposinf(pixels).sum()), int(np.isneginf(pixels).sum())
+        raise LightError(
+            f"{nan} NaN, {up} +Inf and {down} -Inf values, the first at row {row}, column {column} (from 0, top left);"
+            " a light must be finite: --sanitize repairs them"
+        )
+    count = int((pixels < 0.0).sum())
+    return (f"{_negative(count)}, minimum {pixels.min():.4g}, kept",) if count else ()
+
+
+def _repair(pixels: NDArray[np.float32]) -> tuple[str, ...]:
+    """Makes the values finite and not negative, in place; one note per kind of repair."""
+    finite = np.isfinite(pixels)
+    if not finite.any():
+        raise LightError("not one finite value, so there is nothing to repair it with: export it again")
+    smallest = pixels.min(where=finite, initial=0.0)
+    largest = pixels.max(where=finite, initial=0.0)
+    repairs = []
+    for wrong, name, value in (
+        (np.isnan(pixels), "NaN", 0.0),
+        (np.isposinf(pixels), "+Inf", largest),
+        (np.isneginf(pixels), "-Inf", 0.0),
+    ):
+        if count := int(wrong.sum()):
+            pixels[wrong] = value
+            repairs.append(f"{count} {name} -> {value:.6g}")
+    notes = ["sanitised: " + ", ".join(repairs)] if repairs else []
+    if count := int((pixels < 0.0).sum()):
+        np.maximum(pixels, 0.0, out=pixels)
+        notes.append(f"sanitised: {_negative(count)}, minimum {smallest:.4g} -> 0")
+    return tuple(notes)
+
+
+def _negative(count: int) -> str:
+    return counted(count, "negative value")

@@ -1,0 +1,230 @@
+"""What makes a source compact, and taking the compact sources of an image out of it.
+
+Compact is, of the mean of the three channels,
+    narrow      a half-angle of at most WIDEST,
+    bright      a peak at least CONTRAST times as bright as what surrounds it,
+    alone       nothing half as bright between CAP and RIM: it would be a piece of something longer, or one of a group,
+    worth it    at least FLUX of the image's flux and ENERGY of its ||f||^2, as both are when the source's turn comes.
+The brightest goes first, up to MOST, until none is left. What lies within one cap of CAP leaves as one source.
+
+A source is what rises above its surroundings within CAP of its middle, the middle of all that is half as bright as its peak or
+brighter. The surroundings are the ring beyond, out to RING, and their level is the radiance that LEVEL of the ring stays below,
+per channel. Texels above that level are lowered to it. Texels below 0 are raised to 0: beside a sun they are the ringing of the
+filter that resized the image, and belong to it. No other texel changes, and no channel that would gain by it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, normalise
+from shviewer.lights.layouts.layout import Layout
+from shviewer.lights.suns.caps import Caps, Texels, chord, chord_of
+
+CAP = np.radians(3.0)
+RIM = np.radians(4.0)
+RING = np.radians(6.0)
+WIDEST = np.radians(2.5)
+"""Less than CAP: what fills the cap goes on beyond it."""
+
+CONTRAST = 10.0
+FLUX = 0.005
+ENERGY = 0.05
+LEVEL = 0.9
+MOST = 8
+
+BLOCK_VALUES = 2**18
+"""Texels weighed at a time."""
+
+TRIES = 32
+"""So many bright spots are looked at before those taken out are counted and the rest weighed again."""
+
+RULE = (
+    f"a sun is at most {2 * np.degrees(WIDEST):g} degrees wide, alone, {CONTRAST:g} times as bright as what surrounds it, and "
+    f"holds {100 * FLUX:g} % of the flux and {100 * ENERGY:g} % of the squared norm"
+)
+
+
+class Found(NamedTuple):
+    """A disc in place of what was taken."""
+
+    axis: Array
+    """Unit, (3,)."""
+    half_angle: float
+    """Radians."""
+    radiance: Array
+    """(3,)"""
+
+
+def refusal(half_angle: float, contrast: float, flux: float, energy: float) -> str:
+    """Why the brightest spot is not compact, in words; "" if it is. Flux and energy are shares of the whole."""
+    if not contrast >= CONTRAST:
+        return f"its brightest spot is only {contrast:.2g} times as bright as what surrounds it"
+    if not half_angle <= WIDEST:
+        return f"its brightest spot is {2 * np.degrees(half_angle):.2g} degrees wide"
+    if not energy >= ENERGY:
+        return f"its brightest spot holds only {100 * energy:.2g} % of the squared norm"
+    if not flux >= FLUX:
+        return f"its brightest spot holds only {100 * flux:.2g} % of the flux"
+    return ""
+
+
+@dataclass(frozen=True, eq=False)
+class _Excess:
+    """What rises around an axis, and what would be left of it."""
+
+    texels: Texels
+    before: NDArray[np.float32]
+    after: NDArray[np.float32]
+    """Of the texels, (k, 3)."""
+    level: Array
+    """Of the ring beyond, (3,)."""
+    rim: float
+    """The brightest between CAP and RIM, of the channels' mean."""
+
+    @cached_property
+    def taken(self) -> Array:
+        """What is missing from each texel afterwards, (k, 3): exactly, for float32 differences."""
+        return self.before.astype(np.float64) - self.after
+
+    @cached_property
+    def mean(self) -> Array:
+        """Of the three channels of `taken`, (k,)."""
+        return np.asarray(self.taken.mean(axis=1))
+
+    @property
+    def contrast(self) -> float:
+        """The peak over the level; infinite in front of black."""
+        level = float(self.level.mean())
+        return 1 + float(self.mean.max()) / level if level > 0 else np.inf
+
+    @property
+    def goes_on(self) -> bool:
+        return self.rim >= (float(self.mean.max()) + float(self.level.mean())) / 2
+
+    @property
+    def flux(self) -> Array:
+        """(3,)"""
+        return np.asarray(self.texels.solid_angles @ self.taken)
+
+
+class CompactSources:
+    """An image while its compact sources are being taken out; `pixels` (height, width, 3) are what is left."""
+
+    def __init__(self, pixels: NDArray[np.float32], layout: Layout) -> None:
+        self.pixels = pixels.copy()
+        self._layout = layout
+        self._solid_angles = layout.solid_angles().astype(np.float32)
+        self._mean: NDArray[np.float32] = self.pixels @ np.full(3, 1 / 3, dtype=np.float32)
+        self._mean *= self._solid_angles > 0
+        self._caps = Caps(layout, *self.pixels.shape[:2])
+
+    def take_all(self) -> tuple[list[Found], str]:
+        """(the sources taken out, why there are no more)."""
+        sources: list[Found] = []
+        while True:
+            found, why = self._take_brightest(MOST - len(sources))
+            sources += found
+            if not found or len(sources) == MOST:
+                return sources, why
+
+    def _take_brightest(self, most: int) -> tuple[list[Found], str]:
+        """Up to `most` sources that are compact in the present image, and what is wrong with the first spot that is not.
+
+        A source has a texel of at least sqrt(ENERGY ||f||^2 / solid angle of the cap), which few texels reach.
+        """
+        peak = self._mean.max()
+        if not peak > 0:
+            return [], "nothing in it is above 0"
+        flux, squares = self._flux_and_squares(peak)
+        dimmest = np.sqrt(ENERGY * squares / np.pi) / chord_of(CAP)
+        waiting = self._brighter_than(dimmest * peak)
+        found: list[Found] = []
+        why = ""
+        for _ in range(TRIES):
+            if not len(waiting) or len(found) == most:
+                break
+            excess = self._excess(self._middle(waiting[0]))
+            mean, weights = excess.mean / peak, excess.texels.solid_angles
+            shares = float(weights @ mean) / flux, float(weights @ mean**2) / squares
+            wrong = (
+                refusal(0.0, excess.contrast, *shares)
+                or excess.goes_on * "its brightest spot is part of something larger"
+            )
+            if not wrong:
+                disc = self._disc(excess)
+                wrong = refusal(disc.half_angle, excess.contrast, *shares)
+                if not wrong:
+                    found.append(disc)
+                    self._remove(excess)
+            why = why or wrong
+            waiting = waiting[chord(waiting, waiting[0]) > chord_of(CAP)]
+        return found, why or "no texel is bright enough to hold so much in so small a cap"
+
+    def _flux_and_squares(self, peak: np.float32) -> tuple[float, float]:
+        """The integrals of |mean| / peak and of its square, to the few digits that a share needs."""
+        flux = squares = 0.0
+        block = max(1, BLOCK_VALUES // self._mean.shape[1])
+        for start in range(0, len(self._mean), block):
+            scaled, weights = self._mean[start : start + block] / peak, self._solid_angles[start : start + block]
+            flux += float((np.abs(scaled) * weights).sum(axis=1).sum(dtype=np.float64))
+            squares += float((scaled * scaled * weights).sum(axis=1).sum(dtype=np.float64))
+        return flux, squares
+
+    def _brighter_than(self, dimmest: float) -> Array:
+        """Directions of the texels that are, the brightest first, (k, 3)."""
+        rows, columns = np.divmod(np.flatnonzero(self._mean >= dimmest), self._mean.shape[1])
+        bright = self._caps.texels(rows, columns)
+        return bright.directions[np.argsort(-self._mean[bright.rows, bright.columns], kind="stable")]
+
+    def _middle(self, peak: Array) -> Array:
+        """Of what is at least half as bright within CAP of `peak`, which may lie at its edge."""
+        near = self._caps.cap(peak, CAP)
+        mean = self._mean[near.rows, near.columns]
+        return normalise((near.solid_angles * (mean >= mean.max() / 2)) @ near.directions)
+
+    def _excess(self, axis: Array) -> _Excess:
+        """What rises within CAP of `axis`."""
+        near = self._caps.cap(axis, RING)
+        cap, ring = near.within(axis, -1, CAP), near.within(axis, CAP, RING)
+        around = self.pixels[ring.rows, ring.columns]
+        level = np.array([_quantile(channel, ring.solid_angles, LEVEL) for channel in around.T], dtype=np.float32)
+        level = np.maximum(level, 0)
+        before = self.pixels[cap.rows, cap.columns]
+        after = np.clip(before, 0, level)
+        unwilling = cap.solid_angles @ (before.astype(np.float64) - after) <= 0
+        after[:, unwilling] = before[:, unwilling]
+        rim = self._mean[ring.rows, ring.columns][chord(ring.directions, axis) <= chord_of(RIM)]
+        return _Excess(cap, before, after, level.astype(np.float64), float(rim.max(initial=-np.inf)))
+
+    def _disc(self, excess: _Excess) -> Found:
+        """The disc whose bands 0 and 1 are those of what is taken, by the layout's exact integrals over its texels."""
+        rows, columns = excess.texels.rows, excess.texels.columns
+        scale = np.abs(excess.taken).max()
+        alone = np.zeros(self.pixels.shape, dtype=np.float32)  # pages that stay zero take no memory
+        alone[rows, columns] = (excess.taken / scale).astype(np.float32)
+        bands = self._layout.project(alone, 2).mean(axis=1)
+        vector = np.array([-bands[3], -bands[1], bands[2]]) / np.sqrt(3)  # in units of band 0
+        length = float(np.linalg.norm(vector))
+        smallest = float(excess.texels.solid_angles[excess.mean.argmax()]) / (4 * np.pi)
+        half_angle = float(2 * np.arcsin(np.sqrt(min(1.0, max(1 - length / bands[0], smallest)))))
+        return Found(vector / length, half_angle, excess.flux / (4 * np.pi * np.sin(half_angle / 2) ** 2))
+
+    def _remove(self, excess: _Excess) -> None:
+        rows, columns = excess.texels.rows, excess.texels.columns
+        self.pixels[rows, columns] = excess.after
+        self._mean[rows, columns] = excess.after.mean(axis=1)
+
+
+def _quantile(values: NDArray[np.float32], weights: Array, share: float) -> float:
+    """The smallest value that `share` of the weight does not exceed; infinite for no values."""
+    if not len(values):
+        return np.inf
+    order = np.argsort(values)
+    below = np.cumsum(weights[order])
+    return float(values[order[np.searchsorted(below, share * below[-1])]])

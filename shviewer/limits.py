@@ -1,0 +1,51 @@
+"""What is refused for its size: files and images before memory is taken, bands, and radiance that float32 cannot show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from shviewer.errors import LightError
+
+MAX_BANDS = 128
+"""The most bands that are read, projected by the program and shown."""
+
+MAX_DIRECT_BANDS = 32
+"""The most bands the fragment shader sums: 32**2 vec4 fill the 16 KiB that every driver grants a uniform block."""
+
+DIMMEST, BRIGHTEST = 1e-30, 1e30
+"""The largest radiance of a light that can be drawn: beyond, sums and products would leave float32."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How large an image may be. side: texels; texels: of the whole image; file_bytes: of the file as it is stored.
+
+    Checked on the numbers a header claims, before anything of that size is made.
+    """
+
+    side: int = 32768
+    texels: int = 2**27
+    file_bytes: int = 512 * 2**20
+
+    def check_file(self, size: int) -> None:
+        """Raises LightError for a file of more bytes."""
+        if size > self.file_bytes:
+            raise LightError(
+                f"{size} bytes; the limit is {self.file_bytes}: make the image smaller, or raise it (--max-file-mib)"
+            )
+
+    def check_size(self, width: int, height: int, what: str = "image") -> None:
+        """Raises LightError unless both sides (texels) and their product are within the limits."""
+        if not (1 <= width <= self.side and 1 <= height <= self.side):
+            raise LightError(
+                f"{what} of {width} x {height} texels; a side must be 1 to {self.side}: resize or re-export it, or raise"
+                " the limit (--max-side)"
+            )
+        if width * height > self.texels:
+            raise LightError(
+                f"{what} of {width} x {height} = {width * height} texels; the limit is {self.texels}: make it smaller,"
+                " or raise it (--max-megatexels)"
+            )
+
+
+DEFAULT_LIMITS = Limits()

@@ -1,0 +1,1 @@
+"""Sweeps and turntables: frames over time, and the files they go into."""

@@ -1,0 +1,170 @@
+"""Animations: what the sweep of the window or a turn of the camera shows, frame by frame, in a file.
+
+A frame is the screenshot of its state: it goes through the same calls, in one headless context.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.errors import UsageError
+from shviewer.files import check_place, write_atomically
+from shviewer.limits import MAX_BANDS
+from shviewer.viewer.actions import step_sweep, with_bands
+from shviewer.viewer.animation.encoders import encode_gif, encode_webp
+from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.composition import Composition
+from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.picture_files import metadata
+from shviewer.viewer.screenshot import headless_renderer, render_rgb
+from shviewer.viewer.state import ViewState
+
+Progress = Callable[[float, float, str], None]
+"""Told the share that is done, the seconds left, and what is at work."""
+
+ENCODERS = {".gif": (encode_gif, 2), ".webp": (encode_webp, 1)}
+"""By suffix, with how often each frame is drawn."""
+
+TURN_FRAMES = 72
+TURN_SECONDS = 0.08
+"""Once round in 5.8 s, by 5 degrees a frame."""
+
+HOLD = 3
+"""A band sweep shows its last frame so many times as long as the others."""
+
+SECONDS_RANGE = (0.02, 60.0)
+"""Of a frame. Below, browsers show GIFs at a tenth of a second."""
+
+MAX_FRAMES = 720
+MAX_SECONDS = 655.0
+"""In all: the most that GIF can say of one frame, which is what equal frames become."""
+
+MAX_PIXELS = 2**29
+"""Of all frames together. A GIF is encoded from one byte for each; 72 frames of 3840 x 1920 are just below."""
+
+
+@dataclass(frozen=True)
+class Animation:
+    """Its frames, how long each is shown, and the state that its description is of."""
+
+    states: tuple[ViewState, ...]
+    milliseconds: tuple[int, ...]
+    portrait: ViewState
+    about: dict[str, object]
+    """What kind it is, for its description."""
+
+
+def band_sweep(state: ViewState, first: int, last: int, seconds: float = SWEEP_SECONDS) -> Animation:
+    """The state with `first` to `last` bands, as the window plays it. UsageError for bands that cannot be swept."""
+    for option, n_bands in (("from", first), ("to", last)):
+        if not 1 <= n_bands <= MAX_BANDS:
+            raise UsageError(f"--{option} {n_bands}: the viewer shows 1 to {MAX_BANDS} bands")
+    if first > last:
+        raise UsageError(f"--from {first} --to {last}: a sweep adds bands; let --from be at most --to")
+    step = replace(with_bands(state, first), sweep_to=last if first < last else None)
+    states = [step]
+    while step.sweep_to is not None:
+        step = step_sweep(step)
+        states.append(step)
+    shown = _milliseconds(seconds)
+    about = {"kind": "bands", "from": first, "to": last}
+    return _checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
+
+
+def turntable(state: ViewState, frames: int = TURN_FRAMES, seconds: float = TURN_SECONDS) -> Animation:
+    """The camera once round in equal steps, beginning where it stands. UsageError for a number of frames out of range."""
+    if not 2 <= frames <= MAX_FRAMES:
+        raise UsageError(f"--frames {frames}: a turn has 2 to {MAX_FRAMES}")
+    azimuth, elevation = state.camera
+    states = [replace(state, camera=((azimuth + 360 * k / frames) % 360, elevation)) for k in range(frames)]
+    return _checked(states, [_milliseconds(seconds)] * frames, state, {"kind": "turntable"})
+
+
+def _milliseconds(seconds: float) -> int:
+    """In whole hundredths of a second, as GIF keeps them."""
+    least, most = SECONDS_RANGE
+    if not least <= seconds <= most:
+        raise UsageError(f"--seconds {seconds:g}: a frame is shown for {least:g} to {most:g} s")
+    return 10 * round(100 * seconds)
+
+
+def _checked(
+    states: list[ViewState], milliseconds: list[int], portrait: ViewState, about: dict[str, object]
+) -> Animation:
+    total = sum(milliseconds) / 1000
+    if total > MAX_SECONDS:
+        raise UsageError(f"{len(states)} frames last {total:g} s: at most {MAX_SECONDS:g}; lower --seconds")
+    return Animation(tuple(states), tuple(milliseconds), portrait, about)
+
+
+def save_animation(
+    animation: Animation,
+    composition: Composition,
+    out: Path,
+    *,
+    overlay: bool = True,
+    progress: Progress | None = None,
+) -> Picture:
+    """Draw all frames without a window and write `out`, .gif or .webp; the picture that the description is of.
+
+    UsageError, LightError, GraphicsError, ShaderError or OutputError if that is impossible; then `out` is what it was.
+    """
+    if out.suffix.lower() not in ENCODERS:
+        raise UsageError(f"{out}: OUT must end in {' or '.join(ENCODERS)}")
+    encode, times_drawn = ENCODERS[out.suffix.lower()]
+    count, (width, height) = len(animation.states), (composition.width, composition.height)
+    if count * width * height > MAX_PIXELS:
+        most = math.isqrt(MAX_PIXELS // count * width // height)
+        raise UsageError(
+            f"{count} frames of {width} x {height}: at most {MAX_PIXELS / 1e6:.0f} megapixels in all; "
+            f"take fewer, or a --size up to {most} {most * height // width}"
+        )
+    check_place(out)
+    portrait = prepare(animation.portrait)
+    with headless_renderer() as renderer:
+        tell = _Teller(animation, count * times_drawn, progress)
+
+        def draw(number: int) -> NDArray[np.uint8]:
+            tell(number)
+            return render_rgb(renderer, prepare(animation.states[number]), composition, overlay=overlay)
+
+        text = describe(animation, portrait, composition, renderer.version, overlay=overlay)
+        data = encode(draw, animation.milliseconds, text)
+    write_atomically(out, data)
+    return portrait
+
+
+def describe(
+    animation: Animation, portrait: Picture, composition: Composition, opengl: str, *, overlay: bool = True
+) -> str:
+    """JSON: the description of one picture, the last of a band sweep or the first of a turn, and of the animation."""
+    frames = {"frames": len(animation.states), "milliseconds": list(animation.milliseconds)}
+    described = json.loads(metadata(portrait, composition, opengl, overlay=overlay))
+    return json.dumps({**described, "animation": {**animation.about, **frames}}, allow_nan=False)
+
+
+class _Teller:
+    """Says before each drawing how far the animation is."""
+
+    def __init__(self, animation: Animation, drawings: int, progress: Progress | None) -> None:
+        self.animation = animation
+        self.drawings = drawings
+        self.progress = progress
+        self.drawn = 0
+        self.began = perf_counter()
+
+    def __call__(self, number: int) -> None:
+        if self.progress is not None:
+            passed = perf_counter() - self.began
+            left = passed * (self.drawings - self.drawn) / self.drawn if self.drawn else 0.0
+            words = f"frame {number + 1} of {len(self.animation.states)}"
+            self.progress(self.drawn / self.drawings, left, words)
+        self.drawn += 1

@@ -1,0 +1,120 @@
+"""What a window shows of a picture: the renderer and what is kept from one frame to the next. Knows no window and no event."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from time import perf_counter
+
+import moderngl
+
+from shviewer.errors import ShviewerError
+from shviewer.viewer.composition import Composition
+from shviewer.viewer.desktop.evaluation import Evaluation
+from shviewer.viewer.drawn import DirectSum
+from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.overlay.captions import describe_evaluation
+from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.overlay.marks import mark_layers
+from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
+from shviewer.viewer.overlay.plots.plane import measured
+from shviewer.viewer.overlay.probe import probe, probe_layers
+from shviewer.viewer.picture import Picture
+from shviewer.viewer.state import ViewState
+
+Point = tuple[float, float]
+
+
+class Canvas:
+    """Frames on the screen of a context. release() at the end."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.renderer = Renderer(context)
+        self.overlay: Overlay | None = None
+        self._overlay_key: object = None
+        self._evaluation = Evaluation()
+
+    def by_map(self, state: ViewState, composition: Composition) -> bool:
+        """Whether the reconstruction is to be drawn from a map, where that is left to the time that frames take."""
+        pixels = summed_pixels(composition)
+        return state.evaluate == "auto" and self._evaluation.choose(state.n_bands, pixels, perf_counter())
+
+    def show(self, picture: Picture, composition: Composition) -> None:
+        """Upload and write what has changed. GraphicsError for a map that this OpenGL cannot hold."""
+        self.renderer.show(picture)
+        key = _overlay_key(picture, composition)
+        if key != self._overlay_key:
+            self.overlay = draw_overlay(picture, composition, timing=True, opengl=self.renderer.version)
+            self._overlay_key = key
+
+    def draw(self, composition: Composition, pointer: Point | None = None) -> bool:
+        """The picture last shown, with the values under the pointer; True if another frame is due.
+
+        One that is summed per pixel is timed, and may turn out to be too slow.
+        """
+        picture = self._picture
+        layers = self.layers(composition, pointer)
+        timed = picture.state.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
+        if timed:
+            self.renderer.context.finish()
+        start = perf_counter()
+        self.renderer.draw(self.renderer.context.screen, composition, layers)
+        if not timed:
+            return False
+        self.renderer.context.finish()
+        now, pixels, n_bands = perf_counter(), summed_pixels(composition), picture.state.n_bands
+        again = self._evaluation.drawn(n_bands, pixels, 1000 * (now - start), now)
+        return again or self._evaluation.choose(n_bands, pixels, now)
+
+    def layers(self, composition: Composition, pointer: Point | None = None) -> tuple[Layer, ...]:
+        """Marks, what is written, and the values under the pointer."""
+        picture = self._picture
+        written = self.overlay
+        if written is None:
+            return mark_layers(picture, composition)
+        layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
+        covered = written.sheet is not None and pointer is not None and written.sheet.contains(*pointer)
+        if pointer is None or covered or picture.state.help_visible:
+            return layers
+        with suppress(ShviewerError):  # a light that cannot be evaluated there has no values to show
+            found = probe(picture, composition, *pointer)
+            if found is not None:
+                layers += probe_layers(found, composition, *pointer)
+        return layers
+
+    def say(self, message: str, picture: Picture, composition: Composition) -> None:
+        """Draw a picture with a message over it; the next one is written anew."""
+        self.renderer.show(picture)
+        waiting = replace(picture, state=replace(picture.state, message=message))
+        self.renderer.draw(
+            self.renderer.context.screen, composition, draw_overlay(waiting, composition, timing=True).layers
+        )
+        self._overlay_key = None
+
+    def release(self) -> None:
+        self.renderer.release()
+
+    @property
+    def _picture(self) -> Picture:
+        if self.renderer.picture is None:
+            raise ValueError("nothing to draw: show a picture first")
+        return self.renderer.picture
+
+
+def summed_pixels(composition: Composition) -> float:
+    """Pixels that show the reconstruction or its error, as far as they are in sight."""
+    return sum(sphere.visible_area for sphere in composition.spheres[1:])
+
+
+def _overlay_key(picture: Picture, composition: Composition) -> object:
+    """Equal as long as nothing that is written changes: turning writes nothing unless the help shows it.
+
+    Zooming may, since text gives way to spheres; and the time-error plane changes with what has been measured.
+    """
+    state = picture.state
+    if not state.help_visible:
+        home = ViewState()
+        state = replace(state, camera=home.camera, light_rotation=home.light_rotation, zoom=home.zoom)
+    known = measured(picture) if state.sheet == "plane" else ()
+    place = composition.width, composition.height, composition.scale, composition.spheres
+    return state, known, describe_evaluation(picture, timing=True), place

@@ -1,0 +1,96 @@
+"""Opening a window with the newest OpenGL there is, and naming its keys. With window.py the only importer of glfw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import glfw
+
+from shviewer.errors import GraphicsError
+from shviewer.viewer.gl.renderer import GL_VERSIONS
+
+SMALLEST_WINDOW = (600, 320)
+"""Screen coordinates in which the help can still be read."""
+
+SPECIAL_KEYS = {
+    glfw.KEY_UP: "Up",
+    glfw.KEY_DOWN: "Down",
+    glfw.KEY_LEFT: "Left",
+    glfw.KEY_RIGHT: "Right",
+    glfw.KEY_PAGE_UP: "PageUp",
+    glfw.KEY_PAGE_DOWN: "PageDown",
+    glfw.KEY_HOME: "Home",
+    glfw.KEY_END: "End",
+    glfw.KEY_ENTER: "Enter",
+    glfw.KEY_KP_ENTER: "Enter",
+    glfw.KEY_ESCAPE: "Esc",
+    glfw.KEY_TAB: "Tab",
+    glfw.KEY_SPACE: "Space",
+    glfw.KEY_F5: "F5",
+    glfw.KEY_F11: "F11",
+    **{getattr(glfw, f"KEY_{digit}"): str(digit) for digit in range(10)},
+    **{getattr(glfw, f"KEY_KP_{digit}"): str(digit) for digit in range(10)},
+}
+"""Keys known by their place; digits, too, because on some layouts they are typed with Shift."""
+
+
+class NoDisplayError(GraphicsError):
+    """There is nothing to open a window on."""
+
+
+def key_name(code: int, scancode: int, modifiers: int) -> str:
+    """The name under which keys.py binds a key: letters by what they type, so that the keyboard's layout is respected."""
+    name = SPECIAL_KEYS.get(code)
+    if name is None:
+        typed = glfw.get_key_name(code, scancode)
+        name = typed.upper() if typed and len(typed) == 1 else ""
+    shift = "Shift+" if modifiers & glfw.MOD_SHIFT else ""
+    control = "Ctrl+" if modifiers & (glfw.MOD_CONTROL | glfw.MOD_SUPER) else ""
+    return f"{control}{shift}{name}"
+
+
+@contextmanager
+def open_window(size: tuple[int, int]) -> Iterator[Any]:
+    """A window with a current context of the newest version there is, from 4.5 down to 3.3."""
+    glfw.ERROR_REPORTING = "ignore"  # asked for below; a warning would be a second line for one mistake
+    if not glfw.init():
+        raise NoDisplayError(f"no display to open a window on ({_last_error()})")
+    try:
+        handle = None
+        for version in GL_VERSIONS:
+            handle = _create_window(size, version)
+            if handle:
+                break
+        else:
+            raise GraphicsError(
+                f"no OpenGL 3.3 for a window ({_last_error()}): update the graphics driver, or use shviewer screenshot"
+            )
+        glfw.make_context_current(handle)
+        glfw.swap_interval(1)
+        yield handle
+    finally:
+        glfw.terminate()
+
+
+def _create_window(size: tuple[int, int], version: int) -> Any:
+    glfw.default_window_hints()
+    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version // 100)
+    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version % 100 // 10)
+    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
+    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
+    glfw.window_hint(glfw.DEPTH_BITS, 0)
+    glfw.window_hint(glfw.STENCIL_BITS, 0)
+    glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
+    handle = glfw.create_window(*size, "shviewer", None, None)
+    if handle:
+        glfw.set_window_size_limits(handle, *SMALLEST_WINDOW, glfw.DONT_CARE, glfw.DONT_CARE)
+    return handle
+
+
+def _last_error() -> str:
+    code, text = glfw.get_error()
+    if not text:
+        return f"GLFW error {code}" if code else "GLFW gave no reason"
+    return (text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)).strip()

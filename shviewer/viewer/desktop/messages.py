@@ -1,0 +1,40 @@
+"""What the window says of a light and its file, in words that name the keys."""
+
+from __future__ import annotations
+
+from shviewer.lights.find import split_light
+from shviewer.lights.light import Light
+from shviewer.lights.reading import Reading
+from shviewer.viewer.state import ViewState, describe_sanitizing
+
+
+def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
+    """A refusal of `light`, and the keys that do what it recommends as an option of the command line.
+
+    With keys it names the file without its folder, so that they are not cut off.
+    """
+    keys = []
+    if "--sanitize" in refusal and not reading.sanitize:
+        keys.append("Z repairs")
+    if "--layout" in refusal:
+        keys.append("L changes the layout")
+    if not keys:
+        return refusal
+    path = split_light(light)[0] if isinstance(light, str) else None
+    if path is not None and refusal.startswith(f"{path}: "):
+        refusal = path.name + refusal.removeprefix(str(path))
+    return f"{refusal}; {', '.join(keys)}"
+
+
+def notes_of(light: Light) -> str:
+    """All notes in a line; "" if there are none."""
+    return f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
+
+
+def reading_news(before: ViewState, after: ViewState) -> str:
+    """How files are read from now on, if that changed."""
+    if before.reading.layout != after.reading.layout:
+        return f"layout {after.reading.layout}"
+    if before.reading.sanitize != after.reading.sanitize:
+        return f"bad values {describe_sanitizing(after)}"
+    return ""

@@ -1,0 +1,28 @@
+"""Noticing that a light's file has changed, by looking at it now and then."""
+
+from __future__ import annotations
+
+from shviewer.files import FileVersion
+from shviewer.lights.find import file_version
+
+
+class Watch:
+    """Two equal looks in a row make a change: a file that is still being written is not read too early.
+
+    A version is reported once, so that a file that cannot be read is not tried again until it has changed. Editors replace
+    files: one that is gone is waited for.
+    """
+
+    def __init__(self) -> None:
+        self._seen: tuple[str, FileVersion | None] | None = None
+        self._reported: tuple[str, FileVersion | None] | None = None
+
+    def changed(self, text: str, read: FileVersion | None) -> bool:
+        """Whether the file of the light `text` is no longer the version `read`, and has come to rest."""
+        now = file_version(text)
+        look = (text, now)
+        at_rest, self._seen = look == self._seen, look
+        if now is None or now == read or not at_rest or look == self._reported:
+            return False
+        self._reported = look
+        return True

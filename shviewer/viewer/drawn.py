@@ -1,0 +1,60 @@
+"""How the reconstruction is drawn: decided once, by `prepare`, and carried to everybody who has to know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+from shviewer.viewer.surface import Surface
+
+MAP_COLUMNS = (512, 1024, 2048)
+"""Widths of the map."""
+
+MAP_ERROR = 0.25 / 255
+"""What its splines may be off, in units of white: half of what could be seen. The widest map is taken where none is so good."""
+
+SPLINE_ERROR = 0.012
+"""A wave of w radians a column is off by this times w^3 at most, of its height (Synthesis.spline_map)."""
+
+LONGEST_STEP = 0.7
+"""Radians a column of the shortest wave: beyond, that is no bound."""
+
+
+@dataclass(frozen=True, eq=False)
+class DirectSum:
+    """Each pixel sums the bands: coefficients (n**2, 3), of MAX_DIRECT_BANDS bands at most."""
+
+    coefficients: Array
+
+
+@dataclass(frozen=True, eq=False)
+class SplineMap:
+    """Each pixel looks the reconstruction up: spline coefficients (rows, columns, 4), rows on the poles."""
+
+    splines: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """In place of the spheres: the light, its reconstruction or one basis function, and the error, if it is shown."""
+
+    shown: tuple[Surface, ...]
+
+
+Drawn: TypeAlias = DirectSum | SplineMap | Surfaces
+
+
+def map_size(n_bands: int, peak: float) -> tuple[int, int]:
+    """Rows and columns of the map of a reconstruction, no finer than needed. peak: its largest magnitude, in units of white."""
+    waves = {columns: 2 * np.pi * (n_bands - 1) / columns for columns in MAP_COLUMNS}
+    good = (
+        columns
+        for columns, wave in waves.items()
+        if wave <= LONGEST_STEP and SPLINE_ERROR * wave**3 * peak <= MAP_ERROR
+    )
+    columns = next(good, MAP_COLUMNS[-1])
+    return columns // 2 + 1, columns

@@ -1,0 +1,254 @@
+"""Draws a Picture into any framebuffer. Knows OpenGL; knows no light, no key and no file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.lights.lobes import Lobe
+from shviewer.viewer import colour_maps
+from shviewer.viewer.composition import Composition, Sphere
+from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
+from shviewer.viewer.error_scale import ERRORS
+from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
+from shviewer.viewer.gl.shared import (
+    BACKGROUND,
+    CHOICES,
+    LOBE_SLOTS,
+    SH_TERMS,
+    pack_coefficients,
+    pack_lobes,
+    profile_bits,
+)
+from shviewer.viewer.gl.surface_renderer import SurfaceRenderer
+from shviewer.viewer.gl.textures import ArrayTexture
+from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.picture import Picture
+
+GL_VERSIONS = (450, 410, 330)
+"""Asked for in this order; every shader is written for the last."""
+
+VEC4 = 16
+"""Bytes."""
+
+
+class Renderer:
+    """One context's programs, buffers and textures. `show` uploads what changed, `draw` draws it; release() at the end."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self.context = context
+        self.programs: dict[tuple[str, str, str, str, int], Program] = {}
+        """Of sphere.frag, by the choices they were made for."""
+        self.layer_program = Program(context, "layer.frag")
+        self.surfaces: SurfaceRenderer | None = None
+        """Made when the first surface is drawn."""
+        self.sh_buffer = context.buffer(reserve=SH_TERMS * VEC4)
+        self.lobe_buffer = context.buffer(reserve=LOBE_SLOTS * 3 * VEC4)
+        self.original_map, self.compared_map, self.reconstruction_map, self.colour_map = (
+            ArrayTexture(context) for _ in range(4)
+        )
+        self.layers: dict[int, tuple[Layer, ArrayTexture]] = {}
+        """By the identity of their image; those of the last frame."""
+        self.colours: dict[str, NDArray[np.float32]] = {}
+        self.picture: Picture | None = None
+        self.coefficients: Array | None = None
+        self.lobes: tuple[Lobe, ...] | None = None
+        """The lobes that are in their buffer."""
+        self.rest = context.simple_framebuffer((1, 1))
+        """Bound while no other framebuffer is in use."""
+
+    @property
+    def version(self) -> str:
+        """Version and renderer as the driver names them."""
+        code = self.context.version_code
+        return f"OpenGL {code // 100}.{code % 100 // 10}, {self.context.info['GL_RENDERER']}"
+
+    def show(self, picture: Picture) -> None:
+        """Upload what differs from the last picture."""
+        lobes = *picture.original.lobes, *picture.compared.lobes, *picture.suns
+        if lobes != self.lobes:
+            self.lobe_buffer.write(pack_lobes(lobes))
+            self.lobes = lobes
+        original = picture.original.map
+        compared = picture.compared.map if picture.error_scale is not None else None
+        self.original_map.follow(None if original is None else original.texels)
+        self.compared_map.follow(None if compared is None or compared is original else compared.texels)
+        self._show_reconstruction(picture.drawn)
+        if picture.error_scale is not None:
+            self.colour_map.follow(self._colours(colour_maps.map_of(picture.error_scale.kind)))
+        self.picture = picture
+
+    def _show_reconstruction(self, drawn: Drawn) -> None:
+        """A sum's coefficients stay in their buffer while something else is drawn; a map goes."""
+        if isinstance(drawn, DirectSum) and drawn.coefficients is not self.coefficients:
+            self.sh_buffer.write(pack_coefficients(drawn.coefficients))
+            self.coefficients = drawn.coefficients
+        self.reconstruction_map.follow(drawn.splines if isinstance(drawn, SplineMap) else None)
+
+    def draw(
+        self,
+        target: moderngl.Framebuffer,
+        composition: Composition,
+        layers: Sequence[Layer] = (),
+        *,
+        linear: bool = False,
+    ) -> None:
+        """The picture last shown, and layers over it; with `linear` the spheres' radiance alone, which surfaces have not."""
+        picture = self.picture
+        if picture is None:
+            raise ValueError("nothing to draw: show a picture first")
+        if linear and isinstance(picture.drawn, Surfaces):
+            raise ValueError("surfaces hold no radiance")
+        target.use()
+        target.viewport = (0, 0, composition.width, composition.height)
+        self.context.disable(moderngl.BLEND)
+        target.clear(color=(0.0, 0.0, 0.0, 0.0) if linear else (*_encode(BACKGROUND), 1.0))
+        if isinstance(picture.drawn, Surfaces):
+            self._draw_surfaces(target, composition, picture.drawn, picture.light_from_world @ picture.world_from_view)
+        else:
+            self._draw_spheres(target, composition, picture, linear)
+        target.viewport = (0, 0, composition.width, composition.height)
+        if not linear:
+            self._draw_layers(target, composition, layers)
+
+    def release(self) -> None:
+        """Free everything this object made."""
+        resources: tuple[Program | SurfaceRenderer | moderngl.Buffer | ArrayTexture, ...] = (
+            *self.programs.values(),
+            *((self.surfaces,) if self.surfaces else ()),
+            self.layer_program,
+            self.sh_buffer,
+            self.lobe_buffer,
+            self.original_map,
+            self.compared_map,
+            self.reconstruction_map,
+            self.colour_map,
+            *(texture for _, texture in self.layers.values()),
+        )
+        for resource in resources:
+            resource.release()
+        for attachment in (*self.rest.color_attachments, self.rest.depth_attachment):
+            if attachment is not None:
+                attachment.release()
+        self.rest.release()
+
+    def _draw_surfaces(
+        self, target: moderngl.Framebuffer, composition: Composition, drawn: Surfaces, light_from_view: Array
+    ) -> None:
+        if self.surfaces is None:
+            self.surfaces = SurfaceRenderer(self.context)
+        for sphere, surface in zip(composition.spheres, drawn.shown, strict=False):
+            self.surfaces.draw(target, sphere, composition.height, surface, light_from_view)
+
+    def _draw_spheres(
+        self, target: moderngl.Framebuffer, composition: Composition, picture: Picture, linear: bool
+    ) -> None:
+        self.sh_buffer.bind_to_uniform_block(BLOCKS["ShBlock"])
+        self.lobe_buffer.bind_to_uniform_block(BLOCKS["LobeBlock"])
+        self.reconstruction_map.use(SAMPLERS["reconstruction_map"])
+        self.colour_map.use(SAMPLERS["colour_map"])
+        for shown, sphere in zip(CHOICES["SHOWN"], composition.spheres, strict=False):
+            if shown == "ERROR" and picture.error_scale is None:
+                continue
+            self._draw_sphere(target, composition, picture, shown, sphere, linear)
+
+    def _draw_sphere(
+        self,
+        target: moderngl.Framebuffer,
+        composition: Composition,
+        picture: Picture,
+        shown: str,
+        sphere: Sphere,
+        linear: bool,
+    ) -> None:
+        box = _pixel_box(sphere, composition.height)
+        if box[2] <= 0 or box[3] <= 0:
+            return
+        program = self._program(picture, shown)
+        ends = np.cumsum([0, len(picture.original.lobes), len(picture.compared.lobes), len(picture.suns)]).tolist()
+        source, lobes, suns = picture.original, tuple(ends[0:2]), tuple(ends[2:4])
+        map_texture = self.original_map
+        if shown == "ERROR":  # of what is left without the suns, if there are any
+            source, lobes, suns = picture.compared, tuple(ends[1:3]), (0, 0)
+            map_texture = self.original_map if source.map is picture.original.map else self.compared_map
+        map_texture.use(SAMPLERS["original_map"])
+        program.set(
+            centre=(sphere.x, composition.height - sphere.y),
+            radius=sphere.radius,
+            light_from_view=tuple((picture.light_from_world @ picture.world_from_view).T.ravel()),
+            linear_output=linear,
+            soft_edges=not linear,
+            exposure=2.0**picture.exposure_stops,
+            n_bands=count_bands(picture.coefficients),
+            original_lobes=lobes,
+            sun_lobes=suns,
+            original_rows_on_poles=source.map is not None and source.map.rows_on_poles,
+        )
+        scale = picture.error_scale
+        if scale is not None:
+            program.set(error_kind=ERRORS.index(scale.kind) - 1, error_range=scale.end, error_floor=scale.floor)
+        target.viewport = box
+        program.draw()
+
+    def _program(self, picture: Picture, shown: str) -> Program:
+        """The program that draws this of a picture, compiled when it is first wanted; what it does not read is all one."""
+        original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
+        reconstruction = "MAP" if isinstance(picture.drawn, SplineMap) and shown != "ORIGINAL" else "SUM"
+        tone = "NONE" if shown == "ERROR" else picture.state.tone.upper()
+        lobes = {
+            "ORIGINAL": picture.original.lobes,
+            "RECONSTRUCTION": picture.suns,
+            "ERROR": picture.compared.lobes,
+        }[shown]
+        key = shown, original, reconstruction, tone, profile_bits(lobes)
+        if key not in self.programs:
+            chosen: dict[str, str | int] = dict(zip((*CHOICES, "PROFILES"), key, strict=True))
+            self.programs[key] = Program(self.context, "sphere.frag", chosen)
+        return self.programs[key]
+
+    def _draw_layers(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
+        """In their order; the texture of an image lives as long as it is drawn in every frame."""
+        wanted = {id(layer.image) for layer in layers}
+        spare = [self.layers.pop(key)[1] for key in list(self.layers) if key not in wanted]
+        self.context.enable(moderngl.BLEND)
+        self.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+        for layer in layers:
+            if id(layer.image) not in self.layers:
+                texture = spare.pop() if spare else ArrayTexture(self.context)
+                texture.follow(layer.image)
+                self.layers[id(layer.image)] = layer, texture
+            self.layers[id(layer.image)][1].use(SAMPLERS["layer"])
+            height, width = layer.image.shape[:2]
+            corner = layer.left, composition.height - layer.top
+            self.layer_program.set(corner=corner)
+            target.viewport = (corner[0], corner[1] - height, width, height)
+            self.layer_program.draw()
+        self.context.disable(moderngl.BLEND)
+        target.viewport = (0, 0, composition.width, composition.height)
+        for texture in spare:
+            texture.release()
+
+    def _colours(self, name: str) -> NDArray[np.float32]:
+        """A colour map as a texture: one row of linear RGB."""
+        if name not in self.colours:
+            self.colours[name] = colour_maps.linear(colour_maps.table(name))[None].astype(np.float32)
+        return self.colours[name]
+
+
+def _pixel_box(sphere: Sphere, height: int) -> tuple[int, int, int, int]:
+    """The viewport (x, y from the bottom, width, height) of a sphere with its soft edge, cut to its clip."""
+    reach = sphere.radius + 1
+    left, right = max(sphere.x - reach, sphere.clip.left), min(sphere.x + reach, sphere.clip.right)
+    top, bottom = max(sphere.y - reach, sphere.clip.top), min(sphere.y + reach, sphere.clip.bottom)
+    x, y = int(np.floor(left)), int(np.floor(height - bottom))
+    return x, y, int(np.ceil(right)) - x, int(np.ceil(height - top)) - y
+
+
+def _encode(colour: tuple[float, float, float]) -> tuple[float, float, float]:
+    """sRGB of a linear colour, as in shaders/display.glsl."""
+    red, green, blue = (12.92 * c if c < 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055 for c in colour)
+    return red, green, blue

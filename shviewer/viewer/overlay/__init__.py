@@ -1,0 +1,1 @@
+"""What Pillow draws over the spheres: text, figures, marks, sheets."""

@@ -1,0 +1,127 @@
+"""Captions, figures, band bars and the sheets over them: one RGBA image as large as the frame, drawn when something changes.
+
+What does not fit is left out, least important first: the hint, then the bars, then all figures but the relative error.
+Every piece reports its box, so that a click finds its bar and a test can see that nothing overlaps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from shviewer.analysis.comparison import agrees
+from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.overlay.captions import write_captions
+from shviewer.viewer.overlay.colour_bar import draw_colour_bar
+from shviewer.viewer.overlay.figure_strip import write_figures
+from shviewer.viewer.overlay.help_sheet import draw_help
+from shviewer.viewer.overlay.layers import Layer, strips
+from shviewer.viewer.overlay.lettering import FAINT, GREY, WARNING
+from shviewer.viewer.overlay.painter import Painter
+from shviewer.viewer.overlay.plots.convergence import Convergence, draw_convergence
+from shviewer.viewer.overlay.plots.plane import Plane, draw_plane
+from shviewer.viewer.picture import Picture
+from shviewer.viewer.state import describe_exposure
+from shviewer.words import radiance, theta_phi_degrees
+
+HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
+NO_ROOM = {
+    "plane": "no room for time against error: enlarge the window, or B",
+    "convergence": "no room for error against bands: enlarge the window, or G",
+}
+
+
+@dataclass
+class Overlay:
+    """image: (height, width, 4) uint8, straight alpha. boxes: name -> where it was drawn. bars: band -> where to click."""
+
+    image: NDArray[np.uint8]
+    layers: tuple[Layer, ...]
+    """What of the image is not empty."""
+    boxes: dict[str, Box] = field(default_factory=dict)
+    bars: dict[int, Box] = field(default_factory=dict)
+    plane: Plane | None = None
+    """The time-error plane, if it is shown; what is written in it is among the boxes, too."""
+    convergence: Convergence | None = None
+    """Likewise."""
+
+    @property
+    def sheet(self) -> Box | None:
+        """Where a sheet lies over the spheres."""
+        shown = self.plane or self.convergence
+        return shown.box if shown else None
+
+    @property
+    def obstacles(self) -> tuple[Box, ...]:
+        """What is written, and the sheet: what else is laid over the spheres keeps clear of."""
+        return (*self.boxes.values(), *((self.sheet,) if self.sheet else ()))
+
+
+def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "") -> Overlay:
+    """Everything that is written over the spheres.
+
+    timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
+    """
+    sheet = Image.new("RGBA", (composition.width, composition.height))
+    painter = Painter(ImageDraw.Draw(sheet), composition)
+    write_captions(painter, picture, timing)
+    painter.boxes.update(draw_colour_bar(sheet, picture, composition))
+    write_figures(painter, picture)
+    wanted = "" if picture.state.help_visible else picture.state.sheet
+    drawing = sheet, picture, composition, list(painter.boxes.values())
+    plane = draw_plane(*drawing) if wanted == "plane" else None
+    convergence = draw_convergence(*drawing) if wanted == "convergence" else None
+    shown = plane or convergence
+    painter.boxes.update(shown.boxes if shown else {})
+    _write_hint(painter, picture, NO_ROOM[wanted] if wanted and not shown else "")
+    if picture.state.help_visible:
+        draw_help(sheet, picture.state, composition, opengl)
+    image = np.asarray(sheet)
+    return Overlay(image, strips(image), painter.boxes, painter.bars, plane, convergence)
+
+
+def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
+    """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
+    at, state = painter.at, picture.state
+    y = at.hairline_y + at.px(104)
+    message = state.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
+    if message:
+        face = painter.face(13)
+        text = message
+        while text and face.getlength(text) > at.width - 2 * at.margin:
+            text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
+        good = message == picture.verdict and agrees(message)
+        painter.text("message", at.margin, y, text, 13, GREY if good else WARNING, "lm")
+    curve = "" if state.tone == "none" else f", {state.tone} curve"
+    stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state)}){curve}"
+    needs, far = picture.needs, at.width - at.margin
+    radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
+    bands = "band" if needs.radiance == 1 else "bands"
+    within = f"within {100 * needs.tolerance:g} %: {radiance} {bands}, for irradiance {irradiance}"
+    any(painter.text("exposure", far, y, text, 12, GREY, "rm") for text in (f"{within}     {stops}", within, stops))
+    if not message:
+        hints = [*_describe_suns(picture), HINT]
+        any(painter.text("hint", at.margin, y, text, 12, GREY if text is not HINT else FAINT, "lm") for text in hints)
+
+
+def _describe_suns(picture: Picture) -> list[str]:
+    """What the suns are and what it buys to split them off, the longest form first; none if there are none."""
+    suns, before = picture.subject.suns, picture.needs_unsplit
+    if not suns or before is None:
+        return []
+    counts = (str(count or f"over {before.searched}") for count in (before.radiance, before.irradiance))
+    unsplit = "with it {} bands, irradiance {}".format(*counts)
+    sun = suns[0]
+    theta, phi = theta_phi_degrees(sun.axis)
+    place = f"theta {theta:.1f}, phi {phi:z.1f}"
+    size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide"
+    colour = " ".join(radiance(value, 0.0) for value in sun.irradiance)
+    count = "sun" if len(suns) == 1 else f"{len(suns)} suns, the first"
+    return [
+        f"{count} at {place}, {size}, irradiance {colour}; {unsplit}",
+        f"{count} at {place}, {size}; {unsplit}",
+        f"{count} at {place}, {size}",
+    ]

@@ -1,0 +1,1 @@
+"""Sheets with curves in place of the spheres."""

@@ -1,0 +1,77 @@
+"""What is plotted against the number of bands, as numbers: errors with 1, 2, ... of them, and the energy of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shviewer.analysis.figures import errors_of
+from shviewer.analysis.projections import BEST, project, sampling_of
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.metrics import errors_by_band_count
+from shviewer.viewer.overlay.band_axis import band_slots
+from shviewer.viewer.picture import Picture
+
+
+@dataclass(frozen=True)
+class BandSeries:
+    """Relative L2 errors and shares of the light's energy. An error below the floor stands at it, an infinite one nowhere."""
+
+    slots: int
+    """Bands on the axis."""
+    errors: dict[int, float]
+    """n -> error with the first n bands, none muted and no window, by the method in use; up to one n beyond the axis."""
+    exact: dict[int, float]
+    """Likewise by the best way; empty if that is in use."""
+    shown: float | None
+    """The error of what is shown, where bands are muted or windowed."""
+    tolerance: float
+    needed: int | None
+    """The smallest n within the tolerance, of the quantity shown; None if no n that was searched is."""
+    energy: dict[int, float]
+    """Band -> its share, where that can be told from rounding."""
+    kept: dict[int, float]
+    """Band in use -> what the window leaves of that; 0 if muted."""
+
+    def span(self) -> tuple[float, float]:
+        """The least and largest error to be seen: a factor of 2 at least, with the tolerance unless it is far below."""
+        marked = [share for errors in (self.errors, self.exact) for n, share in errors.items() if n <= self.slots]
+        marked += [self.shown] if self.shown is not None else []
+        if not marked or self.tolerance > min(marked) / 30:
+            marked.append(self.tolerance)
+        return min(*marked, max(marked) / 2), max(marked)
+
+
+def band_series(picture: Picture) -> BandSeries:
+    """What the convergence plot of a picture shows."""
+    state, figures, needs = picture.state, picture.figures, picture.needs
+    slots, floor = band_slots(state.bands_ahead), figures.floor
+
+    def on_axis(errors: Array) -> dict[int, float]:
+        shares = enumerate(map(float, errors[: slots + 1]), 1)
+        return {n: max(share, floor) for n, share in shares if np.isfinite(share)}
+
+    altered = bool(state.muted_shown) or state.window != "none"
+    energy = {band: share for band, share in enumerate(figures.energy_share[:slots]) if share > floor**2}
+    factors = np.clip(figures.factors, 0, 1).tolist()
+    return BandSeries(
+        slots=slots,
+        errors=on_axis(errors_by_count(picture)),
+        exact=on_axis(errors_of(picture.light, *BEST)) if state.method != "best" else {},
+        shown=max(figures.relative_l2, floor) if altered and np.isfinite(figures.relative_l2) else None,
+        tolerance=needs.tolerance,
+        needed=needs.irradiance if state.quantity == "irradiance" else needs.radiance,
+        energy=energy,
+        kept={band: energy[band] * factor**2 for band, factor in enumerate(factors) if band in energy},
+    )
+
+
+def errors_by_count(picture: Picture) -> Array:
+    """The relative L2 error of the picture's light with the first 1 ... N bands, none muted and no window, (N,), N >= n."""
+    light, sampling = picture.light, sampling_of(picture.state)
+    errors = errors_of(light, *sampling)
+    if picture.state.n_bands <= len(errors):
+        return errors
+    exact = project(light, *BEST, picture.projection.n_bands).coefficients  # beyond what samples were searched for
+    return errors_by_band_count(light.products(), exact / light.unit, picture.projection.coefficients / light.unit)

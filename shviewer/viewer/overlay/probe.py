@@ -1,0 +1,126 @@
+"""What stands under the mouse: the direction, and the values there in float64, not what the shader made of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from shviewer.harmonics.basis import Array
+from shviewer.viewer.composition import Composition
+from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, Ink, font
+from shviewer.viewer.picture import Picture
+from shviewer.words import theta_phi_degrees
+
+GROUND: Ink = (14, 14, 16, 224)
+AWAY = 18
+"""Pixels of the design between the mouse and the numbers."""
+
+DOT = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """Values (3,) in a direction of the light."""
+
+    direction: Array
+    original: Array
+    reconstruction: Array
+    error: Array
+    """Reconstruction minus original; where suns were split off, of what is left without them."""
+
+    @property
+    def theta_phi_degrees(self) -> tuple[float, float]:
+        return theta_phi_degrees(self.direction)
+
+
+def probe(picture: Picture, composition: Composition, x: float, y: float) -> Probe | None:
+    """What the pixel at x, y of the frame shows; None beside the spheres, and of surfaces."""
+    places = [sphere.position(x, y) for sphere in composition.spheres]
+    place = next((found for found in places if found is not None), None)
+    if place is None or picture.state.lobe_view:
+        return None
+    right, up = place
+    view = np.array([right, up, np.sqrt(max(0.0, 1 - right * right - up * up))])
+    direction = picture.light_from_world @ picture.world_from_view @ view
+    direction /= np.linalg.norm(direction)
+    rest = picture.rest_at(direction[None])[0]
+    return Probe(
+        direction=direction,
+        original=picture.subject.whole.radiance(direction[None])[0],
+        reconstruction=rest + picture.suns_at(direction[None])[0],
+        error=rest - picture.light.radiance(direction[None])[0],
+    )
+
+
+def probe_layers(found: Probe, composition: Composition, x: float, y: float) -> tuple[Layer, ...]:
+    """The numbers beside the mouse, where they fit, and a dot in the same direction on the other spheres."""
+    image = _table(found, composition)
+    height, width = image.shape[:2]
+    away = round(composition.px(AWAY))
+    left, top = round(x) + away, round(y) + away
+    if left + width > composition.width:
+        left = round(x) - away - width
+    if top + height > composition.height:
+        top = round(y) - away - height
+    left = min(max(left, 0), max(composition.width - width, 0))
+    return (*_dots(composition, x, y), Layer(image, left, max(top, 0)))
+
+
+def _dots(composition: Composition, x: float, y: float) -> list[Layer]:
+    places = [sphere.position(x, y) for sphere in composition.spheres]
+    place = next(found for found in places if found is not None)
+    size = max(round(composition.px(DOT)), 2)
+    image = np.zeros((2 * size + 1, 2 * size + 1, 4), dtype=np.uint8)
+    image[size], image[:, size] = INK, INK  # a cross
+    layers = []
+    for sphere, under_mouse in zip(composition.spheres, places, strict=True):
+        at = sphere.x + place[0] * sphere.radius, sphere.y - place[1] * sphere.radius
+        if under_mouse is None and sphere.clip.contains(*at):
+            layers.append(Layer(image, round(at[0] - 0.5) - size, round(at[1] - 0.5) - size))
+    return layers
+
+
+def _table(found: Probe, composition: Composition) -> np.ndarray:
+    """The numbers on a dark ground; one column where the light is grey."""
+    size = max(round(composition.px(12)), MIN_TYPE)
+    face, line, pad = font(size), round(1.5 * size), round(0.8 * size)
+    theta, phi = found.theta_phi_degrees
+    direction = "   ".join(f"{axis} {value:z.3f}" for axis, value in zip("xyz", found.direction, strict=True))
+    heads = [f"theta {theta:.1f}   phi {phi:z.1f}", direction]
+    rows = [
+        (name, _numbers(values), ink)
+        for name, values, ink in (
+            ("original", found.original, GREY),
+            ("reconstruction", found.reconstruction, GREY),
+            ("error", found.error, INK),
+        )
+    ]
+    grey = all(len(set(numbers)) == 1 for _, numbers, _ in rows)
+    labels = max(face.getlength(name) for name, _, _ in rows) + size
+    column = max(face.getlength(number) for _, numbers, _ in rows for number in numbers) + size
+    width = round(max(max(map(face.getlength, heads)), labels + (1 if grey else 3) * column - size)) + 2 * pad
+    lines = len(heads) + len(rows) + (0 if grey else 1)
+    image = Image.new("RGBA", (width, lines * line + 2 * pad - line + size), GROUND)
+    draw = ImageDraw.Draw(image)
+    y = float(pad)
+    for text in heads:
+        draw.text((pad, y), text, FAINT, face)
+        y += line
+    if not grey:
+        for place, letter in enumerate("RGB"):
+            draw.text((pad + labels + (place + 1) * column - size, y), letter, FAINT, face, anchor="ra")
+        y += line
+    for name, numbers, ink in rows:
+        draw.text((pad, y), name, ink, face)
+        for place, number in enumerate(numbers[:1] if grey else numbers):
+            draw.text((pad + labels + (place + 1) * column - size, y), number, ink, face, anchor="ra")
+        y += line
+    return np.asarray(image)
+
+
+def _numbers(values: Array) -> list[str]:
+    """Four digits each."""
+    return [f"{value:z.4g}" if value == 0 or 1e-3 <= abs(value) < 1e5 else f"{value:z.3e}" for value in values]

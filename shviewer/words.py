@@ -1,0 +1,93 @@
+"""How numbers, shares, angles, times and counts read, wherever they are said."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+
+def counted(count: int, noun: str) -> str:
+    """ "1 band", "5 bands" """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def theta_phi_degrees(direction: Iterable[float]) -> tuple[float, float]:
+    """The angle to +z and the azimuth from +x towards +y of a direction (x, y, z), for people; never a negative zero."""
+    x, y, z = map(float, direction)
+    return math.degrees(math.atan2(math.hypot(x, y), z)), math.degrees(math.atan2(y, x)) + 0.0
+
+
+def three_digits(value: float) -> str:
+    """A time or a size with three digits, and no exponent."""
+    if value == 0 or value >= 100:
+        return f"{value:.0f}"
+    return f"{value:.{min(6, max(0, 2 - math.floor(math.log10(value))))}f}"
+
+
+def brief_percent(share: float) -> str:
+    """A share of 1 in two digits: "104 %", "1.4 %", "0.0001 %", and never a power of ten."""
+    text = f"{100 * share:.2g}" if share < 0.1 else f"{100 * share:.0f}"
+    return f"{float(text):.10f}".rstrip("0").rstrip(".") + " %"
+
+
+def shortened(name: str, length: int) -> str:
+    """At most `length` letters, with dots in the middle."""
+    return name if len(name) <= length else f"{name[: length // 2 - 1]}...{name[len(name) - length // 2 + 2 :]}"
+
+
+def percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
+    """A share of 1 in percent; one below the floor of its method, or too small for the digits, only says so."""
+    value = 100 * share
+    if not math.isfinite(value):
+        return "infinite"
+    if share < floor:
+        return f"< {100 * floor:.5f}".rstrip("0") + " %"
+    if value == 0:
+        return "0 %"
+    if value < 1e-4:
+        return "< 0.0001 %"
+    decimals = min(max(0, digits - 1 - math.floor(math.log10(value) + 1e-9)), 4)
+    while value < 100 and decimals < 4 and f"{value:.{decimals}f}".startswith("100"):
+        decimals += 1
+    return f"{value:.{decimals}f} %"
+
+
+def whole_percent(share: float) -> str:
+    """A share over its bar: a bar is as high as it is beside the highest, so a small one says that it is small."""
+    return f"{100 * share:.0f}" if share >= 0.005 or share == 0 else "<1"
+
+
+def radiance(value: float, peak: float) -> str:
+    """Three digits, with a power of ten where that is shorter; 0 below a millionth of the light's peak."""
+    if abs(value) <= 1e-6 * peak:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        return f"{value:.{max(0, 2 - math.floor(math.log10(abs(value))))}f}"
+    mantissa, exponent = f"{value:.2e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def grouped(count: int) -> str:
+    """1000000 as 1 000 000."""
+    return f"{count:,}".replace(",", " ")
+
+
+def grouped_number(value: float) -> str:
+    """Two decimals below 10, none above."""
+    return f"{value:.2f}" if value < 10 else grouped(round(value))
+
+
+def short_count(count: int) -> str:
+    """625, 2.5k, 160k, 1M."""
+    for size, letter in ((1_000_000, "M"), (1000, "k")):
+        if count >= size:
+            return f"{count / size:.3g}{letter}"
+    return str(count)
+
+
+def round_percent(share: float) -> str:
+    """A round share of 1, as it stands beside an axis: 150 %, 0.002 %, 1e-7 %."""
+    if share < 0.99e-7:
+        mantissa, exponent = f"{100 * share:.1e}".split("e")
+        return f"{mantissa.removesuffix('.0')}e{int(exponent)} %"
+    return f"{100 * share:.10f}".rstrip("0").rstrip(".") + " %"

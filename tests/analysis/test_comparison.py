@@ -1,0 +1,268 @@
+"""--compare: the light's original beside coefficients that somebody else made of it, and what is wrong with them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from contextlib import nullcontext
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from coefficients.peer_cases import spoiled
+
+from shviewer.analysis.compared_files import compared_with
+from shviewer.analysis.comparison import as_the_file_holds, caption, verdict
+from shviewer.analysis.subjects import load_light
+from shviewer.cli.main import main
+from shviewer.coefficients.programs import CONVENTIONS, parse_convention
+from shviewer.errors import LightError
+from shviewer.harmonics.basis import Array
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.find import find_light
+from shviewer.lights.light import Light
+from shviewer.lights.reading import Reading
+from shviewer.viewer.actions import next_method, reset, with_bands
+from shviewer.viewer.composition import compose
+from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.overlay.overlay import draw_overlay
+from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.picture_files import metadata
+from shviewer.viewer.state import ViewState
+
+
+@cache
+def venice() -> Light:
+    return find_light("venice_sunset")
+
+
+def given(coefficients: Array, name: str = "theirs.txt") -> CoefficientLight:
+    return CoefficientLight(coefficients, name)
+
+
+def compared(file: CoefficientLight, **changes: object) -> Picture:
+    state = ViewState(lights=(venice(),), compare=file, **changes)  # type: ignore[arg-type]
+    return prepare(as_the_file_holds(state, quantity="quantity" not in changes, bands="n_bands" not in changes))
+
+
+def test_the_lights_own_coefficients_fit_and_have_its_own_figures() -> None:
+    picture = compared(given(venice().coefficients(4)))
+    plain = prepare(ViewState(lights=(venice(),), n_bands=4))
+    np.testing.assert_allclose(picture.coefficients, plain.coefficients, rtol=0, atol=1e-14)
+    assert picture.figures.relative_l2 == pytest.approx(plain.figures.relative_l2, rel=1e-9)
+    assert picture.verdict == "theirs.txt agrees with the light's own to 0.0001 % over its 4 bands"
+
+
+def test_the_figures_are_those_of_the_given_coefficients() -> None:
+    exact = venice().coefficients(3)
+    picture = compared(given(1.5 * exact))
+    norm = np.sqrt(np.trace(venice().products()))
+    assert picture.figures.channels["all"].added == pytest.approx(0.5 * np.linalg.norm(exact) / norm, rel=1e-9)
+    np.testing.assert_array_equal(picture.coefficients, 1.5 * exact)
+
+
+def test_mutes_and_windows_work_on_the_given_coefficients() -> None:
+    file = given(venice().coefficients(4))
+    assert not compared(file, muted=frozenset({1})).coefficients[1:4].any()
+    hann = compared(file, window="hann").coefficients
+    np.testing.assert_allclose(hann[1:4], file.given[1:4] * (1 + np.cos(np.pi / 4)) / 2, rtol=1e-14)
+
+
+def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
+    path = tmp_path / "probe.json"
+    path.write_text(json.dumps(np.asarray(CONVENTIONS["unity"].from_ours(venice().coefficients(3))).tolist()))
+    file = CoefficientLight.read(path, Reading(convention="unity"))
+    picture = compared(file)
+    assert (picture.state.quantity, picture.state.n_bands) == ("irradiance", 3)
+    assert picture.verdict == "probe agrees with the light's own to 0.0001 % over its 3 bands"
+    own = prepare(ViewState(lights=(venice(),), n_bands=3, quantity="irradiance"))
+    np.testing.assert_allclose(picture.coefficients, own.coefficients, rtol=0, atol=1e-13)
+    assert picture.figures.relative_l2 == pytest.approx(own.figures.relative_l2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("names", "words"),
+    [
+        (("phase",), "without the Condon-Shortley phase"),
+        (("y-up", "pi"), "in axes +x+z-y (y-up) and divided by pi"),
+        (("order", "4pi"), "with m and -m swapped and divided by sqrt(4 pi)"),
+        (("A",), "multiplied by A(l), as irradiance"),
+    ],
+)
+def test_the_usual_mistakes_are_named_in_one_line(names: tuple[str, ...], words: str) -> None:
+    picture = compared(given(spoiled(venice().coefficients(3), *names)))
+    assert picture.verdict.startswith("theirs.txt is ")
+    assert picture.verdict.endswith(f" % off, but not at all if its numbers are {words}")
+    assert "\n" not in picture.verdict
+
+
+def test_another_programs_file_is_recognised_by_its_numbers(tmp_path: Path) -> None:
+    for name in ("filament", "three", "unity"):
+        path = tmp_path / f"{name}.json"
+        path.write_text(json.dumps(np.asarray(CONVENTIONS[name].from_ours(venice().coefficients(3))).tolist()))
+        file = CoefficientLight.read(path, Reading(convention="shviewer"))
+        for quantity in ("radiance", "irradiance"):
+            light = load_light(ViewState(lights=(venice(),), quantity=quantity))
+            assert verdict(light, file).endswith(f"not at all if its numbers are in the convention of {name}")
+
+
+def test_what_nothing_explains_is_said_to_be_so() -> None:
+    stranger = given(np.random.default_rng(0).normal(size=(9, 3)))
+    assert " % off, which no usual mistake explains: band " in compared(stranger).verdict
+    black = given(np.zeros((4, 3)))
+    assert compared(black).verdict == "theirs.txt is 100 % off: its numbers are all zero"
+
+
+def test_no_more_bands_are_shown_than_the_file_has() -> None:
+    file = given(venice().coefficients(3))
+    picture = compared(file, n_bands=9)
+    assert picture.state.n_bands == 3
+    assert picture.state.message == "theirs.txt has 3 bands"
+    more = with_bands(picture.state, 4)
+    assert (more.n_bands, more.message) == (3, "theirs.txt has 3 bands")
+    assert with_bands(picture.state, 2).n_bands == 2
+
+
+def test_keys_keep_the_comparison() -> None:
+    state = ViewState(lights=(venice(),), compare=given(venice().coefficients(3)), n_bands=3)
+    assert reset(state).compare is state.compare
+    assert "those of theirs.txt" in next_method(state).message
+    assert next_method(state).method == state.method
+
+
+def test_the_picture_says_whose_coefficients_they_are() -> None:
+    picture = compared(given(spoiled(venice().coefficients(3), "phase")))
+    overlay = draw_overlay(picture, compose(1280, 640, 1.0))
+    own = draw_overlay(prepare(ViewState(lights=(venice(),), n_bands=3)), compose(1280, 640, 1.0))
+    longer, shorter = (sheet.boxes["reconstruction"] for sheet in (overlay, own))
+    assert longer.right - longer.left > 1.2 * (shorter.right - shorter.left)
+    assert "message" in overlay.boxes
+    said = json.loads(metadata(picture, compose(1280, 640, 1.0), "none"))
+    assert said["compare"] == {"name": "theirs.txt", "convention": "shviewer"}
+    assert said["verdict"] == picture.verdict
+
+
+def test_a_long_name_is_shortened_in_the_caption() -> None:
+    file = given(venice().coefficients(1), "environment-of-the-second-courtyard-at-noon.json")
+    assert caption(ViewState(lights=(venice(),), compare=file)) == "environment...d-at-noon.json: "
+    assert caption(ViewState(lights=(venice(),), compare=given(venice().coefficients(1)))) == "theirs.txt: "
+    assert "reconstruction" in draw_overlay(compared(file), compose(640, 320, 1.0)).boxes
+
+
+def test_the_command_compares_and_says_what_is_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, renderer: Renderer
+) -> None:
+    monkeypatch.setattr("shviewer.viewer.screenshot.headless_renderer", lambda: nullcontext(renderer))
+    numbers = np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
+    (tmp_path / "theirs.json").write_text(json.dumps(numbers.tolist()))
+    command = ["screenshot", str(tmp_path / "out.png"), "venice_sunset", "--compare", str(tmp_path / "theirs.json")]
+    assert main([*command, "--convention", "three", "--size", "320", "160"]) == 0
+    assert capsys.readouterr().err == "shviewer: theirs.json agrees with the light's own to 0.0001 % over its 3 bands\n"
+    assert main([*command, "--convention", "unreal", "--size", "320", "160"]) == 0
+    assert "theirs.json is " in (error := capsys.readouterr().err)
+    assert "not at all if its numbers are in the convention of three" in error
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"), [("own.hdr", "an image"), ("venice_sunset", "a built-in light"), ("own.toml", "a scene")]
+)
+def test_only_coefficients_are_compared(text: str, kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["screenshot", "out.png", "green", "--compare", text]) == 3
+    assert f"{text} is {kind}; --compare takes coefficients (.json, .csv, .txt" in capsys.readouterr().err
+
+
+def test_small_disagreement_is_a_figure() -> None:
+    exact = venice().coefficients(3)
+    assert compared(given(1.005 * exact)).verdict == "theirs.txt agrees with the light's own to 0.5 % over its 3 bands"
+    assert compared(given(exact[:1])).verdict.endswith("over its one band")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda c: 2 * c, "times 2"),
+        (lambda c: 0.5 * c, "times 0.5"),
+        (lambda c: np.pi * c, "multiplied by pi"),
+        (lambda c: c[:, ::-1], "with channels in the order B G R"),
+        (
+            lambda c: 2 * spoiled(c, "phase")[:, ::-1],
+            "without the Condon-Shortley phase, with channels in the order B G R and times 2",
+        ),
+        (lambda c: c.T.reshape(9, 3), "listed channel by channel"),
+        (lambda c: c.reshape(3, 9).T, "listed row by row"),
+    ],
+)
+def test_factors_channels_and_the_order_of_the_list_are_usual_mistakes(
+    change: Callable[[Array], Array], words: str
+) -> None:
+    said = compared(given(np.ascontiguousarray(change(venice().coefficients(3))))).verdict
+    assert said.endswith(f" off, but not at all if its numbers are {words}")
+
+
+@pytest.mark.parametrize("named", ["shviewer", "filament", "unity", "unreal", "three,z-up"])
+def test_mistakes_are_found_together_whichever_convention_was_named(named: str, tmp_path: Path) -> None:
+    numbers = np.sqrt(4 * np.pi) * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
+    (tmp_path / "theirs.json").write_text(json.dumps(numbers[:, ::-1].tolist()))
+    said = verdict(venice(), CoefficientLight.read(tmp_path / "theirs.json", Reading(convention=named)))
+    explained = said.partition("its numbers are ")[2]
+    assert "multiplied by sqrt(4 pi)" in explained
+    assert "with channels in the order B G R" in explained
+    assert "in the convention of three" in explained or "y-up" in explained
+
+
+def test_where_nothing_explains_it_the_band_is_named() -> None:
+    exact = venice().coefficients(4)
+    wrong = exact.copy()
+    wrong[1:4] += np.random.default_rng(0).normal(size=(3, 3)) * np.linalg.norm(exact[1:4])
+    assert re.search(r"explains: band 1 is \d+ % off, the others fit$", verdict(venice(), given(wrong)))
+    wrong[4:9] *= 1.5
+    assert re.search(r"explains: band 1 is \d+ % off, 2 less, the others fit$", verdict(venice(), given(wrong)))
+
+
+@pytest.mark.parametrize(
+    "text", ["shviewer", "filament", "three", "unity", "unreal", "ambix", "sphericart", "scipy", "shviewer,irradiance"]
+)
+def test_a_convention_that_nobody_names_is_found(text: str, tmp_path: Path) -> None:
+    numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
+    file = tmp_path / "bare.npy"
+    np.save(file, numbers)
+    state, said = compared_with(ViewState(lights=(venice(),)), str(file))
+    assert said == f"bare.npy does not name its convention: {text} fits"
+    assert verdict(venice(), state.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
+
+
+@pytest.mark.parametrize(
+    "text", ["shviewer,m-swapped,4pi", "shviewer,y-up,4pi", "shviewer,y-up-left,sn3d", "filament,z-up", "three,+z-x-y"]
+)
+def test_a_bent_convention_is_found_too(text: str, tmp_path: Path) -> None:
+    numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
+    (tmp_path / "bare.json").write_text(json.dumps(numbers.tolist()))
+    state, said = compared_with(ViewState(lights=(venice(),)), str(tmp_path / "bare.json"))
+    assert said.endswith(" fits")
+    if text.startswith("shviewer"):  # the simplest of several that fit as well
+        assert parse_convention(said.split()[-2]) == parse_convention(text)
+    assert "agrees" in verdict(venice(), state.compare)
+
+
+def test_where_no_convention_fits_the_nearest_is_named_and_what_is_wrong(tmp_path: Path) -> None:
+    numbers = 2 * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
+    (tmp_path / "bare.txt").write_text(" ".join(map(str, numbers.reshape(-1))))
+    state, said = compared_with(ViewState(lights=(venice(),)), str(tmp_path / "bare.txt"))
+    assert re.search(r"none fits within 2 %; the nearest is \S+, \d+ % off$", said)
+    assert "times 2" in verdict(venice(), state.compare)
+
+
+def test_what_fits_alike_is_said(tmp_path: Path) -> None:
+    """A constant light tells neither phases nor axes apart."""
+    (tmp_path / "bare.txt").write_text("3.5449077018110318 " * 3 + "0 " * 24)
+    said = compared_with(ViewState(lights=("constant",)), str(tmp_path / "bare.txt"))[1]
+    others = "three, unreal, sphericart and shviewer,irradiance-over-pi"
+    assert said == f"bare.txt does not name its convention: shviewer fits, as {others} would"
+
+
+def test_a_list_alone_is_refused_and_told_how_to_find_out(tmp_path: Path) -> None:
+    (tmp_path / "bare.txt").write_text("1 1 1")
+    with pytest.raises(LightError, match=r"--compare finds it out: shviewer LIGHT --compare FILE"):
+        find_light(str(tmp_path / "bare.txt"))

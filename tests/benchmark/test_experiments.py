@@ -1,0 +1,246 @@
+"""The table of methods, their rows, and how a plan is cut to a budget."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from shviewer.benchmark import projection_rows
+from shviewer.benchmark.experiments import BEST, METHODS, method
+from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.projection_rows import errors_of
+from shviewer.benchmark.subjects import Subject, find_subjects, subject_of
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import evaluate_basis
+from shviewer.harmonics.metrics import channel_figures
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.find import find_light
+from shviewer.lights.function import FunctionLight
+from shviewer.lights.light import Light
+
+RANDOM = {"jittered", "random"}
+
+
+def small_image() -> EnvironmentLight:
+    texels = np.random.default_rng(0).gamma(2.0, size=(32, 64, 3)).astype(np.float32)
+    return EnvironmentLight(texels, name="noise")
+
+
+@pytest.fixture(scope="module")
+def green(green: Subject) -> Subject:
+    return replace(green, needs={0.1: green.needs[0.1]})
+
+
+def rows_of(
+    subject: Subject, seed: int, bands: tuple[int, ...] = (3, 5), samples: tuple[int, ...] = (100, 400)
+) -> list[Measurement]:
+    rows: list[Measurement] = []
+    groups = projection_rows.plan([subject], bands, samples)
+    projection_rows.measure(groups, 1e3, seed, rows.extend, lambda share, what: None, filling=0.0)
+    return rows
+
+
+@pytest.fixture(scope="module")
+def green_rows(green: Subject) -> list[Measurement]:
+    return rows_of(green, 0)
+
+
+def test_every_method_comes_near_the_lights_own_coefficients() -> None:
+    """Within 5 %: twice what 40 000 random samples leave of 16 coefficients; the others are far below."""
+    for light in (find_light("cosine"), small_image()):
+        exact = light.coefficients(4)
+        for each in METHODS:
+            if each.applies(light):
+                found = each.project(light, 40_000, 1, 4)
+                assert found.shape == (16, 3), each.name
+                assert np.linalg.norm(found - exact) < 0.05 * np.linalg.norm(exact), (each.name, light.name)
+
+
+@pytest.mark.parametrize(("name", "low", "high"), [("random", -0.7, -0.3), ("jittered", -1.2, -0.8)])
+def test_errors_of_random_methods_fall_as_theory_says(name: str, low: float, high: float) -> None:
+    """On a smooth light N^(-1/2) for independent points and N^-1 for one per cell; medians of nine seeds."""
+    subject = subject_of(FunctionLight(lambda d: np.exp(d @ [1.0, 0.5, -0.3])))
+    medians = []
+    for samples in (400, 25_600):
+        found = [method(name).project(subject.light, samples, seed, 3) for seed in range(9)]
+        medians.append(np.median([errors_of(subject, each).error for each in found]))
+    assert low < np.log(medians[1] / medians[0]) / np.log(64) < high
+
+
+def test_gauss_legendre_is_exact_once_there_are_points_enough() -> None:
+    """For a light of n bands n rows do, products of the light and the basis having 2n - 1 degrees at most in cos(theta)."""
+    n_bands = 8
+    coefficients = np.random.default_rng(3).normal(size=(n_bands**2, 3))
+    light = FunctionLight(lambda d: evaluate_basis(d, n_bands) @ coefficients)
+
+    def error(rows: int) -> float:
+        found = method("gauss-legendre").project(light, 2 * rows**2, 0, n_bands)
+        return float(np.abs(found - coefficients).max())
+
+    assert error(n_bands) < 1e-13
+    assert error(n_bands - 1) > 1e-3
+
+
+def test_methods_for_images_apply_to_images_alone() -> None:
+    names = {each.name for each in METHODS if not each.applies(find_light("green"))}
+    assert names == {"per-texel", "half", "quarter"}
+    assert all(each.applies(small_image()) for each in METHODS)
+
+
+def test_an_image_that_cannot_be_halved_is_not() -> None:
+    odd = EnvironmentLight(np.ones((6, 12, 3), np.float32))
+    assert (method("half").applies(odd), method("quarter").applies(odd)) == (True, False)
+
+
+def test_half_resolution_takes_the_means_of_four_texels() -> None:
+    image = small_image()
+    means = image.pixels.reshape(16, 2, 32, 2, 3).mean(axis=(1, 3))
+    wanted = EnvironmentLight(means).coefficients(3)
+    assert method("half").project(image, 0, 0, 3) == pytest.approx(wanted, abs=1e-5)  # float32 sums of four
+
+
+def test_evaluations_are_what_the_light_was_asked_for() -> None:
+    asked = 0
+
+    def counting(directions: np.ndarray) -> np.ndarray:
+        nonlocal asked
+        asked += len(directions)
+        return np.exp(directions[:, 2])
+
+    light = FunctionLight(counting)
+    for each in METHODS:
+        if each.applies(light):
+            prepared = each.prepare(light, 100, 0, 3)
+            asked = 0
+            prepared.project()
+            assert prepared.evaluations == asked > 0, each.name
+    assert method(BEST).prepare(find_light("green"), 0, 0, 3).evaluations == 0
+
+
+def test_the_best_way_starts_from_nothing_every_time() -> None:
+    asked = 0
+
+    def counting(directions: np.ndarray) -> np.ndarray:
+        nonlocal asked
+        asked += len(directions)
+        return np.ones(len(directions))
+
+    prepared = method(BEST).prepare(FunctionLight(counting), 0, 0, 3)
+    asked = 0
+    prepared.project()
+    first, asked = asked, 0
+    prepared.project()
+    assert asked == first > 0
+
+
+def test_a_method_that_is_not_in_the_table_is_refused_in_one_line() -> None:
+    with pytest.raises(UsageError, match="unknown method 'lebedev'; there is: best, gauss-legendre, fejer"):
+        method("lebedev")
+
+
+def test_errors_in_the_rows_are_those_of_the_metrics_module(green: Subject, green_rows: list[Measurement]) -> None:
+    light = green.light
+    for row in green_rows:
+        seeds = range(projection_rows.SEEDS) if row.method in RANDOM else [0]
+        found = [method(row.method).project(light, row.samples or 0, seed, row.n_bands) for seed in seeds]
+        exact = light.coefficients(row.n_bands)
+        figures = [channel_figures(light.products(), exact, shown, 1.0)["all"] for shown in found]
+        # the sums are the same but for their order: a few roundings
+        assert row.total_error == pytest.approx(np.median([each.relative_l2 for each in figures]), rel=1e-9)
+        assert row.truncation == pytest.approx(figures[0].left_out, rel=1e-9)
+        if row.error is not None:
+            added = np.array([each.added for each in figures])
+            kept = np.sqrt(1 - row.truncation**2)
+            assert row.error * kept == pytest.approx(np.median(added), rel=1e-6, abs=1e-12)
+            if row.error_low is not None:
+                assert row.error_low * kept == pytest.approx(added.min(), rel=1e-6)
+                assert row.error_high * kept == pytest.approx(added.max(), rel=1e-6)
+
+
+def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(green_rows: list[Measurement]) -> None:
+    for row in green_rows:
+        assert (row.error is None) == (row.method == BEST)
+        assert (row.error_low is not None) == (row.method in RANDOM)
+        assert row.milliseconds is not None
+        assert row.repeats >= projection_rows.AT_LEAST
+        assert row.low_quartile <= row.milliseconds <= row.high_quartile
+        assert row.set_up_milliseconds is not None
+        assert row.peak_mib > 0
+        assert row.reference_accuracy == 0
+
+
+def test_one_seed_gives_identical_errors_and_another_does_not(green: Subject, green_rows: list[Measurement]) -> None:
+    def errors(rows: list[Measurement]) -> dict[object, tuple[object, ...]]:
+        return {row.key: (row.error, row.error_low, row.error_high, row.truncation, row.total_error) for row in rows}
+
+    first, again, other = errors(green_rows), errors(rows_of(green, 0)), errors(rows_of(green, 7))
+    assert again == first
+    assert {key[2] for key in first if other[key] != first[key]} == RANDOM
+
+
+def test_a_bright_light_has_the_errors_of_a_dim_one() -> None:
+    def scaled(factor: float) -> Light:
+        return FunctionLight(lambda d: factor * np.exp(2 * d[:, 0]), "lobe")
+
+    names = ("gauss-legendre", "random")
+    small, large = subject_of(scaled(1.0)), subject_of(scaled(1e200))
+    for name in names:
+        errors = [errors_of(each, method(name).project(each.light, 1000, 0, 4)) for each in (small, large)]
+        assert errors[0].error == pytest.approx(errors[1].error, rel=1e-6)
+        assert errors[0].total == pytest.approx(errors[1].total, rel=1e-6)
+
+
+def test_each_light_has_the_band_counts_that_it_needs(green: Subject) -> None:
+    assert green.needs == {0.1: 10}
+    groups = projection_rows.plan([green], (3,), (100, 1_000_000))
+    assert [group.n_bands for group in groups] == [3, 10]
+    assert {count for _, count in groups[1].seconds} == {None, 100, 10_000}
+
+
+def test_a_plan_keeps_the_chosen_methods_and_the_reference(green: Subject) -> None:
+    (group,) = projection_rows.plan([replace(green, needs={})], (3,), (100,), ("fejer",))
+    assert [each.name for each, _ in group.seconds] == [BEST, "fejer"]
+
+
+def test_a_budget_leaves_out_the_longest_first_and_the_answers_last(green: Subject) -> None:
+    groups = projection_rows.plan([green], (3, 10), (100, 10_000, 1_000_000))
+    whole = sum(group.total() for group in groups)
+    assert projection_rows.fit(groups, whole) == []
+    left_out = projection_rows.fit(groups, whole / 3)
+    assert sum(group.total() for group in groups) <= whole / 3
+    assert {count for (_, count), _, _ in left_out} == {1_000_000}
+    assert any(line.startswith("plain random 1 000 000: green, ") for line in projection_rows.describe(left_out))
+    projection_rows.fit(groups, 0.3)
+    kept = {(each.name, count) for each, count in groups[1].seconds}
+    assert {(BEST, None), ("jittered", 10_000)} <= kept
+    assert max(count or 0 for _, count in groups[0].seconds) < 1_000_000
+
+
+def test_a_budget_for_nothing_leaves_nothing(green: Subject) -> None:
+    groups = projection_rows.plan([green], (3,), (100,))
+    left_out = projection_rows.fit(groups, 0.0)
+    assert not any(group.seconds for group in groups)
+    assert "best way: green, 3 10 bands" in projection_rows.describe(left_out)
+
+
+def test_a_machine_slower_than_the_table_is_given_less_to_do(green: Subject, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = iter(float(10 * i) for i in range(100))
+    monkeypatch.setattr(projection_rows, "perf_counter", lambda: next(clock))
+    monkeypatch.setattr(projection_rows, "_measure_group", lambda group, filling, seed: [])
+    groups = projection_rows.plan([green], (3, 5, 9), (100, 1_000_000))
+    experiments = len(groups[-1].seconds)
+    left_out = projection_rows.measure(groups, 20.0, 0, lambda rows: None, lambda share, what: None)
+    assert left_out
+    assert len(groups[-1].seconds) < experiments
+
+
+def test_every_light_is_measured_once_and_two_of_a_name_are_told_apart(tmp_path: Path) -> None:
+    text = '[[lobe]]\nprofile = "constant"\nradiance = 1\n'
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "sky.toml").write_text(text)
+    texts = [str(tmp_path / "a/sky.toml"), "green", "green", str(tmp_path / "b/sky.toml")]
+    assert [subject.name for subject in find_subjects(texts)] == ["sky", "green", texts[3]]

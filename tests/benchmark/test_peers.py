@@ -1,0 +1,62 @@
+"""Other libraries: that they do the same work, and that one that is missing is named."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from shviewer.benchmark import peers
+from shviewer.benchmark.measurement import Measurement
+from shviewer.errors import UsageError
+from shviewer.harmonics.basis import degrees
+from shviewer.harmonics.quadrature import fibonacci
+from shviewer.harmonics.scattered import project_values
+
+
+def test_a_peer_that_is_not_installed_is_named_and_left_out() -> None:
+    def absent() -> peers.ImagePeer:
+        raise ImportError("no", name="absent_module")
+
+    named: list[tuple[str, str]] = []
+    found = peers.available({"one": lambda: 1, "other": absent}, lambda *names: named.append(names))
+    assert found == {"one": 1}
+    assert named == [("other", "absent_module")]
+
+
+def test_ours_is_measured_beside_whatever_peers_there_are() -> None:
+    answer = peers.measure(["film_studio", "green"], [3], 2.0, 0)
+    rows = [Measurement.from_dict(row) for row in answer["rows"]]
+    ours = [(row.light, row.method, row.samples) for row in rows if row.method.startswith(peers.OURS)]
+    assert sorted(ours, key=str) == [
+        ("film_studio", "shviewer f32", None),
+        ("film_studio", "shviewer", 10_000),
+        ("film_studio", "shviewer", None),
+    ]
+    assert all(row.error is None and row.repeats >= 1 for row in rows)  # how many fit depends on the machine
+    there = {row.method for row in rows} | {line.split(":")[0].split(",")[0] for line in answer["missing"]}
+    assert there >= {*peers.IMAGE_PEERS, *peers.SAMPLE_PEERS}
+
+
+def test_sphericart_on_samples_does_what_we_do() -> None:
+    pytest.importorskip("sphericart")
+    samples = fibonacci(500)
+    radiance = np.random.default_rng(0).normal(size=(500, 3))
+    theirs = np.asarray(peers.sphericart_samples_peer()(samples, radiance, 5))
+    ours = project_values(samples.directions, radiance * samples.weights[:, None], 5)
+    assert np.abs(theirs) == pytest.approx(np.abs(ours), abs=1e-12)  # their phase is another
+
+
+def test_scipy_on_samples_does_what_we_do() -> None:
+    pytest.importorskip("scipy")
+    samples = fibonacci(500)
+    radiance = np.random.default_rng(0).normal(size=(500, 3))
+    theirs = np.asarray(peers.scipy_samples_peer()(samples, radiance, 5)).reshape(5, 5, 3)
+    ours = project_values(samples.directions, radiance * samples.weights[:, None], 5)
+    zonal = [int(np.flatnonzero(degrees(5) == l)[l]) for l in range(5)]
+    assert theirs[:, 0].real == pytest.approx(ours[zonal], abs=1e-12)
+
+
+def test_a_process_that_fails_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(peers.sys, "executable", "false")
+    with pytest.raises(UsageError, match="measuring them failed: no message"):
+        peers.peer_rows(["green"], [3], 1.0, 0)

@@ -1,0 +1,215 @@
+"""A whole report: its files, its interruptions and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+from shviewer.benchmark import budget, costs, projection_rows, sections, timing
+from shviewer.benchmark.budget import Clock, allot
+from shviewer.benchmark.measurement import COLUMNS, Measurement
+from shviewer.benchmark.options import Options
+from shviewer.benchmark.page import plots
+from shviewer.benchmark.page.document import Report, read_report
+from shviewer.benchmark.page.projection_tables import _matrix
+from shviewer.benchmark.run import write_report
+from shviewer.errors import LightError, OutputError, UsageError
+
+LITTLE = Options(budget=0.5, quick=True, sections=("projection",), methods=("gauss-legendre", "jittered"), shader=False)
+
+
+MESSAGE = "no plots here"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _on_any_machine() -> Iterator[None]:
+    """Every look at a clock takes a millisecond, so that what a budget admits depends on no machine. And no plots."""
+    ticks = count()
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (budget, costs, projection_rows, timing):
+            patch.setattr(module, "perf_counter", lambda: next(ticks) / 1000)
+        patch.setattr(plots, "make_plots", lambda rows, folder: ((folder / "a-b.svg", folder / "a-b.png"), MESSAGE))
+        yield
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("report")
+    write_report(["green"], folder, replace(LITTLE, command="shviewer report green"))
+    return folder
+
+
+def test_a_report_is_a_page_every_row_as_json_and_every_row_as_csv(folder: Path) -> None:
+    page = (folder / "report.md").read_text()
+    document = json.loads((folder / "report.json").read_text())
+    with (folder / "report.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert document["complete"] is True
+    assert "partial" not in page
+    assert list(rows[0]) == list(COLUMNS)
+    assert len(rows) == len(document["rows"]) > 5
+    best = next(row for row in rows if row["method"] == "best")
+    assert (best["error"], best["samples"], best["error_low"]) == ("", "", "")  # not measured is not 0
+    assert "shviewer report green" in page
+    assert f"numpy {document['versions']['numpy']}" in page
+    assert document["renderer"] is None
+    assert document["lights"]["green"]["bands_within"] == {"0.05": 15}
+    assert document["yardstick_milliseconds"]["median"] > 0
+
+
+def test_what_to_use_comes_first_and_everything_is_legible_at_128_columns(folder: Path) -> None:
+    page = (folder / "report.md").read_text()
+    headings = [line for line in page.splitlines() if line.startswith("## ")]
+    assert headings[0] == "## What to use"
+    tables = [line for line in page.splitlines() if line.startswith("|")]
+    assert tables
+    assert max(map(len, tables)) <= 128
+    assert "\u00b1" in page
+
+
+def test_plots_are_linked_and_the_line_that_installs_them_is_there(folder: Path) -> None:
+    page = (folder / "report.md").read_text()
+    assert "![a b](a-b.svg)" in page
+    assert "a-b.png" not in page
+    assert MESSAGE in page
+
+
+def test_many_bands_continue_in_a_second_table() -> None:
+    rows = [Measurement(section="projection", method="random", samples=10, n_bands=n, error=0.5) for n in range(1, 20)]
+    lines = _matrix(rows, lambda row: f"{row.error:12}")
+    assert max(map(len, lines)) <= 128
+    assert lines.count("") == 2
+    assert sum(line.count(" 0.5 |") for line in lines) == 19
+
+
+def test_an_interrupted_run_leaves_a_readable_partial_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    measure, calls = projection_rows._measure_group, 0
+
+    def interrupted(*arguments: object) -> list[Measurement]:
+        nonlocal calls
+        calls += 1
+        if calls == 2:
+            raise KeyboardInterrupt
+        return measure(*arguments)
+
+    monkeypatch.setattr(projection_rows, "_measure_group", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_report(["green"], tmp_path, LITTLE)
+    report = read_report(tmp_path / "report.json")
+    assert not report.complete
+    assert {row.n_bands for row in report.rows} == {3}
+    page = (tmp_path / "report.md").read_text()
+    assert "**This report is partial" in page
+    assert "### green: milliseconds" in page
+    assert (tmp_path / "report.csv").read_text().count("\n") == len(report.rows) + 1
+
+
+def test_a_light_that_fails_on_the_way_leaves_what_was_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*arguments: object) -> None:
+        raise LightError("sky.py: gone")
+
+    monkeypatch.setattr(projection_rows, "_measure_group", broken)
+    with pytest.raises(LightError, match="gone"):
+        write_report(["green"], tmp_path, LITTLE)
+    assert not read_report(tmp_path / "report.json").complete
+
+
+def test_a_report_is_compared_with_an_older_one(folder: Path, tmp_path: Path) -> None:
+    older = replace(LITTLE, against=folder / "report.json")
+    summary = write_report(["green"], tmp_path, older)
+    page = (tmp_path / "report.md").read_text()
+    assert "## Against an older report" in page
+    assert "rows are in this report and in report.json" in summary.text
+    assert " 0 better, 0 worse." in summary.text  # one seed, one program: the same errors
+
+
+def test_an_unwritable_folder_is_refused_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match=r"cannot be made a folder: .*; choose another place") as refused:
+        write_report(["green"], tmp_path / "file" / "folder", LITTLE)
+    assert "\n" not in str(refused.value)
+    with pytest.raises(OutputError, match="cannot be made a folder"):
+        write_report(["green"], tmp_path / "file", LITTLE)
+
+
+@pytest.mark.parametrize("budget", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_budget_has_to_be_some_seconds(budget: float) -> None:
+    with pytest.raises(UsageError, match=r"budget .*: it must be a number of seconds above 0"):
+        Options(budget=budget)
+
+
+def test_an_unknown_method_or_section_and_a_bad_seed_are_refused() -> None:
+    with pytest.raises(UsageError, match="unknown method 'magic'"):
+        Options(methods=("best", "magic"))
+    with pytest.raises(UsageError, match="unknown section 'magic'"):
+        Options(sections=("magic",))
+    with pytest.raises(UsageError, match="seed -1"):
+        Options(seed=-1)
+
+
+def test_a_bad_older_report_is_refused_before_anything_is_measured(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="cannot be read"):
+        write_report(["green"], tmp_path / "new", replace(LITTLE, against=tmp_path / "none.json"))
+    assert not (tmp_path / "new").exists()
+
+
+def test_an_unknown_light_is_refused_before_anything_is_measured(tmp_path: Path) -> None:
+    with pytest.raises(LightError, match="unknown light 'gren'"):
+        write_report(["gren"], tmp_path / "new", LITTLE)
+
+
+def test_progress_goes_from_nothing_to_done(tmp_path: Path) -> None:
+    told: list[tuple[float, float, str]] = []
+    write_report(["green"], tmp_path, LITTLE, lambda *what: told.append(what))
+    shares = [share for share, _, _ in told]
+    assert told[-1] == (1.0, 0.0, "done")
+    assert all(0 <= share <= 1 for share in shares)
+    assert all(left >= 0 for _, left, _ in told)
+    assert any("green, 3 bands" in what for _, _, what in told)
+
+
+def test_sections_that_are_not_wanted_give_their_time_to_projection() -> None:
+    everything = dict.fromkeys(("projection", "reconstruction", "end to end", "peers"), True)
+    assert sum(allot(everything, 100).values()) == pytest.approx(100)
+    assert allot({"projection": True}, 100) == {"projection": pytest.approx(100)}
+    assert "peers" not in allot(everything | {"peers": False}, 100)
+
+
+def test_the_estimate_follows_the_pace_of_a_section(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+    monkeypatch.setattr("shviewer.benchmark.budget.perf_counter", lambda: now)
+    left: list[float] = []
+    clock = Clock({"first": 10.0, "second": 5.0}, lambda share, seconds, what: left.append(seconds))
+    clock.begin("first")
+    now = 8.0
+    clock.tell(0.4, "")
+    assert left == pytest.approx([15.0, 12.0 + 5.0])
+    now = 20.0
+    clock.begin("second")
+    assert left[-1] == pytest.approx(5.0)
+    assert clock.pace() == 2.0
+
+
+def test_a_quick_run_begins_nothing_that_would_end_too_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+    monkeypatch.setattr("shviewer.benchmark.budget.perf_counter", lambda: now)
+    run = sections.Run.__new__(sections.Run)
+    run.options, run.clock = Options(quick=True), Clock({"projection": 4.0}, None)
+    run.report = Report(0, "", {}, {})
+    run.clock.begin("projection")
+    now = 5.0
+    run.clock.begin("reconstruction")
+    assert not run.late("pictures")
+    now = 11.0
+    assert run.late("pictures")
+    assert run.report.left_out == ["pictures: --quick was out of time"]
+    run.options = Options()
+    assert not run.late("pictures")

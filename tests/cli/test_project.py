@@ -1,0 +1,321 @@
+"""`shviewer project` from the command line to the files."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from places import ASSETS
+
+from shviewer.cli.main import main
+from shviewer.cli.project import project_lights
+from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.harmonics.metrics import errors_by_band_count
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.find import find_light
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.viewer.state import ViewState
+
+Capture = pytest.CaptureFixture[str]
+
+
+def project(*arguments: object) -> int:
+    return main(["project", *map(str, arguments)])
+
+
+def held(path: Path) -> CoefficientLight:
+    light = find_light(str(path))
+    assert isinstance(light, CoefficientLight)
+    return light
+
+
+def test_the_file_holds_the_light_and_says_everything_about_it(tmp_path: Path) -> None:
+    out = tmp_path / "green.json"
+    assert project("-o", out) == 0
+    said = json.loads(out.read_text())
+    green = find_light("green")
+    np.testing.assert_array_equal(said["coefficients"], green.coefficients(5))
+    assert said["shviewer-coefficients"] == 1
+    words = {key: said[key] for key in ("basis", "phase", "index", "axes", "normalisation", "one-over-pi")}
+    assert words == {
+        "basis": "orthonormal real spherical harmonics",
+        "phase": "Condon-Shortley phase kept",
+        "index": "l(l+1) + m",
+        "axes": "x y z are our +x +y +z; z up, right-handed",
+        "normalisation": "orthonormal",
+        "one-over-pi": "not divided by pi",
+    }
+    exact = green.coefficients(5)
+    assert said["relative-l2"] == pytest.approx(errors_by_band_count(green.products(), exact, exact)[-1], rel=1e-12)
+    assert (said["light"], said["quantity"], said["window"], said["muted"], said["method"]) == (
+        "green",
+        "radiance",
+        "none",
+        "none",
+        "closed form",
+    )
+    assert "samples" not in said
+    assert "seed" not in said
+
+
+def test_window_mutes_method_samples_and_seed_are_applied_and_said(tmp_path: Path) -> None:
+    out = tmp_path / "green.csv"
+    options = [
+        "--bands",
+        6,
+        "--window",
+        "hann",
+        "--mute",
+        "1,3",
+        "--method",
+        "jittered",
+        "--samples",
+        1024,
+        "--seed",
+        7,
+    ]
+    assert project("green", "-o", out, *options) == 0
+    text = out.read_text()
+    for line in ("window: hann of 6 bands", "muted: 1 3", "method: jittered", "samples: 1024", "seed: 7", "bands: 6"):
+        assert f"# {line}\n" in text
+    rows = held(out).coefficients(6)
+    assert not rows[1:4].any()
+    assert not rows[9:16].any()
+    assert rows[0].any()
+    first = text
+    assert project("green", "-o", out, *options) == 0
+    assert out.read_text() == first  # nothing depends on the clock
+
+
+def test_a_program_gets_what_it_takes_without_being_asked_for_it(tmp_path: Path) -> None:
+    assert project("venice_sunset", "--convention", "filament", "-o", tmp_path / "sh.glsl") == 0
+    text = (tmp_path / "sh.glsl").read_text()
+    assert "// quantity: irradiance-over-pi\n" in text
+    assert "// bands: 3\n" in text
+    assert "vec3 sh_venice_sunset_irradiance_over_pi(vec3 direction)" in text
+    mean = find_light("venice_sunset").coefficients(1)[0] / (2 * np.sqrt(np.pi))
+    assert held(tmp_path / "sh.glsl").file is not None
+    np.testing.assert_allclose(held(tmp_path / "sh.glsl").file.numbers[0], mean, rtol=1e-12)  # type: ignore[union-attr]
+
+
+def test_axes_and_phase_are_options_and_axes_may_begin_with_a_minus(tmp_path: Path) -> None:
+    assert project("-o", tmp_path / "a.json", "--axes", "y-up", "--no-phase") == 0
+    assert json.loads((tmp_path / "a.json").read_text())["convention"] == "shviewer,y-up,no-phase"
+    assert project("-o", tmp_path / "b.json", "--axes=-y+x+z") == 0
+    assert json.loads((tmp_path / "b.json").read_text())["axes"] == "x y z are our -y +x +z; z up, right-handed"
+    for name in "ab":
+        np.testing.assert_allclose(
+            held(tmp_path / f"{name}.json").given, find_light("green").coefficients(5), rtol=0, atol=1e-14
+        )
+
+
+def test_a_coefficient_file_is_converted_with_all_its_bands_and_its_own_quantity(tmp_path: Path) -> None:
+    assert project("studio", "--bands", 7, "--for", "irradiance", "-o", tmp_path / "a.json") == 0
+    assert project(tmp_path / "a.json", "--convention", "sphericart", "-o", tmp_path / "b.csv") == 0
+    first, second = json.loads((tmp_path / "a.json").read_text()), (tmp_path / "b.csv").read_text()
+    assert "# bands: 7\n" in second
+    assert "# quantity: irradiance\n" in second
+    assert held(tmp_path / "b.csv").file is not None
+    np.testing.assert_allclose(held(tmp_path / "b.csv").file.coefficients, first["coefficients"], rtol=0, atol=1e-13)  # type: ignore[union-attr]
+
+
+def test_a_bare_list_is_converted_when_its_convention_is_named(tmp_path: Path) -> None:
+    """What filament's list is in one direction, Unity's is in the same one, each in its own axes."""
+    filament = np.random.default_rng(0).normal(size=(9, 3))
+    (tmp_path / "sh.txt").write_text("\n".join(f"({r!r}, {g!r}, {b!r}); // L" for r, g, b in filament.tolist()))
+    conventions = ["--input-convention", "filament", "--convention", "unity"]
+    assert project(tmp_path / "sh.txt", *conventions, "-o", tmp_path / "u.json") == 0
+    unity = np.array(json.loads((tmp_path / "u.json").read_text())["coefficients"])
+    ours = np.array([0.6, 0.48, 0.64])
+
+    def polynomials(x: float, y: float, z: float) -> list[float]:
+        return [1, y, z, x, x * y, y * z, 3 * z * z - 1, x * z, x * x - y * y]
+
+    wanted = polynomials(*ours[[1, 2, 0]]) @ filament
+    np.testing.assert_allclose(polynomials(*ours[[0, 2, 1]]) @ unity, wanted, rtol=0, atol=1e-13)
+
+
+def test_stdout_holds_the_file_and_nothing_else(capsysbinary: pytest.CaptureFixture[bytes]) -> None:
+    assert project("-o", "-", "--format", "json") == 0
+    assert json.loads(capsysbinary.readouterr().out)["light"] == "green"
+
+
+def test_of_several_lights_every_one_that_can_be_is_written(tmp_path: Path, capsys: Capture) -> None:
+    (tmp_path / "green.toml").write_text((ASSETS / "scenes/studio.toml").read_text())
+    (tmp_path / "broken.csv").write_text("red,green\n1,2\n")
+    out = tmp_path / "new" / "folder"
+    lights = ["green", tmp_path / "green.toml", "nothing", tmp_path / "broken.csv", "cosine"]
+    assert project(*lights, "-o", out, "--format", "csv", "--bands", 4) == 1
+    captured = capsys.readouterr()
+    assert sorted(path.name for path in out.iterdir()) == ["cosine.csv", "green-2.csv", "green.csv"]
+    assert captured.out.splitlines()[-1] == "3 of 5 written"
+    assert re.search(r"^green +4 +51\.2 % +[\d.]+ % +-0\.1844 +.*green\.csv$", captured.out, flags=re.MULTILINE)
+    assert re.search(r"^nothing +failed$", captured.out, flags=re.MULTILINE)
+    assert [line for line in captured.err.splitlines() if line.startswith("shviewer: unknown light 'nothing'")]
+    assert "no column blue" in captured.err
+
+
+def test_a_batch_without_failures_is_done(tmp_path: Path, capsys: Capture) -> None:
+    assert project("green", "cosine", "-o", tmp_path) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cosine.json", "green.json"]
+    assert "2 of 2 written" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        (("-o", "x.png"), 2, "FILE must end in .json, .csv, .npz, .h, .glsl"),
+        (("-o", "x.json", "--format", "csv"), 2, "contradict each other"),
+        (("-o", "-"), 2, "name a format"),
+        (("-o", "-", "--format", "exr"), 2, "format 'exr'"),
+        (("green", "cosine", "-o", "-", "--format", "csv"), 2, "name a folder"),
+        (("green", "cosine", "-o", "x.json"), 2, "name a folder"),
+        (("-o", "x.json", "--convention", "blender"), 2, "must be one of shviewer"),
+        (("-o", "x.json", "--convention", "three", "--for", "irradiance"), 2, "which takes radiance"),
+        (("-o", "x.json", "--convention", "filament", "--for", "radiance"), 2, "which takes irradiance-over-pi"),
+        (("-o", "x.json", "--convention", "unreal", "--no-phase"), 2, "not be what that program expects"),
+        (("-o", "x.json", "--axes", "up"), 2, "such as +x+z-y"),
+        (("-o", "x.json", "--convention", "unity", "--bands", "4"), 2, "4 bands: unity takes 1 to 3"),
+        (("-o", "x.json", "--convention", "unity", "--axes", "z-up"), 2, "unity expects x y z are our +x +z +y; y up"),
+        (("-o", "x.json", "--input-convention", "three"), 2, "--input-convention three: it is of a coefficient file"),
+        (("-o", "x.glsl", "--convention", "scipy"), 2, "complex coefficients"),
+        (("-o", "x.json", "--input-convention", "maya"), 2, "must be one of shviewer"),
+        (("nothing", "-o", "x.json"), 3, "unknown light 'nothing'"),
+        (("-o", "missing/x.json"), 4, "no such folder"),
+    ],
+)
+def test_what_cannot_be_is_one_line_and_leaves_no_file(
+    arguments: tuple[str, ...], code: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert project(*arguments) == code
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1
+    assert os.listdir() == []
+
+
+def test_the_file_that_is_read_is_not_written(tmp_path: Path, capsys: Capture) -> None:
+    assert project("-o", tmp_path / "a.json") == 0
+    before = (tmp_path / "a.json").read_bytes()
+    assert project(tmp_path / "a.json", "-o", tmp_path / "a.json") == 2
+    assert "read from this file" in capsys.readouterr().err
+    assert (tmp_path / "a.json").read_bytes() == before
+
+
+def test_a_light_cannot_break_out_of_a_comment(tmp_path: Path) -> None:
+    scene = tmp_path / "evil.toml"
+    text = (ASSETS / "scenes/constant.toml").read_text()
+    scene.write_text(re.sub(r"description = .*", r'description = "a */ b\\n#error c"', text))
+    assert project(scene, "-o", tmp_path / "evil.h") == 0
+    lines = (tmp_path / "evil.h").read_text().splitlines()
+    (said,) = [line for line in lines if "light-is" in line]
+    assert said == "// light-is: a * / b #error c"
+
+
+def test_progress_goes_through_the_lights_and_is_cleared(tmp_path: Path, capsys: Capture) -> None:
+    shown: list[str] = []
+
+    def state_of(light: str) -> ViewState:
+        return ViewState(lights=(light,), n_bands=2)
+
+    assert (
+        project_lights(
+            ["green", "no such light", "cosine"], str(tmp_path), "csv", CONVENTIONS["three"], state_of, shown.append
+        )
+        == 1
+    )
+    assert [text[:26].count("#") for text in shown if text] == [0, 8, 16]
+    assert [text.split("] ")[1] for text in shown if text] == [
+        "1 of 3  green",
+        "2 of 3  no such light",
+        "3 of 3  cosine",
+    ]
+    assert shown[-1] == ""
+    assert shown[2] == ""  # before the error is printed
+    capsys.readouterr()
+
+
+def test_as_many_bands_as_a_tolerance_needs(tmp_path: Path, capsys: Capture) -> None:
+    assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "10%") == 0
+    assert held(tmp_path / "c.json").n_bands == 3  # 127/128 of the energy: 8.8 %
+    assert project("cosine", "-o", tmp_path / "c.json", "--tolerance", "1%", "--convention", "three") == 2
+    assert "3 bands that three takes" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["json", "csv", "npz", "h", "glsl"])
+def test_a_sun_that_is_left_out_is_written_in_the_axes_of_the_file(kind: str, tmp_path: Path, capsys: Capture) -> None:
+    """sun-sky.toml says where it stands and how bright it is; Unity's x, y, z are our x, z, y."""
+    out = tmp_path / f"sky.{kind}"
+    assert project("sun-sky", "--split-sun", "--convention", "unity", "-o", out) == 0
+    sun = next(lobe for lobe in find_light("sun-sky").lobes if lobe.radiance.max() > 1000)  # type: ignore[attr-defined]
+    light = held(out)
+    assert light.file is not None
+    said = {key: str(value) for key, value in light.file.stamp.items()}
+    numbers = {key: np.array(value.split(), dtype=float) for key, value in said.items() if key.startswith("sun-1-")}
+    assert said["suns"] == "1"
+    np.testing.assert_allclose(numbers["sun-1-direction"], sun.axis[[0, 2, 1]], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(numbers["sun-1-radiance"], sun.radiance, rtol=1e-15)
+    half_angle = np.radians(numbers["sun-1-width"] / 2)
+    assert half_angle == pytest.approx(sun.profile.half_angle, rel=1e-12)
+    irradiance = np.pi * np.sin(sun.profile.half_angle) ** 2 * sun.radiance
+    np.testing.assert_allclose(numbers["sun-1-irradiance"], irradiance, rtol=1e-12)
+    x, z, y = sun.axis
+    direction, brightness = f"{x:.4g} {y:.4g} {z:.4g}", " ".join(f"{value:.4g}" for value in irradiance)
+    assert f"sun left out: a directional light from ({direction}), irradiance {brightness}\n" in capsys.readouterr().err
+    assert light.notes[0] == "1 sun left out; the file says where and how bright"
+
+
+def test_without_a_sun_nothing_is_said_of_suns(tmp_path: Path, capsys: Capture) -> None:
+    assert project("sun-sky", "-o", tmp_path / "a.json") == 0
+    assert not [key for key in json.loads((tmp_path / "a.json").read_text()) if key.startswith("sun")]
+    assert "sun left out" not in capsys.readouterr().err
+    assert held(tmp_path / "a.json").notes == ()
+
+
+@pytest.mark.parametrize("quantity", ["radiance", "irradiance"])
+def test_both_errors_are_said_whatever_is_written(quantity: str, tmp_path: Path, capsys: Capture) -> None:
+    green = find_light("green")
+    exact = green.coefficients(3)
+    radiance = errors_by_band_count(green.products(), exact, exact)[-1]
+    shaded = IrradianceLight(green)
+    irradiance = errors_by_band_count(shaded.products(), shaded.coefficients(3), shaded.coefficients(3))[-1]
+    assert project("green", "--bands", 3, "--for", quantity, "-o", tmp_path / "a.json") == 0
+    errors = f"radiance within {100 * radiance:.3g} %, as irradiance {100 * irradiance:.3g} %"
+    assert f"a.json: 3 bands, {errors}\n" in capsys.readouterr().out
+
+
+def test_a_reconstruction_below_zero_is_warned_of_with_the_remedy(tmp_path: Path, capsys: Capture) -> None:
+    assert project("green", "-o", tmp_path / "a.json") == 0
+    warning = "shviewer: note: green: the radiance of its 5 bands goes to -0.137; --window dering takes that away\n"
+    assert capsys.readouterr().err == warning
+    assert project("green", "--window", "dering", "-o", tmp_path / "a.json") == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_tolerance_that_a_program_cannot_reach_says_what_it_reaches(tmp_path: Path, capsys: Capture) -> None:
+    command = ["--tolerance", "5%", "--convention", "three", "-o", tmp_path / "a.json"]
+    assert project("green", *command) == 2
+    green, exact = find_light("green"), find_light("green").coefficients(3)
+    reached = errors_by_band_count(green.products(), exact, exact)[-1]
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert f"needs more than the 3 bands that three takes, which reach {100 * reached:.3g} %; give --bands 3" in error
+    assert project("sun-sky", *command) == 2
+    assert "take its sun out, --split-sun" in capsys.readouterr().err
+    assert project("sun-sky", "--split-sun", *command) == 0
+
+
+def test_the_header_says_how_its_array_differs_from_the_programs(tmp_path: Path) -> None:
+    assert project("-o", tmp_path / "a.h", "--convention", "unity") == 0
+    assert "// layout: in Unity sh[channel, row]; this array is [row][channel]\n" in (tmp_path / "a.h").read_text()
+    assert held(tmp_path / "a.h").n_bands == 3
+
+
+def test_a_convention_that_nothing_is_read_in_is_refused(capsys: Capture) -> None:
+    assert main(["screenshot", "a.png", "green", "--convention", "three"]) == 2
+    says = "--convention three: it is of a coefficient file, and green is none; name one as LIGHT or with --compare"
+    assert says in capsys.readouterr().err

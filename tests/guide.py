@@ -1,0 +1,86 @@
+"""Write the tables of the guide anew: python tests/guide.py
+
+In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT --> and <!-- end -->. WHAT is one of
+
+    keys                    the table of keys
+    usage                   the modes and their arguments
+    exit codes
+    options MODE MODE ...   the options that all of these modes have and no other has; the window's mode is called "view"
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+
+from documents import PAGES
+
+from shviewer.cli.options import (
+    EXIT_CODES,
+    info_parser,
+    project_parser,
+    report_parser,
+    screenshot_parser,
+    sweep_parser,
+    view_parser,
+)
+from shviewer.viewer.keys import key_table
+
+PARSERS = {
+    "view": view_parser,
+    "screenshot": screenshot_parser,
+    "sweep": sweep_parser,
+    "info": info_parser,
+    "project": project_parser,
+    "report": report_parser,
+}
+
+MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
+
+
+def written_anew(text: str) -> str:
+    """A page with its tables as the program has them today. KeyError for one that nothing makes."""
+    return MARKED.sub(lambda found: found[1] + generated(found[2]) + found[3], text)
+
+
+def generated(what: str) -> str:
+    """The lines between the comments."""
+    if what.startswith("options "):
+        rows = options_by_modes()[tuple(what.split()[1:])]
+        return "\n".join(["", "| option | meaning |", "|---|---|", *rows, "", ""])
+    texts = {"keys": key_table(), "usage": usage(), "exit codes": exit_codes()}
+    return f"\n```text\n{texts[what]}\n```\n\n"
+
+
+def usage() -> str:
+    return re.sub("^ *(?=shviewer)", "", view_parser().usage or "", flags=re.MULTILINE)
+
+
+def exit_codes() -> str:
+    return re.sub("^  ", "", EXIT_CODES.partition("\n")[2], flags=re.MULTILINE)
+
+
+def options_by_modes() -> dict[tuple[str, ...], list[str]]:
+    """For each set of modes the rows of a table: the options that just these modes have in common."""
+    modes: dict[str, list[str]] = {}
+    for mode, parser in PARSERS.items():
+        for action in parser()._actions:
+            if action.option_strings:
+                modes.setdefault(row(action), []).append(mode)
+    by_modes: dict[tuple[str, ...], list[str]] = {}
+    for text, names in modes.items():
+        by_modes.setdefault(tuple(names), []).append(text)
+    return by_modes
+
+
+def row(action: argparse.Action) -> str:
+    """An option with what it takes, and its line of the help."""
+    metavar = " ".join(action.metavar) if isinstance(action.metavar, tuple) else action.metavar or ""
+    *short, last = action.option_strings
+    names = ", ".join(f"`{name}`" for name in [*short, f"{last} {metavar}".strip()])
+    return f"| {names} | {(action.help or '').replace('%%', '%').replace('|', chr(92) + '|')} |"
+
+
+if __name__ == "__main__":
+    for page in PAGES:
+        page.write_text(written_anew(page.read_text(encoding="utf-8")), encoding="utf-8")

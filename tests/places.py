@@ -1,0 +1,16 @@
+"""Where the project's files are, wherever a test of them stands."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+ASSETS = ROOT / "assets"
+DATA = ROOT / "tests" / "data"
+
+
+def hard_cases() -> Any:
+    """Reference values with 34 digits; README.md beside them says where they come from."""
+    return json.loads((DATA / "hard_cases.json").read_text())

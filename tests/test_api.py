@@ -1,0 +1,204 @@
+"""import shviewer: light to import, one function per command, and lights of every kind."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from coefficients.peer_cases import asymmetric
+from PIL import Image
+from places import ROOT
+
+import shviewer
+from shviewer.errors import ShviewerError
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.function import FunctionLight
+from shviewer.viewer.gl.renderer import Renderer
+
+
+def test_importing_loads_neither_numpy_nor_opengl() -> None:
+    program = "import sys, shviewer; shviewer.__version__; dir(shviewer); print([n for n in sys.modules if n in sys.argv[1:]])"
+    heavy = ["numpy", "moderngl", "glfw", "PIL", "argparse"]
+    done = subprocess.run([sys.executable, "-c", program, *heavy], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_everything_promised_is_there_and_nothing_else() -> None:
+    assert all(getattr(shviewer, name) is not None for name in shviewer.__all__)
+    assert set(shviewer.__all__) <= set(dir(shviewer))
+    assert (Path(shviewer.__file__).parent / "py.typed").exists()
+    with pytest.raises(AttributeError, match="no attribute 'render'"):
+        shviewer.render  # type: ignore[attr-defined]  # noqa: B018
+
+
+def test_project_gives_the_coefficients_and_figures_of_the_window() -> None:
+    found = shviewer.project("green", 5)
+    np.testing.assert_array_equal(found.coefficients, shviewer.find_light("green").coefficients(5))
+    assert found.figures.relative_l2 == pytest.approx(0.2832852245674103, rel=1e-12)
+    assert (found.n_bands, found.quantity) == (5, "radiance")
+    muted = shviewer.project("green", 5, muted=[1, 2], window="hann", quantity="irradiance")
+    assert not muted.coefficients[1:9].any()
+
+
+def test_reconstruct_is_the_sum_of_the_basis() -> None:
+    directions = np.random.default_rng(0).normal(size=(4, 5, 3)) * 7
+    value = shviewer.reconstruct(asymmetric(6), directions)
+    assert value.shape == (4, 5, 3)
+    np.testing.assert_allclose(value, shviewer.evaluate_basis(directions, 6) @ asymmetric(6), rtol=0, atol=1e-13)
+    with pytest.raises(ShviewerError, match="8 coefficients"):
+        shviewer.reconstruct(np.zeros((8, 3)), directions)
+
+
+def test_a_light_may_be_a_text_a_path_a_function_an_array_or_a_light(tmp_path: Path) -> None:
+    def up(directions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        return np.maximum(directions[:, 2], 0.0)
+
+    assert isinstance(shviewer.find_light(up), FunctionLight)
+    assert shviewer.find_light(up).name == "up"
+    assert isinstance(shviewer.find_light(asymmetric(3)), CoefficientLight)
+    assert isinstance(shviewer.find_light(np.ones((4, 8, 3))), EnvironmentLight)
+    assert shviewer.find_light(ROOT / "assets/scenes/studio.toml").name == "studio"
+    light = shviewer.find_light("green")
+    assert shviewer.find_light(light) is light
+    (tmp_path / "bare.json").write_text(json.dumps(asymmetric(3).tolist()))
+    assert shviewer.find_light(tmp_path / "bare.json", convention="unreal").description == "3 bands, unreal"
+    assert shviewer.project(asymmetric(7)).n_bands == 7  # all that a coefficient light has
+    np.testing.assert_allclose(shviewer.project(np.ones((8, 16, 3)), 1).coefficients, 2 * np.sqrt(np.pi), rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("light", "options", "says"),
+    [
+        ("nothing", {}, "unknown light"),
+        (3, {}, "a light of type int"),
+        (np.ones((8, 3)), {}, "8 coefficients"),
+        (np.ones(5), {}, r"an array of shape \(5,\)"),
+        (np.full((9, 3), np.nan), {}, "NaN"),
+        ("green", {"bands": 129}, "129 bands"),
+        ("green", {"colour": 1}, "option 'colour': there is"),
+        ("green", {"window": "welch"}, "window 'welch'"),
+        ("green", {"bands": 3.5}, "bands 3.5: it must be a whole number"),
+        ("green", {"bands": "3"}, "bands '3': it must be a whole number"),
+        ("green", {"samples": 1e3}, "samples 1000.0: it must be a whole number"),
+        ("green", {"window_width": "wide"}, "window_width 'wide': it must be a finite number"),
+        ("green", {"window": 3}, "window 3: it must be a text"),
+        ("green", {"muted": 1}, "muted 1: it must be several bands"),
+        ("green", {"camera": (1,)}, "azimuth and elevation"),
+        ("green", {"compare": "studio"}, "studio is a built-in light; compare= takes coefficients"),
+        ("green", {"compare": lambda directions: directions}, "it must be coefficients"),
+    ],
+)
+def test_what_is_wrong_is_one_line(light: Any, options: dict[str, Any], says: str) -> None:
+    with pytest.raises(ShviewerError, match=says):
+        shviewer.project(light, **options)
+
+
+def test_saving_converts_and_keeps_figures_only_where_they_hold(tmp_path: Path) -> None:
+    found = shviewer.project("venice_sunset", 3)
+    found.save(tmp_path / "a.json", "three")
+    found.save(tmp_path / "b.json", "filament")
+    three, filament = (json.loads((tmp_path / f"{name}.json").read_text()) for name in "ab")
+    np.testing.assert_array_equal(three["coefficients"], found.numbers("three"))
+    np.testing.assert_array_equal(filament["coefficients"], found.numbers("filament"))
+    assert three["relative-l2"] == found.figures.relative_l2
+    assert filament["relative-l2"] == found.figures.irradiance_relative_l2
+    assert "max-error" in three
+    assert "max-error" not in filament
+    for path, convention, says in (
+        ("a.png", "three", "format 'png'"),
+        ("a.json", "maya", "must be one of"),
+        ("a.json", "three,4pi", "not be what"),
+    ):
+        with pytest.raises(ShviewerError, match=says):
+            found.save(tmp_path / path, convention)
+    with pytest.raises(ShviewerError, match="takes 1 to 3"):
+        shviewer.project("green", 4).numbers("unity")
+
+
+def test_screenshot_is_the_picture_of_the_command(session_renderer: Renderer, tmp_path: Path) -> None:
+    """In a process of its own: two OpenGL contexts in one thread silently mix."""
+    program = (
+        "import sys, shviewer, PIL.Image; a = shviewer.screenshot('studio', 8, size=(320, 160), window='lanczos');"
+        " assert a.dtype == 'uint8' and a.shape == (160, 320, 3); PIL.Image.fromarray(a).save(sys.argv[1])"
+    )
+    command = [sys.executable, "-m", "shviewer", "screenshot", "b.png", "studio", "--bands", "8", "--window", "lanczos"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    subprocess.run([sys.executable, "-c", program, "a.png"], cwd=tmp_path, env=environment, check=True)
+    subprocess.run([*command, "--size", "320", "160"], cwd=tmp_path, env=environment, check=True)
+    with Image.open(tmp_path / "a.png") as first, Image.open(tmp_path / "b.png") as second:
+        np.testing.assert_array_equal(np.asarray(first), np.asarray(second))
+
+
+def test_report_is_a_function_although_there_is_a_package_of_that_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Importing shviewer.benchmark puts the package in the function's place; it can be called as well."""
+    run = importlib.import_module("shviewer.benchmark.run")
+    seen: list[Any] = []
+    monkeypatch.setattr(run, "write_report", lambda *arguments: seen.append(arguments))
+    shviewer.report("green", "somewhere", quick=True)
+    shviewer.report(["green", "cosine"], budget=3)
+    assert [[light.name for light in call[0]] for call in seen] == [["green"], ["green", "cosine"]]
+    assert seen[0][1] == Path("somewhere")
+    assert seen[0][2].quick
+    assert seen[1][2].budget == 3
+
+
+def test_users_are_type_checked(tmp_path: Path) -> None:
+    (tmp_path / "user.py").write_text(
+        "import shviewer\n\nfound = shviewer.project('green', 5, quantity='radiance')\nfound.save('x.json', 'three')\n"
+        "value = shviewer.reconstruct(found.coefficients, [[0, 0, 1]])\nreveal_type(value)\n"
+        "reveal_type(shviewer.report('green').rows)\nshviewer.project('green', 'five')\n"
+    )
+    command = [sys.executable, "-m", "mypy", "--strict", "user.py"]
+
+    done = subprocess.run(
+        command, cwd=tmp_path, env={**os.environ, "MYPYPATH": str(ROOT)}, capture_output=True, text=True, check=False
+    )
+    errors = [line for line in done.stdout.splitlines() if line.startswith("user.py") and "error" in line]
+    assert len(errors) == 1, done.stdout
+    assert 'user.py:8: error: Argument 2 to "project"' in errors[0]
+    assert 'user.py:7: note: Revealed type is "int"' in done.stdout
+
+
+def test_reconstruct_and_evaluate_basis_say_what_is_wrong() -> None:
+    for coefficients, directions, says in (
+        (np.ones((8, 3)), [0, 0, 1], "8 coefficients"),
+        (np.ones((9, 2)), [0, 0, 1], "rows of red, green and blue"),
+        (np.ones((9, 3)), [0, 0, 0], "finite and not zero"),
+    ):
+        with pytest.raises(ShviewerError, match=says):
+            shviewer.reconstruct(coefficients, directions)
+    for n_bands in (0, 2.5, "2"):
+        with pytest.raises(ShviewerError):
+            shviewer.evaluate_basis([0, 0, 1], n_bands)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("size", [(320,), (320.5, 160), 3])
+def test_a_size_is_two_whole_numbers(size: Any) -> None:
+    with pytest.raises(ShviewerError, match=r"width"):
+        shviewer.screenshot("green", size=size)
+
+
+def test_help_lists_the_options_where_they_are_taken() -> None:
+    from shviewer.api import OPTIONS
+
+    for function in (shviewer.project, shviewer.screenshot, shviewer.view):
+        assert all(name in str(function.__doc__) for name in OPTIONS)
+        assert "see above" not in str(function.__doc__)
+
+
+def test_coefficients_from_elsewhere_take_the_place_of_the_lights_own(tmp_path: Path) -> None:
+    own = shviewer.project("venice_sunset", 3)
+    (tmp_path / "three.json").write_text(json.dumps(own.numbers("three").tolist()))
+    compared = shviewer.project("venice_sunset", compare=1.5 * own.coefficients)
+    np.testing.assert_array_equal(compared.coefficients, 1.5 * own.coefficients)
+    assert compared.figures.channels["all"].added > 0.1
+    found = shviewer.project("venice_sunset", compare=tmp_path / "three.json")
+    np.testing.assert_allclose(found.coefficients, own.coefficients, rtol=0, atol=1e-13)

@@ -1,0 +1,263 @@
+"""The window as a user has it: real keys, a real mouse, a virtual screen."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from viewer.desktop.desktop import PATIENCE, Viewer, screenshot
+
+from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+
+Start = Callable[..., Viewer]
+
+
+def test_keys_change_bands_and_the_saved_picture_is_that_of_the_screenshot_mode(start: Start, tmp_path: Path) -> None:
+    viewer = start()
+    viewer.press("Up", "6 bands")
+    viewer.press("Up", "7 bands")
+    viewer.press("Next", "3 bands")
+    viewer.press("Prior", "7 bands")
+    viewer.press("1", "frame")
+    viewer.press("3", "frame")
+    pixels, text = viewer.saved_picture()
+    assert json.loads(text)["muted"] == [1, 3]
+    np.testing.assert_array_equal(pixels, screenshot(tmp_path, "green", "--bands", "7", "--mute", "1,3"))
+
+
+def test_every_kind_of_key_does_what_the_table_says(start: Start) -> None:
+    viewer = start("hemisphere", "--bands", "8")
+    viewer.press("Home", " 1 bands")
+    viewer.press("End", "32 bands")
+    viewer.press("Down", "31 bands")
+    viewer.press("shift+2", "frame")
+    assert json.loads(viewer.saved_picture()[1])["muted"] == [band for band in range(31) if band != 2]
+    viewer.press("a", "frame")
+    viewer.press("period", "frame")
+    viewer.press("period", "frame")
+    viewer.press("Return", "frame")
+    assert json.loads(viewer.saved_picture()[1])["muted"] == [1]
+    viewer.press("m", "frame")
+    viewer.press("S", "frame")
+    viewer.press("e", "frame")
+    described = json.loads(viewer.saved_picture()[1])
+    assert (described["method"], described["samples"]) == ("jittered", 2500)
+    viewer.press("n", "frame")
+    assert json.loads(viewer.saved_picture()[1])["exposure_stops"] == pytest.approx(described["exposure_stops"] - 0.5)
+    viewer.press("r", "5 bands")
+    assert viewer.press("Left", "frame").startswith("frame")
+    assert json.loads(viewer.saved_picture()[1])["light"] != "hemisphere"
+
+
+def test_the_tolerance_key_takes_as_many_bands_as_the_light_needs(start: Start) -> None:
+    viewer = start()
+    viewer.press("t", "15 bands")
+    viewer.press("i", "frame")
+    viewer.press("t", "3 bands")
+    described = json.loads(viewer.saved_picture()[1])
+    assert (described["quantity"], described["figures"]["bands_needed"]["irradiance"]) == ("irradiance", 3)
+    assert described["figures"]["relative_l2"] < 0.05
+
+
+def test_the_window_key_goes_through_all_windows_to_one_without_negatives(start: Start) -> None:
+    viewer = start("green", "--bands", "6")
+    seen = []
+    for _ in range(4):
+        viewer.press("w", "frame")
+        described = json.loads(viewer.saved_picture()[1])
+        seen.append(described["window"])
+    assert seen == ["hann", "lanczos", "gauss", "dering"]
+    assert described["figures"]["minimum"] > -1e-6
+    assert described["figures"]["negative_area"] < 1e-3  # where it touches zero, rounding decides
+
+
+def test_dragging_turns_the_spheres_and_shift_dragging_the_light(start: Start) -> None:
+    viewer = start()
+    before = json.loads(viewer.saved_picture()[1])
+    viewer.mouse("320,270", "down", "360,270", "420,300", "up")
+    after = json.loads(viewer.saved_picture()[1])
+    assert after["light_from_world"] == before["light_from_world"]
+    # what was in front has gone right by 100 and down by 30 pixels, in radii of the sphere: the camera went the other way
+    radius = after["spheres"]["original"]["radius"]
+    assert after["camera_degrees"][0] == pytest.approx(before["camera_degrees"][0] - np.degrees(100 / radius), abs=0.01)
+    assert after["camera_degrees"][1] == pytest.approx(before["camera_degrees"][1] + np.degrees(30 / radius), abs=0.01)
+    viewer.xdotool("keydown", "shift")
+    viewer.mouse("320,270", "down", "360,270", "400,250", "up")
+    viewer.xdotool("keyup", "shift")
+    turned = json.loads(viewer.saved_picture()[1])
+    assert turned["camera_degrees"] == after["camera_degrees"]
+    assert not np.allclose(turned["light_from_world"], before["light_from_world"], atol=0.05)
+    viewer.press("f", "frame")
+    assert json.loads(viewer.saved_picture()[1])["camera_degrees"] == before["camera_degrees"]
+
+
+def test_scrolling_zooms_and_a_click_on_a_bar_mutes_its_band(start: Start) -> None:
+    viewer = start()
+    viewer.forget()
+    viewer.mouse("320,270", "scroll-up")
+    viewer.wait_for("frame")
+    assert json.loads(viewer.saved_picture()[1])["zoom"] == pytest.approx(1.1)
+    viewer.forget()
+    viewer.mouse("782,580", "down", "up")  # the bar of band 1 at 1280 x 640
+    viewer.wait_for("frame")
+    assert json.loads(viewer.saved_picture()[1])["muted"] == [1]
+
+
+def test_a_resized_window_shows_the_picture_of_that_size(start: Start, tmp_path: Path) -> None:
+    viewer = start()
+    viewer.forget()
+    viewer.xdotool("windowsize", viewer.window, "900", "700")
+    viewer.wait_for("900 x 700")
+    pixels, _ = viewer.saved_picture()
+    np.testing.assert_array_equal(pixels, screenshot(tmp_path, "green", "--size", "900", "700"))
+
+
+def test_help_opens_with_h_and_question_mark_and_escape_closes_it_before_the_window(start: Start) -> None:
+    viewer = start()
+    viewer.press("h", "frame")
+    dimmed, _ = viewer.saved_picture()
+    viewer.press("Escape", "frame")
+    clear, _ = viewer.saved_picture()
+    assert dimmed.max(axis=2).mean() < 0.6 * clear.max(axis=2).mean()
+    viewer.press("question", "frame")
+    np.testing.assert_array_equal(viewer.saved_picture()[0], dimmed)
+    viewer.press("Escape", "frame")
+    viewer.xdotool("key", "Escape")
+    assert viewer.process.wait(PATIENCE) == 0
+
+
+def test_b_shows_time_against_error_of_what_was_measured_until_escape(start: Start) -> None:
+    viewer = start()
+    viewer.press("m", "frame")
+    viewer.press("b", "frame")
+    two, _ = viewer.saved_picture()
+    viewer.press("s", "frame")
+    three, _ = viewer.saved_picture()
+    viewer.press("Escape", "frame")
+    clear, described = viewer.saved_picture()
+    assert json.loads(described)["samples"] == 40_000
+    rows, columns = np.nonzero((three != clear).any(axis=2))
+    assert 400 < columns.min() < columns.max() < 880  # between the spheres, above the hairline
+    assert 230 < rows.min() < rows.max() < 522
+    orange = [(np.abs(picture.astype(int) - (240, 164, 66)).max(axis=2) < 8).sum() for picture in (clear, two, three)]
+    assert orange[0] == 0
+    assert min(orange[1:]) > 50  # a disc or two, which may cover each other, and the one in the legend
+    assert (two != three)[230:522, 400:880].any()  # another measurement
+    viewer.xdotool("key", "Escape")
+    assert viewer.process.wait(PATIENCE) == 0
+
+
+def test_pictures_are_numbered_and_never_overwritten(start: Start, tmp_path: Path) -> None:
+    (tmp_path / "shviewer-green-001.png").write_text("kept")
+    viewer = start()
+    viewer.saved_picture()
+    viewer.press("ctrl+s", "saved shviewer-green-003.png")
+    assert (tmp_path / "shviewer-green-001.png").read_text() == "kept"
+    assert (tmp_path / "shviewer-green-002.png").exists()
+
+
+DROP_SCRIPT = """
+import sys
+from shviewer.viewer.desktop import window
+from shviewer.viewer.state import ViewState
+with window.open_window((640, 320)) as handle:
+    shown = window.Window(handle, ViewState(), False)
+    for path in sys.argv[1:]:
+        shown._on_drop(handle, [path])
+        shown.frame()
+        print(shown.picture.light.name, "|", shown.state.message)
+"""
+
+
+def test_a_dropped_file_opens_and_a_bad_one_leaves_the_present_light_and_says_why(display: str, tmp_path: Path) -> None:
+    good, bad = tmp_path / "mine.toml", tmp_path / "broken.hdr"
+    good.write_text('[[lobe]]\nprofile = "constant"\nradiance = 2\n')
+    bad.write_text("no image")
+    done = subprocess.run(
+        [sys.executable, "-c", DROP_SCRIPT, str(good), str(bad), str(tmp_path / "gone.toml"), "sun-sky"],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=PATIENCE,
+    )
+    said = [[part.strip() for part in line.split("|")] for line in done.stdout.splitlines()]
+    names, messages = zip(*said, strict=True)
+    assert names == ("mine", "mine", "mine", "sun-sky")
+    assert "broken.hdr" in messages[1]
+    assert "gone.toml" in messages[2]
+    assert messages[0] == messages[3] == ""
+
+
+REFUSED_SWEEP_SCRIPT = """
+from dataclasses import replace
+from shviewer.viewer.desktop import window
+from shviewer.viewer.actions import step_sweep
+from shviewer.viewer.state import ViewState
+with window.open_window((640, 320)) as handle:
+    shown = window.Window(handle, ViewState(n_bands=32, window="dering", sweep_to=40), False)
+    shown.frame()
+    shown.change(step_sweep(shown.state))
+    shown.frame()
+    print(shown.state.n_bands, shown.state.sweep_to, shown.state.message)
+"""
+
+
+def test_a_sweep_to_a_state_that_cannot_be_shown_ends_there_and_says_why(display: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", REFUSED_SWEEP_SCRIPT],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=PATIENCE,
+    )
+    assert done.stdout.startswith("32 None ")
+    assert "dering" in done.stdout
+
+
+def test_an_idle_window_costs_under_one_percent_of_a_core(start: Start) -> None:
+    start().rest(seconds=2)
+
+
+def test_ctrl_c_in_the_terminal_ends_it_at_once(start: Start) -> None:
+    viewer = start()
+    viewer.rest()
+    viewer.process.send_signal(signal.SIGINT)
+    assert viewer.process.wait(PATIENCE) == 130  # without a key or a mouse that wakes it up
+    assert not any("Traceback" in line for line in viewer.seen)
+
+
+def test_space_plays_a_sweep_to_the_bands_in_use_and_then_costs_nothing(start: Start) -> None:
+    viewer = start("green", "--bands", "4", "--size", "640", "320")
+    begin = time.monotonic()
+    lines = [viewer.press("space", " 1 bands")]
+    while " 4 bands" not in lines[-1]:
+        lines.append(viewer.wait_for("frame"))
+    assert time.monotonic() - begin > 3 * SWEEP_SECONDS
+    shown = [int(line.split(" bands")[0].split()[-1]) for line in lines]
+    assert list(dict.fromkeys(shown)) == sorted(set(shown)) == [1, 2, 3, 4]
+    viewer.rest(seconds=1.2 * SWEEP_SECONDS)
+    assert json.loads(viewer.saved_picture()[1])["bands"] == 4
+
+
+def test_a_sweep_goes_on_under_other_keys_until_space_or_a_band_key(start: Start) -> None:
+    viewer = start("green", "--bands", "32", "--size", "640", "320")
+    for key in ("space", "Prior"):
+        viewer.press("space", " 1 bands")  # the second time to where the first one was stopped
+        if key == "space":
+            viewer.press("e", "frame")
+            viewer.wait_for(" 3 bands")
+        viewer.press(key, "frame")
+        stopped = json.loads(viewer.saved_picture()[1])["bands"]
+        assert stopped < 32
+        viewer.rest(seconds=1.2 * SWEEP_SECONDS)
+        assert json.loads(viewer.saved_picture()[1])["bands"] == stopped

@@ -1,0 +1,357 @@
+"""Time against error: points stand where the axes say, the present choice is marked, and no text is cut or covered."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from helpers import centre, overlap
+
+from shviewer.analysis import projections
+from shviewer.analysis.cache import MEMORY, MOST_LIGHTS
+from shviewer.analysis.projections import BEST, Measurement, measurements, project
+from shviewer.analysis.subjects import load_light
+from shviewer.harmonics.metrics import errors_by_band_count
+from shviewer.lights.find import find_light
+from shviewer.lights.function import FunctionLight
+from shviewer.lights.irradiance import IrradianceLight
+from shviewer.lights.light import Light
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.viewer.composition import compose
+from shviewer.viewer.overlay.lettering import ACCENT
+from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
+from shviewer.viewer.overlay.plots import plane
+from shviewer.viewer.overlay.plots.log_axis import Axis
+from shviewer.viewer.overlay.plots.markers import LOOKS
+from shviewer.viewer.overlay.plots.plane import Plane, measured
+from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.state import ViewState
+
+SIZES = [
+    (320, 160), (400, 300), (640, 320), (700, 400), (800, 800), (1280, 640), (1920, 1080), (2560, 1280), (900, 1200),
+    (3000, 500),
+]  # fmt: skip
+COUNTS = (625, 2_500, 10_000, 40_000, 160_000)
+
+
+pytestmark = pytest.mark.usefixtures("fresh_memory")
+
+
+@pytest.fixture
+def steady(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was measured, but with times that no machine and no load changes: a start and so much per sample."""
+
+    def timed(light: Light, n_bands: int) -> tuple[Measurement, ...]:
+        slowness = {"best": (0.5, 0.0), "jittered": (0.3, 6e-4), "gauss-legendre": (0.2, 3e-4)}
+        return tuple(
+            replace(found, milliseconds=slowness[found.method][0] + slowness[found.method][1] * found.samples)
+            for found in measurements(light, n_bands)
+        )
+
+    monkeypatch.setattr(plane, "measurements", timed)
+
+
+def shown(**changes: object) -> Picture:
+    return prepare(ViewState(**{"n_bands": 15, "sheet": "plane", **changes}))  # type: ignore[arg-type]
+
+
+def session(counts: tuple[int, ...] = COUNTS, **changes: object) -> Picture:
+    """The last of these projections, all of which were made."""
+    for method in ("gauss-legendre", "jittered"):
+        for samples in counts:
+            last = shown(method=method, samples=samples, **changes)
+    return last
+
+
+def plane_of(picture: Picture, size: tuple[int, int] = (1280, 640)) -> tuple[Overlay, Plane]:
+    drawn = draw_overlay(picture, compose(*size))
+    assert drawn.plane is not None
+    return drawn, drawn.plane
+
+
+def made_up(errors: dict[tuple[str, int, int], tuple[float, float]]) -> tuple[Measurement, ...]:
+    """Of (milliseconds, error), the same for every number of bands."""
+    return tuple(
+        Measurement(*key, key[0], time, 1, np.full(MAX_DIRECT_BANDS, error)) for key, (time, error) in errors.items()
+    )
+
+
+# --- what is measured
+
+
+def test_every_way_to_project_the_light_is_remembered_with_its_time_and_error() -> None:
+    picture = session()
+    known = {found.sampling: found for found in measured(picture)}
+    assert set(known) == {BEST, *((method, count, 0) for method in ("jittered", "gauss-legendre") for count in COUNTS)}
+    for (method, samples, _), found in known.items():
+        again = shown(method=method, samples=samples if samples else 10_000)
+        assert found.milliseconds == again.projection.milliseconds
+        assert found.errors[14] == pytest.approx(again.figures.relative_l2, rel=1e-12)
+        assert found.words == again.projection.method
+
+
+def test_a_measurement_outlives_its_projection_and_a_repetition_keeps_the_fastest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The clock says 3, 1 and 2 ms; in between enough is projected for the first to be forgotten."""
+    light = find_light("green")
+    seen = []
+    for milliseconds in (3, 1, 2):
+        ticks = iter((0.0, milliseconds / 1000))
+        with monkeypatch.context() as patched:
+            project(light, *BEST, 8)
+            patched.setattr(projections, "perf_counter", lambda ticks=ticks: next(ticks))
+            project(light, "jittered", 100, 0, 8)
+        found = next(found for found in measurements(light, 8) if found.samples == 100)
+        seen.append((found.milliseconds, found.repetitions))
+        for samples in range(200, 220):
+            project(light, "jittered", samples, 0, 8)
+        assert found in measurements(light, 8)
+    assert seen == [(3, 1), (1, 2), (1, 3)]
+
+
+def test_what_was_only_looked_up_is_no_repetition() -> None:
+    light = find_light("green")
+    for _ in range(3):
+        project(light, "jittered", 100, 0, 8)
+    assert [found.repetitions for found in measurements(light, 8)] == [1, 1]
+
+
+def test_the_measurements_used_longest_ago_are_forgotten_and_never_the_best_or_the_present(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(projections, "MOST_MEASUREMENTS", 20)
+    light = find_light("green")
+    for samples in range(100, 140):
+        project(light, "jittered", samples, 0, 4)
+        known = [found.sampling for found in measurements(light, 4)]
+        assert len(known) <= 20
+        assert {BEST, ("jittered", samples, 0)} <= set(known)
+    assert ("jittered", 119, 0) not in known
+
+
+def test_the_irradiance_takes_the_time_of_the_lights_own_samples_and_has_errors_of_its_own() -> None:
+    light = find_light("green")
+    for _ in range(2):
+        projections._measured_projection.cache_clear()
+        project(light, "jittered", 500, 0, 8)
+    project(IrradianceLight(light), "jittered", 500, 0, 8)
+    (_, radiance), (_, irradiance) = (measurements(of, 8) for of in (light, IrradianceLight(light)))
+    assert (irradiance.milliseconds, irradiance.repetitions) == (radiance.milliseconds, 2)
+    assert irradiance.errors[4] < radiance.errors[4] / 5
+
+
+def test_times_of_32_and_of_128_bands_are_never_compared() -> None:
+    few, many = shown(method="jittered", samples=500), shown(method="jittered", samples=500, n_bands=33)
+    assert {len(found.errors) for found in measured(few)} == {MAX_DIRECT_BANDS}
+    assert {len(found.errors) for found in measured(many)} == {MAX_BANDS}
+
+
+def test_measurements_go_with_their_light() -> None:
+    first = shown(method="jittered", samples=500)
+    assert measured(first)
+    for number in range(MOST_LIGHTS):
+        load_light(ViewState(lights=(FunctionLight(lambda d: d[:, 2], str(number)),)))
+        MEMORY.results(FunctionLight(lambda d: d[:, 2], str(number)), "anything")
+    assert measured(first) == ()
+    assert draw_overlay(first, compose(1280, 640)).plane is None
+    assert first.light not in MEMORY  # looking it up brings nothing back
+
+
+# --- axes
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "ticks"),
+    [
+        (0.03, 300, [0.1, 1, 10, 100]),
+        (0.6, 30, [1, 10]),
+        (0.6, 9, [1, 2, 5]),
+        (0.27, 0.6, [0.3, 0.4, 0.5, 0.6]),
+        (1e-8, 20, [1e-8, 1e-6, 1e-4, 1e-2, 1]),
+    ],
+)
+def test_ticks_are_round_and_few(low: float, high: float, ticks: list[float]) -> None:
+    assert Axis(low, high, 0, 200).ticks(35) == pytest.approx(ticks, rel=1e-12)
+
+
+@pytest.mark.parametrize("factor", [2.0, 2.5, 7.0, 30.0, 1e3, 1e9])
+@pytest.mark.parametrize("low", np.geomspace(1e-4, 1e3, 29))
+def test_every_axis_has_two_ticks_that_do_not_touch(low: float, factor: float) -> None:
+    axis = Axis(low, low * factor, 300, 100)
+    ticks = axis.ticks(16)
+    assert len(ticks) >= 2
+    assert all(abs(axis.at(one) - axis.at(two)) >= 16 for one, two in itertools.pairwise(ticks))
+
+
+def test_points_stand_where_the_labels_of_the_axes_say_on_log_scales(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read off as a person would: between the labels of 1 and 100 ms, and of 10 and 100 %; a label is centred to a pixel."""
+    points = {BEST: (1.0, 0.05), ("jittered", 625, 0): (3.0, 0.9), ("jittered", 10_000, 0): (150.0, 0.07)}
+    monkeypatch.setattr(plane, "measurements", lambda light, n_bands: made_up(points))
+    _, found = plane_of(shown(method="jittered"))
+    times, shares = found.milliseconds.ticks(50), found.error.ticks(20)
+    assert times == [1, 10, 100]
+    assert shares == [0.1, 1]
+    x = [centre(found.boxes[f"plane_time_{number}"])[0] for number in (0, 2)]
+    y = [centre(found.boxes[f"plane_share_{number}"])[1] for number in (0, 1)]
+    for key, (time, error) in points.items():
+        place = found.places[key]
+        assert place[0] == pytest.approx(x[0] + (x[1] - x[0]) * np.log10(time) / 2, abs=2)
+        assert place[1] == pytest.approx(y[0] + (y[1] - y[0]) * np.log10(error / 0.1), abs=2)
+
+
+@pytest.mark.usefixtures("steady")
+def test_a_point_is_drawn_in_the_colour_of_its_method() -> None:
+    drawn, found = plane_of(session())
+    others = [key for key in found.places if key != found.present]
+    hidden = 0
+    for key in others:
+        x, y = found.places[key]
+        hidden += tuple(drawn.image[round(y), round(x)]) != LOOKS[key[0]][1]
+    assert hidden <= 3  # behind a point in front
+    assert len({shape for shape, _ in LOOKS.values()}) == len(LOOKS)
+
+
+def test_errors_and_times_that_a_log_axis_cannot_show_are_kept_at_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    points = {BEST: (0.0, 0.0), ("jittered", 10_000, 0): (1.0, 1e-12), ("jittered", 16, 0): (1.0, np.inf)}
+    monkeypatch.setattr(plane, "measurements", lambda light, n_bands: made_up(points))
+    picture = shown(method="jittered")
+    _, found = plane_of(picture)
+    assert set(found.places) == {BEST, ("jittered", 10_000, 0)}
+    assert found.floor == picture.figures.floor
+    assert found.places[BEST][1] == found.places[("jittered", 10_000, 0)][1]
+
+
+# --- the floor, the front, the present choice
+
+
+@pytest.mark.parametrize("n_bands", [1, 5, 15, 32])
+def test_the_floor_is_the_error_that_the_metrics_give_for_the_best_way(n_bands: int) -> None:
+    picture = session(n_bands=n_bands)
+    _, found = plane_of(picture)
+    light = picture.light
+    exact = light.coefficients(MAX_DIRECT_BANDS)
+    assert found.floor == pytest.approx(errors_by_band_count(light.products(), exact, exact)[n_bands - 1], rel=1e-12)
+    at_floor = found.error.at(found.floor)
+    assert found.places[BEST][1] == at_floor
+    assert all(y <= at_floor for _, y in found.places.values())
+
+
+def test_the_front_is_drawn_as_steps_to_the_best_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    fast = ("gauss-legendre", 625, 0)
+    points = {BEST: (10.0, 0.05), fast: (1.0, 0.5), ("jittered", 10_000, 0): (150.0, 0.07)}
+    monkeypatch.setattr(plane, "measurements", lambda light, n_bands: made_up(points))
+    drawn, found = plane_of(shown(method="jittered"))
+    assert found.front == [fast, BEST]
+    (left, high), (right, low) = found.places[fast], found.places[BEST]
+    lighter = drawn.image[..., 0].astype(int) > 100
+    assert lighter[round(high), round(left) + 30 : round(right) - 8].all()
+    assert lighter[round(high) + 1 : round(low) - 10, round(right)].all()
+
+
+@pytest.mark.usefixtures("steady")
+@pytest.mark.parametrize("sampling", [("best", 10_000), ("jittered", 2_500), ("gauss-legendre", 40_000)])
+def test_the_present_choice_has_a_ring_and_its_name_time_and_error(sampling: tuple[str, int]) -> None:
+    session()
+    picture = shown(method=sampling[0], samples=sampling[1])
+    drawn, found = plane_of(picture)
+    assert found.present == (BEST if sampling[0] == "best" else (*sampling, 0))
+    ringed = np.argwhere(np.abs(drawn.image.astype(int) - ACCENT).max(axis=-1) < 40)
+    box = found.box
+    ringed = ringed[(ringed[:, 0] > box.top) & (ringed[:, 0] < box.bottom)]
+    ringed = ringed[(ringed[:, 1] > box.left) & (ringed[:, 1] < box.right)]
+    x, y = found.places[found.present]
+    np.testing.assert_allclose(ringed.mean(axis=0), (y, x), rtol=0, atol=1.5)
+    distances = np.hypot(ringed[:, 0] - y, ringed[:, 1] - x)
+    assert distances.min() > 4
+    assert distances.max() < 12
+    label = found.boxes["plane_present"]
+    assert max(label.left - x, x - label.right, 0) < 20
+    assert max(label.top - y, y - label.bottom, 0) < 20
+
+
+def test_one_point_says_how_to_get_more() -> None:
+    assert "plane_more" in plane_of(shown())[1].boxes
+    assert "plane_legend_best" not in plane_of(shown())[1].boxes
+    more = plane_of(shown(method="jittered"))[1].boxes
+    assert "plane_more" not in more
+    assert {"plane_legend_best", "plane_legend_jittered"} <= set(more)
+
+
+# --- the sheet
+
+
+@pytest.mark.usefixtures("steady")
+@pytest.mark.parametrize("size", SIZES, ids=str)
+def test_no_text_in_it_is_cut_or_covered(size: tuple[int, int]) -> None:
+    session()
+    states = {
+        "green": {"method": "jittered"},
+        "best": {},
+        "irradiance": {"quantity": "irradiance", "n_bands": 3},
+        "image": {"lights": ("venice_sunset",), "method": "gauss-legendre", "muted": frozenset({1}), "window": "hann"},
+        "zoomed": {"zoom": 3.0, "message": "saved"},
+    }
+    for (name, changes), content_scale in itertools.product(states.items(), (1.0, 2.0)):
+        picture = shown(**changes)
+        composition = compose(*size, picture.state.zoom, content_scale)
+        drawn = draw_overlay(picture, composition, timing=True)
+        for (one, box), (two, other) in itertools.combinations(drawn.boxes.items(), 2):
+            assert not overlap(box, other), (name, one, two)
+        if drawn.plane is None:
+            continue
+        sheet = drawn.plane.box
+        assert set(drawn.plane.boxes) <= set(drawn.boxes)
+        assert {"plane_title", "plane_error", "plane_milliseconds", "plane_present"} <= set(drawn.plane.boxes)
+        for one, box in drawn.plane.boxes.items():
+            assert sheet.left < box.left < box.right < sheet.right, (name, one)
+            assert sheet.top < box.top < box.bottom < sheet.bottom, (name, one)
+        assert sheet.bottom <= composition.hairline_y
+        assert not any(overlap(sheet, box) for one, box in drawn.boxes.items() if one not in drawn.plane.boxes), name
+
+
+@pytest.mark.usefixtures("steady")
+@pytest.mark.parametrize("size", [(640, 320), (1280, 640), (2560, 1280)])
+def test_at_the_usual_sizes_axes_legend_floor_and_most_points_are_labelled(size: tuple[int, int]) -> None:
+    _, found = plane_of(session(), size)
+    assert {"plane_floor", *(f"plane_legend_{method}" for method in LOOKS)} <= set(found.boxes)
+    labelled = [key for key in found.places if f"plane_{'_'.join(map(str, key))}" in found.boxes]
+    assert len(labelled) >= 4
+
+
+@pytest.mark.usefixtures("steady")
+def test_what_is_outside_the_sheet_is_as_it_is_without_it() -> None:
+    picture = session()
+    drawn, found = plane_of(picture)
+    without = draw_overlay(replace(picture, state=replace(picture.state, sheet="")), compose(1280, 640))
+    assert without.plane is None
+    differs = np.argwhere((drawn.image != without.image).any(axis=-1))
+    assert found.box.top <= differs[:, 0].min()
+    assert differs[:, 0].max() < found.box.bottom
+    assert found.box.left <= differs[:, 1].min()
+    assert differs[:, 1].max() < found.box.right
+
+
+def test_it_covers_less_of_the_spheres_than_any_place_over_one_of_them() -> None:
+    _, found = plane_of(session())
+    spheres = compose(1280, 640).spheres
+    y, x = np.mgrid[:640, :1280] + 0.5
+    lit = np.any([np.hypot(x - s.x, y - s.y) < s.radius for s in spheres], axis=0)
+    sheet = found.box
+    rows, width = slice(int(sheet.top), int(sheet.bottom)), int(sheet.right - sheet.left)
+    covered = [lit[rows, left : left + width].sum() for left in range(0, 1280 - width, 10)]
+    assert lit[rows, int(sheet.left) : int(sheet.right)].sum() <= min(covered[: len(covered)]) * 1.01
+
+
+def test_a_window_without_room_says_so() -> None:
+    for size, room in (((400, 200), False), ((640, 320), True)):
+        drawn = draw_overlay(shown(), compose(*size))
+        assert (drawn.plane is not None) == room
+        assert ("message" in drawn.boxes) == (not room)
+
+
+def test_the_help_hides_it() -> None:
+    composition = compose(1280, 640)
+    assert draw_overlay(shown(help_visible=True), composition).plane is None
