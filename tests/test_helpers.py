@@ -68,11 +68,12 @@ def test_a_module_that_prepares_a_picture_while_it_is_imported_is_refused(tmp_pa
     folder = Path(__file__).parent
     (tmp_path / "conftest.py").write_text((folder / "conftest.py").read_text())
     (tmp_path / "test_early.py").write_text("from helpers import picture_of\npicture_of()\n")
+    path = os.pathsep.join(filter(None, [str(folder), os.environ.get("PYTHONPATH")]))
     command = [sys.executable, "-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", "test_early.py"]
     done = subprocess.run(
         command,
         cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(folder)},
+        env={**os.environ, "PYTHONPATH": path},
         capture_output=True,
         text=True,
         check=False,
