@@ -16,6 +16,20 @@ DIMMEST, BRIGHTEST = 1e-30, 1e30
 """The largest radiance of a light that can be drawn: beyond, sums and products would leave float32."""
 
 
+def check_radiance(largest: float, name: str) -> None:
+    """LightError unless float32 can show the largest radiance of the light `name`; it can show black."""
+    if not (largest == 0 or DIMMEST <= largest <= BRIGHTEST):
+        raise LightError(
+            f"{name}: its largest radiance is {largest:.3g}; float32 shows {DIMMEST:g} to {BRIGHTEST:g}: scale the light"
+        )
+
+
+def check_brightness(radiance: float, name: str) -> None:
+    """LightError for a light that is known to reach more than float32 can show: asked where a light is made."""
+    if radiance > BRIGHTEST:
+        check_radiance(radiance, name)
+
+
 @dataclass(frozen=True)
 class Limits:
     """How large an image may be. side: texels; texels: of the whole image; file_bytes: of the file as it is stored.

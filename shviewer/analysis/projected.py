@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.analysis.figures import Figures, reconstruct
+from shviewer.analysis.figures import Figures, error_grid, grid_rows, reconstruct
 from shviewer.analysis.projections import project, sampling_of
 from shviewer.analysis.subjects import Subject, load_light, subject
 from shviewer.coefficients.convention import IRRADIANCE, Convention
@@ -21,7 +21,7 @@ from shviewer.errors import UsageError
 from shviewer.files import write_atomically
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.lights.suns.sun import Sun
-from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, check_radiance
 from shviewer.version import __version__
 from shviewer.viewer.state import ViewState, light_name
 from shviewer.viewer.view_limits import check
@@ -100,6 +100,7 @@ def project_state(state: ViewState) -> Projected:
     """The coefficients that the window shows in that state. LightError or UsageError, as in `picture.prepare`."""
     check(state)
     shown = subject(state)
+    check_radiance(error_grid(shown.whole, grid_rows(1)).peak, shown.light.name)
     bands = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
     projection = project(shown.light, *sampling_of(state), bands)
     coefficients, figures = reconstruct(

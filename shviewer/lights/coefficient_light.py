@@ -22,6 +22,7 @@ from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.limits import check_brightness
 from shviewer.words import counted
 
 MAP_SIZE = (1025, 2048)
@@ -37,6 +38,10 @@ class CoefficientLight:
     """What was read, with its own numbers."""
 
     best_method = "coefficients as given"
+
+    def __post_init__(self) -> None:
+        """LightError for more radiance than can be shown: the largest is at least the root of the mean square."""
+        check_brightness(float(np.sqrt((self.given**2).sum(axis=0).max() / (4 * np.pi))), self.name)
 
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> CoefficientLight:

@@ -20,6 +20,7 @@ from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Indices, Layout
 from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.limits import check_brightness
 
 MAX_RASTER_WIDTH = 8192
 """Of the lat-long raster that an image is drawn from which is no texture itself."""
@@ -52,8 +53,9 @@ class EnvironmentLight:
         notes: tuple[str, ...] = (),
         encoding: str | None = None,
     ) -> None:
-        """Without a layout the image is lat-long."""
+        """Without a layout the image is lat-long. LightError for more radiance than can be shown."""
         texels = pixels.texels if isinstance(pixels, LatLongMap) else pixels
+        check_brightness(max(float(texels.max()), -float(texels.min())), name)
         layout = layout or LatLongLayout(*texels.shape[:2])
         for field, value in (("pixels", texels), ("layout", layout), ("name", name), ("notes", notes)):
             object.__setattr__(self, field, value)

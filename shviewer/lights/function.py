@@ -19,6 +19,7 @@ from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.limits import check_brightness
 
 SAMPLED_BANDS = 128
 """Bands by which the quadrature is judged; more are projected on request."""
@@ -51,7 +52,7 @@ DirectionFunction = Callable[[Array], ArrayLike]
 class FunctionLight:
     """`function` is called on arrays of unit directions (k, 3) and returns radiance (k, 3), or (k,) for grey.
 
-    LightError if it raises, or returns another shape or a value that is not finite.
+    LightError if it raises, or returns another shape, a value that is not finite, or more radiance than can be shown.
     """
 
     function: DirectionFunction
@@ -97,6 +98,7 @@ class FunctionLight:
                 f"{self.name}: the function returned {values[bad].tolist()} for direction {directions[bad].tolist()}; "
                 "radiance must be finite"
             )
+        check_brightness(float(np.abs(values).max(initial=0.0)), self.name)
         return values
 
     def integrand(self, directions: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from shviewer.harmonics.basis import Array, normalise, safe_unit
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Profile, orient
+from shviewer.limits import check_brightness
 
 EDGE = 1e-9
 """How far from an edge, relative to its angle, a landmark lies."""
@@ -50,7 +51,7 @@ def _edge(lobe: Lobe) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class LobeLight:
-    """The sum of up to MAX_LOBES lobes. ValueError for none or more."""
+    """The sum of up to MAX_LOBES lobes. ValueError for none or more, LightError for more radiance than can be shown."""
 
     lobes: tuple[Lobe, ...]
     name: str = "lobes"
@@ -61,6 +62,8 @@ class LobeLight:
     def __post_init__(self) -> None:
         if not 1 <= len(self.lobes) <= MAX_LOBES:
             raise ValueError(f"{len(self.lobes)} lobes: there must be 1 to {MAX_LOBES}")
+        axes = np.stack([lobe.axis for lobe in self.lobes])
+        check_brightness(float(np.abs(self.radiance(axes)).max()), self.name)
 
     def radiance(self, directions: Array) -> Array:
         total = np.zeros((len(directions), 3))

@@ -25,6 +25,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
 from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.limits import BRIGHTEST
 
 PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
     "clamped-linear": (("slope", "offset"), ClampedLinear),
@@ -32,9 +33,6 @@ PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
     "gaussian": (("sharpness",), Gaussian),
     "constant": ((), Constant),
 }
-
-LARGEST = 1e30
-"""Radiance beyond this would leave the shader's float32 once lobes are added up."""
 
 MAX_FILE_BYTES = 2**20
 
@@ -112,8 +110,8 @@ class _Reader:
 
     def radiance(self, key: str, value: Any) -> Array:
         colour = self.vector(key, value if isinstance(value, list) else [value] * 3)
-        if np.abs(colour).max() > LARGEST:
-            raise self.wrong(key, value, f"at most {LARGEST:g} in magnitude")
+        if np.abs(colour).max() > BRIGHTEST:
+            raise self.wrong(key, value, f"at most {BRIGHTEST:g} in magnitude")
         return colour
 
     def vector(self, key: str, value: Any) -> Array:

@@ -11,12 +11,11 @@ from shviewer.analysis.comparison import verdict
 from shviewer.analysis.figures import Figures, Needs, error_grid, grid_rows, needs, reconstruct
 from shviewer.analysis.projections import Projection, project, sampling_of
 from shviewer.analysis.subjects import Subject, subject
-from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
-from shviewer.limits import BRIGHTEST, DIMMEST, MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, check_radiance
 from shviewer.viewer import camera
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
@@ -86,11 +85,7 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     light, whole = shown.light, shown.whole
     projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
     projection = project(light, *sampling_of(state), projected)
-    peak = error_grid(whole, grid_rows(1)).peak
-    if not (peak == 0 or DIMMEST <= peak <= BRIGHTEST):
-        raise LightError(
-            f"{light.name}: its largest radiance is {peak:.3g}; float32 shows {DIMMEST:g} to {BRIGHTEST:g}: scale the light"
-        )
+    check_radiance(error_grid(whole, grid_rows(1)).peak, light.name)
     shape = state.n_bands, state.muted_shown, state.window, state.window_width
     coefficients, figures = reconstruct(light, projection, *shape)
     scale = None if state.error == "off" else error_scale(light, projection, shape, state.error)

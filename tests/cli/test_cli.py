@@ -600,9 +600,15 @@ def test_a_light_that_float32_cannot_show_is_refused(
 ) -> None:
     path = tmp_path / "far.py"
     path.write_text(f"import numpy as np\ndef light(d): return np.full(len(d), {radiance})\n")
-    code, line = failing(capsys, "screenshot", str(tmp_path / "out.png"), f"{path}:light")
-    assert code == 3
-    assert "scale the light" in line
+    for command in (
+        ("screenshot", str(tmp_path / "out.png")),
+        ("info",),
+        ("project", "-o", str(tmp_path / "out.json")),
+    ):
+        code, line = failing(capsys, *command, f"{path}:light")
+        assert code == 3
+        assert "scale the light" in line
+    assert not list(tmp_path.glob("out.*"))
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such names")

@@ -316,7 +316,7 @@ def test_a_light_without_a_sun_says_why_in_one_line(pixels, reason):
 
 
 def test_huge_and_tiny_radiances_are_split_alike():
-    for scale in (1e-30, 1.0, 1e34):
+    for scale in (1e-30, 1.0, 1e24):
         pixels = grey() * scale
         pixels[40, 100] *= 1e4
         split = split_suns(light(pixels))
