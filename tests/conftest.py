@@ -1,27 +1,65 @@
-"""One OpenGL context for all tests that draw in this process: two live ones in a thread silently mix."""
+"""What holds for every test, whichever machine, shell or worker process runs it."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
+from pathlib import Path
 
 import pytest
+from helpers import hear_signals, unavailable
 
+# Before NumPy comes: the processors are for tests beside each other. shviewer itself asks for one thread, too.
+os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
+
+from shviewer.analysis.cache import MEMORY
+from shviewer.benchmark.subjects import Subject, subject_of
 from shviewer.errors import GraphicsError
+from shviewer.lights.find import find_light
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import headless_renderer
+
+MOST_WORKERS = 4
+"""Each of them imports, collects and makes an OpenGL context; more gain little."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Folders are spread over the processors; files and tests that are named run in the one process, at once."""
+    named = [argument for argument in config.args if not Path(argument).is_dir()]
+    affinity = getattr(os, "sched_getaffinity", None)
+    processors = len(affinity(0)) if affinity else os.cpu_count() or 1
+    return 0 if named or processors == 1 else min(processors, MOST_WORKERS)
+
+
+def pytest_configure() -> None:
+    hear_signals()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Modules are collected in every process, and for a single test, too: they prepare no picture on the way."""
+    report = yield
+    if isinstance(collector, pytest.Module) and MEMORY._known:
+        MEMORY.clear()
+        report.outcome = "failed"
+        report.longrepr = "a picture is prepared while the module is imported; helpers.Lazily makes it later"
+    return report
 
 
 @pytest.fixture(scope="session")
 def session_renderer() -> Iterator[Renderer]:
-    """Skips with the reason where there is no EGL; on CI that is a failure."""
+    """One OpenGL context for all tests that draw in this process: two live ones in a thread silently mix.
+
+    Skips with the reason where there is no EGL; on CI that is a failure.
+    """
     renderers = headless_renderer()
     try:
         renderer = renderers.__enter__()
     except GraphicsError as error:
-        if os.environ.get("CI"):
-            pytest.fail(f"tests that draw cannot run: {error}")
-        pytest.skip(str(error))
+        unavailable(f"tests that draw cannot run: {error}")
     try:
         yield renderer
     finally:
@@ -34,3 +72,17 @@ def renderer(session_renderer: Renderer) -> Iterator[Renderer]:
     assert session_renderer.context.error == "GL_NO_ERROR"
     yield session_renderer
     assert session_renderer.context.error == "GL_NO_ERROR"
+
+
+@pytest.fixture(scope="session")
+def green() -> Subject:
+    """The light of the paper as a report sees it."""
+    return subject_of(find_light("green"))
+
+
+@pytest.fixture
+def fresh_memory() -> Iterator[None]:
+    """Nothing is remembered of any light, neither before the test nor after it."""
+    MEMORY.clear()
+    yield
+    MEMORY.clear()

@@ -56,10 +56,12 @@ PATIENCE = 60.0
 """Seconds that a process may take to start, draw or end."""
 
 WATCHED_WINDOW = """
-import _thread, sys, threading, time
+import _thread, signal, sys, threading, time
 from shviewer.errors import GraphicsError
 from shviewer.viewer.desktop import window
 from shviewer.viewer.state import ViewState
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a background job is started without
 
 def watch():
     time.sleep(0.5)

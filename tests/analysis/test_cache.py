@@ -6,7 +6,6 @@ import gc
 import os
 import sys
 import weakref
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,12 +27,7 @@ from shviewer.lights.reading import Reading
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import ViewState
 
-
-@pytest.fixture(autouse=True)
-def fresh_memory() -> Iterator[None]:
-    MEMORY.clear()
-    yield
-    MEMORY.clear()
+pytestmark = pytest.mark.usefixtures("fresh_memory")
 
 
 @pytest.fixture

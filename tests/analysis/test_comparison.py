@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable
 from contextlib import nullcontext
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
+from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
 from shviewer.viewer.actions import next_method, reset, with_bands
 from shviewer.viewer.composition import compose
@@ -30,7 +32,10 @@ from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata
 from shviewer.viewer.state import ViewState
 
-VENICE = find_light("venice_sunset")
+
+@cache
+def venice() -> Light:
+    return find_light("venice_sunset")
 
 
 def given(coefficients: Array, name: str = "theirs.txt") -> CoefficientLight:
@@ -38,28 +43,28 @@ def given(coefficients: Array, name: str = "theirs.txt") -> CoefficientLight:
 
 
 def compared(file: CoefficientLight, **changes: object) -> Picture:
-    state = ViewState(lights=(VENICE,), compare=file, **changes)  # type: ignore[arg-type]
+    state = ViewState(lights=(venice(),), compare=file, **changes)  # type: ignore[arg-type]
     return prepare(as_the_file_holds(state, quantity="quantity" not in changes, bands="n_bands" not in changes))
 
 
 def test_the_lights_own_coefficients_fit_and_have_its_own_figures() -> None:
-    picture = compared(given(VENICE.coefficients(4)))
-    plain = prepare(ViewState(lights=(VENICE,), n_bands=4))
+    picture = compared(given(venice().coefficients(4)))
+    plain = prepare(ViewState(lights=(venice(),), n_bands=4))
     np.testing.assert_allclose(picture.coefficients, plain.coefficients, rtol=0, atol=1e-14)
     assert picture.figures.relative_l2 == pytest.approx(plain.figures.relative_l2, rel=1e-9)
     assert picture.verdict == "theirs.txt agrees with the light's own to 0.0001 % over its 4 bands"
 
 
 def test_the_figures_are_those_of_the_given_coefficients() -> None:
-    exact = VENICE.coefficients(3)
+    exact = venice().coefficients(3)
     picture = compared(given(1.5 * exact))
-    norm = np.sqrt(np.trace(VENICE.products()))
+    norm = np.sqrt(np.trace(venice().products()))
     assert picture.figures.channels["all"].added == pytest.approx(0.5 * np.linalg.norm(exact) / norm, rel=1e-9)
     np.testing.assert_array_equal(picture.coefficients, 1.5 * exact)
 
 
 def test_mutes_and_windows_work_on_the_given_coefficients() -> None:
-    file = given(VENICE.coefficients(4))
+    file = given(venice().coefficients(4))
     assert not compared(file, muted=frozenset({1})).coefficients[1:4].any()
     hann = compared(file, window="hann").coefficients
     np.testing.assert_allclose(hann[1:4], file.given[1:4] * (1 + np.cos(np.pi / 4)) / 2, rtol=1e-14)
@@ -67,12 +72,12 @@ def test_mutes_and_windows_work_on_the_given_coefficients() -> None:
 
 def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
     path = tmp_path / "probe.json"
-    path.write_text(json.dumps(np.asarray(CONVENTIONS["unity"].from_ours(VENICE.coefficients(3))).tolist()))
+    path.write_text(json.dumps(np.asarray(CONVENTIONS["unity"].from_ours(venice().coefficients(3))).tolist()))
     file = CoefficientLight.read(path, Reading(convention="unity"))
     picture = compared(file)
     assert (picture.state.quantity, picture.state.n_bands) == ("irradiance", 3)
     assert picture.verdict == "probe agrees with the light's own to 0.0001 % over its 3 bands"
-    own = prepare(ViewState(lights=(VENICE,), n_bands=3, quantity="irradiance"))
+    own = prepare(ViewState(lights=(venice(),), n_bands=3, quantity="irradiance"))
     np.testing.assert_allclose(picture.coefficients, own.coefficients, rtol=0, atol=1e-13)
     assert picture.figures.relative_l2 == pytest.approx(own.figures.relative_l2, rel=1e-9)
 
@@ -87,7 +92,7 @@ def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
     ],
 )
 def test_the_usual_mistakes_are_named_in_one_line(names: tuple[str, ...], words: str) -> None:
-    picture = compared(given(spoiled(VENICE.coefficients(3), *names)))
+    picture = compared(given(spoiled(venice().coefficients(3), *names)))
     assert picture.verdict.startswith("theirs.txt is ")
     assert picture.verdict.endswith(f" % off, but not at all if its numbers are {words}")
     assert "\n" not in picture.verdict
@@ -96,10 +101,10 @@ def test_the_usual_mistakes_are_named_in_one_line(names: tuple[str, ...], words:
 def test_another_programs_file_is_recognised_by_its_numbers(tmp_path: Path) -> None:
     for name in ("filament", "three", "unity"):
         path = tmp_path / f"{name}.json"
-        path.write_text(json.dumps(np.asarray(CONVENTIONS[name].from_ours(VENICE.coefficients(3))).tolist()))
+        path.write_text(json.dumps(np.asarray(CONVENTIONS[name].from_ours(venice().coefficients(3))).tolist()))
         file = CoefficientLight.read(path, Reading(convention="shviewer"))
         for quantity in ("radiance", "irradiance"):
-            light = load_light(ViewState(lights=(VENICE,), quantity=quantity))
+            light = load_light(ViewState(lights=(venice(),), quantity=quantity))
             assert verdict(light, file).endswith(f"not at all if its numbers are in the convention of {name}")
 
 
@@ -111,7 +116,7 @@ def test_what_nothing_explains_is_said_to_be_so() -> None:
 
 
 def test_no_more_bands_are_shown_than_the_file_has() -> None:
-    file = given(VENICE.coefficients(3))
+    file = given(venice().coefficients(3))
     picture = compared(file, n_bands=9)
     assert picture.state.n_bands == 3
     assert picture.state.message == "theirs.txt has 3 bands"
@@ -121,16 +126,16 @@ def test_no_more_bands_are_shown_than_the_file_has() -> None:
 
 
 def test_keys_keep_the_comparison() -> None:
-    state = ViewState(lights=(VENICE,), compare=given(VENICE.coefficients(3)), n_bands=3)
+    state = ViewState(lights=(venice(),), compare=given(venice().coefficients(3)), n_bands=3)
     assert reset(state).compare is state.compare
     assert "those of theirs.txt" in next_method(state).message
     assert next_method(state).method == state.method
 
 
 def test_the_picture_says_whose_coefficients_they_are() -> None:
-    picture = compared(given(spoiled(VENICE.coefficients(3), "phase")))
+    picture = compared(given(spoiled(venice().coefficients(3), "phase")))
     overlay = draw_overlay(picture, compose(1280, 640, 1.0))
-    own = draw_overlay(prepare(ViewState(lights=(VENICE,), n_bands=3)), compose(1280, 640, 1.0))
+    own = draw_overlay(prepare(ViewState(lights=(venice(),), n_bands=3)), compose(1280, 640, 1.0))
     longer, shorter = (sheet.boxes["reconstruction"] for sheet in (overlay, own))
     assert longer.right - longer.left > 1.2 * (shorter.right - shorter.left)
     assert "message" in overlay.boxes
@@ -140,9 +145,9 @@ def test_the_picture_says_whose_coefficients_they_are() -> None:
 
 
 def test_a_long_name_is_shortened_in_the_caption() -> None:
-    file = given(VENICE.coefficients(1), "environment-of-the-second-courtyard-at-noon.json")
-    assert caption(ViewState(lights=(VENICE,), compare=file)) == "environment...d-at-noon.json: "
-    assert caption(ViewState(lights=(VENICE,), compare=given(VENICE.coefficients(1)))) == "theirs.txt: "
+    file = given(venice().coefficients(1), "environment-of-the-second-courtyard-at-noon.json")
+    assert caption(ViewState(lights=(venice(),), compare=file)) == "environment...d-at-noon.json: "
+    assert caption(ViewState(lights=(venice(),), compare=given(venice().coefficients(1)))) == "theirs.txt: "
     assert "reconstruction" in draw_overlay(compared(file), compose(640, 320, 1.0)).boxes
 
 
@@ -150,7 +155,7 @@ def test_the_command_compares_and_says_what_is_wrong(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, renderer: Renderer
 ) -> None:
     monkeypatch.setattr("shviewer.viewer.screenshot.headless_renderer", lambda: nullcontext(renderer))
-    numbers = np.asarray(CONVENTIONS["three"].from_ours(VENICE.coefficients(3)))
+    numbers = np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
     (tmp_path / "theirs.json").write_text(json.dumps(numbers.tolist()))
     command = ["screenshot", str(tmp_path / "out.png"), "venice_sunset", "--compare", str(tmp_path / "theirs.json")]
     assert main([*command, "--convention", "three", "--size", "320", "160"]) == 0
@@ -169,7 +174,7 @@ def test_only_coefficients_are_compared(text: str, kind: str, capsys: pytest.Cap
 
 
 def test_small_disagreement_is_a_figure() -> None:
-    exact = VENICE.coefficients(3)
+    exact = venice().coefficients(3)
     assert compared(given(1.005 * exact)).verdict == "theirs.txt agrees with the light's own to 0.5 % over its 3 bands"
     assert compared(given(exact[:1])).verdict.endswith("over its one band")
 
@@ -192,15 +197,15 @@ def test_small_disagreement_is_a_figure() -> None:
 def test_factors_channels_and_the_order_of_the_list_are_usual_mistakes(
     change: Callable[[Array], Array], words: str
 ) -> None:
-    said = compared(given(np.ascontiguousarray(change(VENICE.coefficients(3))))).verdict
+    said = compared(given(np.ascontiguousarray(change(venice().coefficients(3))))).verdict
     assert said.endswith(f" off, but not at all if its numbers are {words}")
 
 
 @pytest.mark.parametrize("named", ["shviewer", "filament", "unity", "unreal", "three,z-up"])
 def test_mistakes_are_found_together_whichever_convention_was_named(named: str, tmp_path: Path) -> None:
-    numbers = np.sqrt(4 * np.pi) * np.asarray(CONVENTIONS["three"].from_ours(VENICE.coefficients(3)))
+    numbers = np.sqrt(4 * np.pi) * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
     (tmp_path / "theirs.json").write_text(json.dumps(numbers[:, ::-1].tolist()))
-    said = verdict(VENICE, CoefficientLight.read(tmp_path / "theirs.json", Reading(convention=named)))
+    said = verdict(venice(), CoefficientLight.read(tmp_path / "theirs.json", Reading(convention=named)))
     explained = said.partition("its numbers are ")[2]
     assert "multiplied by sqrt(4 pi)" in explained
     assert "with channels in the order B G R" in explained
@@ -208,45 +213,45 @@ def test_mistakes_are_found_together_whichever_convention_was_named(named: str, 
 
 
 def test_where_nothing_explains_it_the_band_is_named() -> None:
-    exact = VENICE.coefficients(4)
+    exact = venice().coefficients(4)
     wrong = exact.copy()
     wrong[1:4] += np.random.default_rng(0).normal(size=(3, 3)) * np.linalg.norm(exact[1:4])
-    assert re.search(r"explains: band 1 is \d+ % off, the others fit$", verdict(VENICE, given(wrong)))
+    assert re.search(r"explains: band 1 is \d+ % off, the others fit$", verdict(venice(), given(wrong)))
     wrong[4:9] *= 1.5
-    assert re.search(r"explains: band 1 is \d+ % off, 2 less, the others fit$", verdict(VENICE, given(wrong)))
+    assert re.search(r"explains: band 1 is \d+ % off, 2 less, the others fit$", verdict(venice(), given(wrong)))
 
 
 @pytest.mark.parametrize(
     "text", ["shviewer", "filament", "three", "unity", "unreal", "ambix", "sphericart", "scipy", "shviewer,irradiance"]
 )
 def test_a_convention_that_nobody_names_is_found(text: str, tmp_path: Path) -> None:
-    numbers = np.asarray(parse_convention(text).from_ours(VENICE.coefficients(3)))
+    numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
     file = tmp_path / "bare.npy"
     np.save(file, numbers)
-    state, said = compared_with(ViewState(lights=(VENICE,)), str(file))
+    state, said = compared_with(ViewState(lights=(venice(),)), str(file))
     assert said == f"bare.npy does not name its convention: {text} fits"
-    assert verdict(VENICE, state.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
+    assert verdict(venice(), state.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
 
 
 @pytest.mark.parametrize(
     "text", ["shviewer,m-swapped,4pi", "shviewer,y-up,4pi", "shviewer,y-up-left,sn3d", "filament,z-up", "three,+z-x-y"]
 )
 def test_a_bent_convention_is_found_too(text: str, tmp_path: Path) -> None:
-    numbers = np.asarray(parse_convention(text).from_ours(VENICE.coefficients(3)))
+    numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
     (tmp_path / "bare.json").write_text(json.dumps(numbers.tolist()))
-    state, said = compared_with(ViewState(lights=(VENICE,)), str(tmp_path / "bare.json"))
+    state, said = compared_with(ViewState(lights=(venice(),)), str(tmp_path / "bare.json"))
     assert said.endswith(" fits")
     if text.startswith("shviewer"):  # the simplest of several that fit as well
         assert parse_convention(said.split()[-2]) == parse_convention(text)
-    assert "agrees" in verdict(VENICE, state.compare)
+    assert "agrees" in verdict(venice(), state.compare)
 
 
 def test_where_no_convention_fits_the_nearest_is_named_and_what_is_wrong(tmp_path: Path) -> None:
-    numbers = 2 * np.asarray(CONVENTIONS["three"].from_ours(VENICE.coefficients(3)))
+    numbers = 2 * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
     (tmp_path / "bare.txt").write_text(" ".join(map(str, numbers.reshape(-1))))
-    state, said = compared_with(ViewState(lights=(VENICE,)), str(tmp_path / "bare.txt"))
+    state, said = compared_with(ViewState(lights=(venice(),)), str(tmp_path / "bare.txt"))
     assert re.search(r"none fits within 2 %; the nearest is \S+, \d+ % off$", said)
-    assert "times 2" in verdict(VENICE, state.compare)
+    assert "times 2" in verdict(venice(), state.compare)
 
 
 def test_what_fits_alike_is_said(tmp_path: Path) -> None:

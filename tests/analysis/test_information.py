@@ -178,9 +178,10 @@ def test_a_black_light_has_neither_range_nor_bands(tmp_path: Path) -> None:
     found = describe(write_exr(tmp_path / "night.exr", np.zeros((4, 8, 3), np.float32)), DEFAULT_READING)
     assert found.values.dynamic_range_stops is found.values.darkest is None
     assert set(found.energy_share) == {0.0}
-    assert "black             100 %" in as_text(found)
-    assert re.search(r"peak +0 at", as_text(found))
-    assert not re.search(r"-0(\.0*)?(?![.\d])", as_text(found))
+    said = as_text(found).replace(str(tmp_path), "")
+    assert "black             100 %" in said
+    assert re.search(r"peak +0 at", said)
+    assert not re.search(r"-0(\.0*)?(?![.\d])", said)
     json.dumps(as_json_object(found), allow_nan=False)
 
 

@@ -30,8 +30,8 @@ def small_image() -> EnvironmentLight:
 
 
 @pytest.fixture(scope="module")
-def green() -> Subject:
-    return subject_of(find_light("green"), (0.1,))
+def green(green: Subject) -> Subject:
+    return replace(green, needs={0.1: green.needs[0.1]})
 
 
 def rows_of(

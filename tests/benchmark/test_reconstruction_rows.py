@@ -25,7 +25,6 @@ from shviewer.benchmark.reconstruction_rows import (
 )
 from shviewer.benchmark.subjects import Subject, subject_of
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
-from shviewer.lights.find import find_light
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.renderer import Renderer
@@ -33,11 +32,6 @@ from shviewer.viewer.screenshot import offscreen
 
 NO_OPENGL = "GraphicsError: no OpenGL here"
 SHADER, CPU = {DIRECT, CACHED}, {SCATTERED, BASIS, MAP_64, MAP_32}
-
-
-@pytest.fixture(scope="module")
-def green() -> Subject:
-    return subject_of(find_light("green"))
 
 
 def by_name(rows: list[Measurement]) -> dict[tuple[str, int | None], Measurement]:

@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
-from time import perf_counter, sleep
+from collections.abc import Callable
 
 import pytest
 
+from shviewer.benchmark import timing
 from shviewer.benchmark.timing import MOST_REPEATS, summarise, time_interleaved, time_it
+
+
+@pytest.fixture
+def taking(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], Callable[[], None]]:
+    """Makes work that takes so many seconds of a clock which nothing else moves."""
+    now = 0.0
+
+    def work(seconds: float) -> None:
+        nonlocal now
+        now += seconds
+
+    monkeypatch.setattr(timing, "perf_counter", lambda: now)
+    return lambda seconds: lambda: work(seconds)
 
 
 def test_the_median_and_the_quartiles_are_those_of_the_times() -> None:
@@ -26,30 +40,31 @@ def test_work_takes_turns_after_a_warm_up() -> None:
     assert "".join(calls) == "abcabcabc"
 
 
-def test_what_comes_before_a_run_is_told_its_number_and_not_timed() -> None:
+def test_what_comes_before_a_run_is_told_its_number_and_not_timed(
+    taking: Callable[[float], Callable[[], None]],
+) -> None:
     seen: list[int] = []
+    prepare = taking(10.0)
 
     def before(name: str, repeat: int) -> None:
         seen.append(repeat)
-        sleep(0.01)
+        prepare()
 
-    found = time_interleaved({"": lambda: None}, budget=0.0, at_least=3, before=before)
+    found = time_interleaved({"": taking(0.002)}, budget=0.0, at_least=3, before=before)
     assert seen == [-1, 0, 1, 2]
-    assert found[""].high_quartile < 10
+    assert found[""].high_quartile == pytest.approx(2.0)
 
 
 def test_a_budget_of_nothing_still_gives_as_many_repeats_as_asked_for() -> None:
     assert time_it(lambda: None, budget=0.0, at_least=7).repeats == 7
 
 
-def test_what_is_fast_is_repeated_more_often_and_not_for_ever() -> None:
-    found = time_interleaved({"fast": lambda: None, "slow": lambda: sleep(0.02)}, budget=0.3, at_least=2)
+def test_what_is_fast_is_repeated_more_often_and_not_for_ever(taking: Callable[[float], Callable[[], None]]) -> None:
+    found = time_interleaved({"fast": taking(2**-20), "slow": taking(2**-6)}, budget=2**-2, at_least=2)
     assert found["fast"].repeats == MOST_REPEATS
-    assert 2 <= found["slow"].repeats < 12
+    assert found["slow"].repeats == 8  # its half of the budget
 
 
-def test_the_budget_ends_the_repeats() -> None:
-    start = perf_counter()
-    found = time_it(lambda: sleep(0.02), budget=0.1, at_least=1)
-    assert found.repeats <= 5
-    assert perf_counter() - start < 5
+def test_the_budget_ends_the_repeats(taking: Callable[[float], Callable[[], None]]) -> None:
+    assert time_it(taking(2**-6), budget=2**-3, at_least=1).repeats == 8
+    assert time_it(taking(1.0), budget=2**-3, at_least=3).repeats == 3

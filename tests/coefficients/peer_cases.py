@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from coefficients import peer_evaluators as peers
+from harmonics.independent import random_directions
 
 from shviewer.coefficients.programs import parse_convention
 from shviewer.harmonics.basis import Array
@@ -31,8 +32,7 @@ EXACT = 1e-12
 
 
 def directions_here(count: int = 1000) -> Array:
-    vectors = np.random.default_rng(1).normal(size=(count, 3))
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+    return np.asarray(random_directions(count, seed=1))
 
 
 def theirs(name: str, directions: Array) -> Array:

@@ -37,6 +37,7 @@ _LARGE = 2048  # bytes; of seeds up to this size every truncation is tried
 _AT_ONCE = 1000
 _OF_A_KIND = 3
 _NO_SIGN_OF_LIFE_SECONDS = 60.0  # of the wall clock, and so only for what never comes back
+_NO_START_SECONDS = 600.0  # the same, until the child is at its first input
 
 _seeds = cache(seeds)
 
@@ -120,20 +121,21 @@ def examine(inputs: Inputs, first: int = 0, most_broken: int = 10) -> Findings:
 def _examine_until_death(inputs: Inputs, first: int, findings: Findings) -> int:
     """The number of the next input: behind the one that killed the child, or behind the last."""
     spawn = multiprocessing.get_context("spawn")
-    at = spawn.RawValue("q", first)
+    at, begun = spawn.RawValue("q", first), spawn.RawValue("b", 0)
     receiver, sender = spawn.Pipe(duplex=False)
-    child = spawn.Process(target=_work, args=(inputs, first, at, sender), daemon=True)
+    child = spawn.Process(target=_work, args=(inputs, first, at, begun, sender), daemon=True)
     child.start()
     sender.close()
-    seen, since = first, time.monotonic()
+    seen, since = (first, 0), time.monotonic()
     why = ""
     try:
         while not why:
             if not receiver.poll(1.0):
-                if at.value != seen:
-                    seen, since = at.value, time.monotonic()
-                elif time.monotonic() - since > _NO_SIGN_OF_LIFE_SECONDS:
-                    why = f"did not come back within {_NO_SIGN_OF_LIFE_SECONDS:.0f} s"
+                patience = _NO_SIGN_OF_LIFE_SECONDS if begun.value else _NO_START_SECONDS
+                if (at.value, begun.value) != seen:
+                    seen, since = (at.value, begun.value), time.monotonic()
+                elif time.monotonic() - since > patience:
+                    why = f"did not come back within {patience:.0f} s"
                 continue
             message = receiver.recv()
             if message is None:
@@ -151,12 +153,13 @@ def _examine_until_death(inputs: Inputs, first: int, findings: Findings) -> int:
     return int(at.value) + 1
 
 
-def _work(inputs: Inputs, first: int, at: Any, sender: Connection) -> None:
+def _work(inputs: Inputs, first: int, at: Any, begun: Any, sender: Connection) -> None:
     """The child: sends what it found every now and then, and None when it is through."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is for the parent, which ends its child
     for name, data in _seeds().items():  # imports and first allocations are no input's fault
         verdict(Witness(), name, data)
     witness = Witness()
+    begun.value = 1
     for begin in range(first, len(inputs), _AT_ONCE):
         outcomes, broken = [], []
         for number in range(begin, min(begin + _AT_ONCE, len(inputs))):

@@ -6,6 +6,7 @@ Also three files after known faults of another reader of .hdr (stb_image, issues
 from __future__ import annotations
 
 import struct
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from PIL import Image
 CODECS = ("NO", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K32", "HTJ2K256", "ZSTD")
 
 
+@cache
 def seeds() -> dict[str, bytes]:
     """Name -> file. The suffix is that of its kind."""
     return {**_hdr_seeds(), **_exr_seeds(), **_png_seeds(), **_jpeg_seeds()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from harmonics.independent import random_rotation
 from numpy.testing import assert_allclose
 from places import hard_cases
 from scipy.spatial.transform import Rotation
@@ -21,10 +22,6 @@ from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
 
 REFERENCE = hard_cases()["rotation"]
-
-
-def random_rotation(seed: int) -> np.ndarray:
-    return Rotation.random(rng=seed).as_matrix()
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4])

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import OpenEXR
 import pytest
+from harmonics.independent import random_directions
 from lights.images.hdr_files import FORMAT, hdr_file, random_texels
 from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
@@ -132,11 +133,6 @@ of_other_layouts = pytest.mark.parametrize("layout", OTHERS, ids=lambda layout: 
 def random_light_of(layout, seed=0):
     pixels = np.random.default_rng(seed).random((*layout.solid_angles().shape, 3)).astype(np.float32)
     return EnvironmentLight(pixels, layout)
-
-
-def random_directions(count, seed=1):
-    directions = np.random.default_rng(seed).normal(size=(count, 3))
-    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 
 
 @of_other_layouts

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
 from numpy.testing import assert_allclose
 
 from shviewer.harmonics.basis import evaluate_basis
@@ -16,8 +17,7 @@ from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 
-NORMALS = np.random.default_rng(0).normal(size=(30, 3))
-NORMALS /= np.linalg.norm(NORMALS, axis=1, keepdims=True)
+NORMALS = random_directions(30)
 
 
 def by_quadrature(light: Light, n_samples: int) -> np.ndarray:

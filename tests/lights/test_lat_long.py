@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
 from numpy.testing import assert_allclose
 
 from shviewer.lights.lat_long import LatLongMap
@@ -115,16 +116,14 @@ def test_the_centre_of_an_image_looks_along_x_and_its_left_half_along_y():
 @pytest.mark.parametrize("rows_on_poles", [False, True])
 def test_one_texel_is_a_constant(rows_on_poles):
     image = LatLongMap(np.array([[[1.0, 2.0, 3.0]]], np.float32), rows_on_poles)
-    d = np.random.default_rng(1).standard_normal((100, 3))
-    d = np.concatenate([d / np.linalg.norm(d, axis=1, keepdims=True), np.eye(3), -np.eye(3)])
+    d = np.concatenate([random_directions(100, seed=1), np.eye(3), -np.eye(3)])
     assert_allclose(image.sample(d), np.broadcast_to([1.0, 2.0, 3.0], (106, 3)), rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize(("height", "width"), SIZES + ODD_SIZES)
 def test_no_look_up_leaves_the_range_of_the_texels(height, width):
     image = random_map(height, width)
-    d = np.random.default_rng(2).standard_normal((2000, 3))
-    values = image.sample(d / np.linalg.norm(d, axis=1, keepdims=True))
+    values = image.sample(random_directions(2000, seed=2))
     assert values.min() >= image.texels.min() - FLOAT32
     assert values.max() <= image.texels.max() + FLOAT32
 

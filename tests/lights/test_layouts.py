@@ -5,6 +5,7 @@ The references here are written from the definitions, point by point; areas are 
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
 from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
@@ -372,8 +373,7 @@ def test_all_layouts_of_one_scene_agree_and_the_better_the_finer(index):
     """Texels hold the radiance at their centres: second order in their size, at least first at a ball's rim."""
     truth = np.random.default_rng(7).normal(size=(16, 3))
     errors, looks = [], []
-    directions = np.random.default_rng(8).normal(size=(4000, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    directions = random_directions(4000, seed=8)
     for size in (16, 32, 64):
         layout = all_layouts(size)[index]
         rows, columns = (a.ravel() for a in np.indices(shape(layout)))
@@ -394,8 +394,7 @@ def test_the_look_up_of_a_constant_is_constant_whatever_is_outside(layout):
     rows, columns = np.indices(shape(layout)).reshape(2, -1)
     shown = np.isfinite(direction_at(layout, rows + 0.5, columns + 0.5)[:, 0]).reshape(shape(layout))
     pixels = np.where(shown[:, :, None], np.float32(0.7), np.float32(-50)).repeat(3, axis=2)
-    directions = np.random.default_rng(9).normal(size=(2000, 3))
-    directions = np.concatenate([np.eye(3), -np.eye(3), directions / np.linalg.norm(directions, axis=1, keepdims=True)])
+    directions = np.concatenate([np.eye(3), -np.eye(3), random_directions(2000, seed=9)])
     assert_allclose(layout.sample(pixels, directions), 0.7, rtol=1e-6, atol=0)
 
 

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
 from numpy.testing import assert_allclose
 
 from shviewer.errors import LightError
@@ -244,8 +245,7 @@ def test_built_in_scenes_have_the_norms_of_their_formulas():
 
 
 def test_the_built_in_green_light_is_the_formula_of_the_paper():
-    d = np.random.default_rng(0).standard_normal((1000, 3))
-    d = np.concatenate([d / np.linalg.norm(d, axis=1, keepdims=True), [[0, 0, 1], [np.cos(2.5), np.sin(2.5), 0]]])
+    d = np.concatenate([random_directions(1000), [[0, 0, 1], [np.cos(2.5), np.sin(2.5), 0]]])
     theta, phi = np.arccos(d[:, 2]), np.arctan2(d[:, 1], d[:, 0])
     paper = np.maximum(0, 5 * np.cos(theta) - 4) + np.maximum(0, -4 * np.sin(theta - np.pi) * np.cos(phi - 2.5) - 3)
     assert paper.max() == pytest.approx(1)

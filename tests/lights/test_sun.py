@@ -292,25 +292,25 @@ def lamps(count):
 @pytest.mark.parametrize(
     ("pixels", "reason"),
     [
-        (grey(), "no texel is bright enough"),
-        (grey(radiance=0), "nothing in it is above 0"),
-        (grey(radiance=-1), "nothing in it is above 0"),
-        (np.random.default_rng(0).random((HEIGHT, WIDTH, 3)), "no texel is bright enough"),
-        (np.exp(np.random.default_rng(0).normal(size=(HEIGHT, WIDTH, 3))), "squared norm"),
-        (grey(1, 1), "no texel is bright enough"),
-        (np.random.default_rng(0).random((2, 3, 3)), "no texel is bright enough"),
-        (np.random.default_rng(0).random((4, 3840, 3)), "no texel is bright enough"),
-        (add_disc(grey(), NOON, np.radians(2.7), 1e4 * WHITE), "degrees wide"),
-        (add_disc(grey(), NOON, np.radians(12), 1e4 * WHITE), "as bright as what surrounds it"),
-        (add_disc(glow(), NOON, np.radians(2), 7 * WHITE), "as bright as what surrounds it"),
-        (add_disc(grey(), NOON, np.radians(0.7), 40 * WHITE), "of the squared norm"),
-        (add_disc(grey(512, 1024), NOON, np.radians(0.2), 500 * WHITE), "of the flux"),
-        (lamps(100), "of the squared norm"),
-        (tube(), "part of something larger"),
+        (lambda: grey(), "no texel is bright enough"),
+        (lambda: grey(radiance=0), "nothing in it is above 0"),
+        (lambda: grey(radiance=-1), "nothing in it is above 0"),
+        (lambda: np.random.default_rng(0).random((HEIGHT, WIDTH, 3)), "no texel is bright enough"),
+        (lambda: np.exp(np.random.default_rng(0).normal(size=(HEIGHT, WIDTH, 3))), "squared norm"),
+        (lambda: grey(1, 1), "no texel is bright enough"),
+        (lambda: np.random.default_rng(0).random((2, 3, 3)), "no texel is bright enough"),
+        (lambda: np.random.default_rng(0).random((4, 3840, 3)), "no texel is bright enough"),
+        (lambda: add_disc(grey(), NOON, np.radians(2.7), 1e4 * WHITE), "degrees wide"),
+        (lambda: add_disc(grey(), NOON, np.radians(12), 1e4 * WHITE), "as bright as what surrounds it"),
+        (lambda: add_disc(glow(), NOON, np.radians(2), 7 * WHITE), "as bright as what surrounds it"),
+        (lambda: add_disc(grey(), NOON, np.radians(0.7), 40 * WHITE), "of the squared norm"),
+        (lambda: add_disc(grey(512, 1024), NOON, np.radians(0.2), 500 * WHITE), "of the flux"),
+        (lambda: lamps(100), "of the squared norm"),
+        (lambda: tube(), "part of something larger"),
     ],
 )
 def test_a_light_without_a_sun_says_why_in_one_line(pixels, reason):
-    finding = refused(light(pixels)).split(";")[0]
+    finding = refused(light(pixels())).split(";")[0]
     assert "has no sun" in finding
     assert reason in finding
 

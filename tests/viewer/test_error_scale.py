@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
+from helpers import picture_of
 
 from shviewer.viewer.composition import compose
 from shviewer.viewer.error_scale import automatic_range, error_values
 from shviewer.viewer.overlay.colour_bar import draw_colour_bar, round_ticks, tick_text
-from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import ViewState
 
 ORIGINAL = np.array([[1.0, 2.0, 0.5], [0.0, 0.0, 4.0]])
 RECONSTRUCTION = np.array([[1.1, 1.5, 0.5], [0.3, -0.1, 4.2]])
-
-
-def picture(**changes: object) -> Picture:
-    return prepare(ViewState(**changes))  # type: ignore[arg-type]
 
 
 def test_the_error_is_that_of_the_channel_where_it_is_largest() -> None:
@@ -30,7 +26,7 @@ def test_the_relative_error_is_of_the_original_or_of_the_floor_where_that_is_dar
 
 
 def test_the_largest_error_in_any_pixel_is_the_figure_of_that_name() -> None:
-    shown = picture(lights=("studio",), n_bands=6)
+    shown = picture_of(lights=("studio",), n_bands=6)
     rng = np.random.default_rng(0)
     directions = rng.normal(size=(20_000, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
@@ -40,11 +36,10 @@ def test_the_largest_error_in_any_pixel_is_the_figure_of_that_name() -> None:
 
 @pytest.mark.parametrize("error", ["signed", "absolute", "relative"])
 def test_no_pixel_has_a_larger_error_than_the_one_that_is_marked(error: str) -> None:
-    shown = picture(lights=("studio",), n_bands=7, error=error)
+    shown = picture_of(lights=("studio",), n_bands=7, error=error)
     scale = shown.error_scale
     assert scale is not None
-    directions = np.random.default_rng(1).normal(size=(20_000, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    directions = random_directions(20_000, seed=1)
 
     def errors(at: np.ndarray) -> np.ndarray:
         return error_values(error, shown.light.radiance(at), shown.rest_at(at), scale.floor)
@@ -73,13 +68,13 @@ def test_relative_errors_end_at_all_of_it_and_no_error_has_a_range_all_the_same(
 
 @pytest.mark.parametrize("light", ["green", "hemisphere", "cosine"])
 def test_a_light_without_spikes_is_coloured_up_to_its_largest_error(light: str) -> None:
-    shown = picture(lights=(light,), n_bands=5, error="signed")
+    shown = picture_of(lights=(light,), n_bands=5, error="signed")
     assert shown.error_scale.end == pytest.approx(shown.figures.extremes.max_error, rel=1e-9)
     assert not shown.error_scale.beyond
 
 
 def test_a_sun_does_not_leave_the_rest_without_colours() -> None:
-    shown = picture(lights=("venice_sunset",), n_bands=9, error="signed")
+    shown = picture_of(lights=("venice_sunset",), n_bands=9, error="signed")
     assert shown.error_scale.beyond
     assert shown.error_scale.end < 0.01 * shown.figures.extremes.max_error
 
@@ -112,7 +107,7 @@ def test_ticks_have_as_many_decimals_as_the_finest_of_them() -> None:
 def test_a_tick_stands_under_its_colour(error: str, size: tuple[int, int]) -> None:
     from PIL import Image
 
-    shown = picture(error=error)
+    shown = picture_of(error=error)
     composition = compose(*size, n_spheres=3)
     sheet = Image.new("RGBA", size)
     boxes = draw_colour_bar(sheet, shown, composition)

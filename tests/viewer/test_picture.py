@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import picture_of
 
 from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, evaluate_basis
@@ -16,14 +17,10 @@ from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import compose
 from shviewer.viewer.drawn import MAP_COLUMNS, DirectSum, SplineMap, map_size
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import ViewState
 from shviewer.viewer.view_limits import check
-
-
-def picture(light: object = "green", **changes: object) -> Picture:
-    return prepare(ViewState(lights=(light,), **changes))  # type: ignore[arg-type]
 
 
 def sphere_rule(rows: int = 400) -> tuple[Array, Array]:
@@ -60,17 +57,17 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> tuple[LobeLight, list[int]]:
 def test_a_band_key_projects_nothing_again(counted: tuple[LobeLight, list[int]]) -> None:
     light, calls = counted
     for n_bands in (5, 6, 1, 32, 16):
-        picture(light, n_bands=n_bands, muted=frozenset({1}))
+        picture_of(light, n_bands=n_bands, muted=frozenset({1}))
     assert calls == [32, 128, 128]  # the picture, and the band counts that radiance and irradiance need
-    picture(light, n_bands=33)
-    picture(light, n_bands=40)
+    picture_of(light, n_bands=33)
+    picture_of(light, n_bands=40)
     assert calls == [32, 128, 128]
 
 
 def test_neither_exposure_nor_camera_nor_light_rotation_projects_again(counted: tuple[LobeLight, list[int]]) -> None:
     light, calls = counted
     for change in ({}, {"exposure_stops": 2.0}, {"camera": (1.0, 2.0)}, {"light_rotation": (0.0, 0.0, 1.0, 0.0)}):
-        picture(light, **change)
+        picture_of(light, **change)
     assert calls == [32, 128, 128]
 
 
@@ -79,7 +76,7 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
 ) -> None:
     frame = compose(128, 64)
     for n_bands in (5, 33):
-        render_rgb(renderer, picture("studio", n_bands=n_bands), frame)
+        render_rgb(renderer, picture_of("studio", n_bands=n_bands), frame)
 
     def forbidden(*arguments: object, **named: object) -> None:
         raise AssertionError("compiled or read again")
@@ -87,7 +84,7 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
     monkeypatch.setattr("shviewer.viewer.gl.programs._compile", forbidden)
     monkeypatch.setattr("shviewer.analysis.subjects.find_light", forbidden)
     for n_bands in (6, 40, 1):
-        render_rgb(renderer, picture("studio", n_bands=n_bands), frame)
+        render_rgb(renderer, picture_of("studio", n_bands=n_bands), frame)
 
 
 # --- figures
@@ -95,7 +92,7 @@ def test_a_band_key_compiles_no_shader_and_reads_no_light_again(
 
 def test_the_error_of_greens_light_in_four_bands_is_the_known_one() -> None:
     """0.511715 by quadrature in the project's notes, and by quadrature here; creases cost it 1e-4."""
-    figures = picture(n_bands=4).figures
+    figures = picture_of(n_bands=4).figures
     assert figures.relative_l2 == pytest.approx(0.511715, abs=5e-7)
     directions, weights = sphere_rule()
     x, y, z = directions.T
@@ -108,7 +105,7 @@ def test_the_error_of_greens_light_in_four_bands_is_the_known_one() -> None:
 @pytest.mark.parametrize("light", ["green", "studio"])
 @pytest.mark.parametrize("muted", [frozenset(), frozenset({0, 2})])
 def test_every_figure_is_what_quadrature_finds(light: str, muted: frozenset[int]) -> None:
-    shown = picture(light, n_bands=6, muted=muted)
+    shown = picture_of(light, n_bands=6, muted=muted)
     directions, weights = sphere_rule(256)
     original = shown.light.radiance(directions)
     reconstruction = evaluate_basis(directions, 6) @ shown.coefficients
@@ -129,7 +126,7 @@ def test_every_figure_is_what_quadrature_finds(light: str, muted: frozenset[int]
 
 
 def test_muted_bands_are_left_out_and_their_energy_is_the_error_added() -> None:
-    full, without = picture(n_bands=6), picture(n_bands=6, muted=frozenset({2, 9}))
+    full, without = picture_of(n_bands=6), picture_of(n_bands=6, muted=frozenset({2, 9}))
     bands = np.repeat(np.arange(6), 2 * np.arange(6) + 1)
     assert not without.coefficients[bands == 2].any()
     np.testing.assert_array_equal(without.coefficients[bands != 2], full.coefficients[bands != 2])
@@ -141,7 +138,7 @@ def test_muted_bands_are_left_out_and_their_energy_is_the_error_added() -> None:
 
 
 def test_more_bands_never_make_the_exact_projection_worse() -> None:
-    errors = [picture("venice_sunset", n_bands=n).figures.relative_l2 for n in range(1, 33)]
+    errors = [picture_of("venice_sunset", n_bands=n).figures.relative_l2 for n in range(1, 33)]
     assert all(after <= before for before, after in itertools.pairwise(errors))
     assert errors[-1] < errors[0]
 
@@ -150,9 +147,9 @@ def test_more_bands_never_make_the_exact_projection_worse() -> None:
 
 
 def test_the_three_methods_agree_within_what_they_promise() -> None:
-    best = picture(n_bands=8)
-    product = picture(n_bands=8, method="gauss-legendre", samples=100_000)
-    jittered = picture(n_bands=8, method="jittered", samples=100_000)
+    best = picture_of(n_bands=8)
+    product = picture_of(n_bands=8, method="gauss-legendre", samples=100_000)
+    jittered = picture_of(n_bands=8, method="jittered", samples=100_000)
     assert best.projection.method == "closed form"
     assert best.projection.evaluations is None
     assert product.projection.evaluations == 2 * 223**2  # rows = floor(sqrt(100000 / 2))
@@ -166,7 +163,7 @@ def test_the_three_methods_agree_within_what_they_promise() -> None:
 
 def test_samples_and_seed_change_the_sampled_methods_alone() -> None:
     def coefficients(**changes: object) -> bytes:
-        return picture(n_bands=4, **changes).coefficients.tobytes()
+        return picture_of(n_bands=4, **changes).coefficients.tobytes()
 
     assert coefficients(seed=1) == coefficients(samples=77)
     assert coefficients(method="jittered", seed=1) != coefficients(method="jittered", seed=2)
@@ -178,8 +175,8 @@ def test_samples_and_seed_change_the_sampled_methods_alone() -> None:
 
 
 def test_a_map_takes_over_above_32_bands() -> None:
-    assert isinstance(picture(n_bands=32).drawn, DirectSum)
-    above = picture(n_bands=33, muted=frozenset({1}))
+    assert isinstance(picture_of(n_bands=32).drawn, DirectSum)
+    above = picture_of(n_bands=33, muted=frozenset({1}))
     assert isinstance(above.drawn, SplineMap)
     splines = above.drawn.splines
     height, width, components = splines.shape
@@ -211,24 +208,24 @@ def test_a_map_is_as_fine_as_the_bands_and_the_contrast_need() -> None:
 
 @pytest.mark.parametrize("change", [{"exposure_offset": 12.0}, {"tone": "log"}, {"error": "signed"}])
 def test_what_shows_finer_differences_takes_a_finer_map(change: dict[str, object]) -> None:
-    plain = picture(n_bands=32, evaluate="map").drawn.splines
-    finer = picture(n_bands=32, evaluate="map", **change).drawn.splines
+    plain = picture_of(n_bands=32, evaluate="map").drawn.splines
+    finer = picture_of(n_bands=32, evaluate="map", **change).drawn.splines
     assert plain is not None
     assert finer is not None
     assert finer.shape[1] > plain.shape[1]
 
 
 def test_a_map_is_drawn_where_it_is_asked_for_and_refused_nowhere_but_directly_above_32_bands() -> None:
-    assert isinstance(picture(evaluate="map").drawn, SplineMap)
-    assert isinstance(picture(evaluate="direct", n_bands=32).drawn, DirectSum)
+    assert isinstance(picture_of(evaluate="map").drawn, SplineMap)
+    assert isinstance(picture_of(evaluate="direct", n_bands=32).drawn, DirectSum)
     assert isinstance(prepare(ViewState(), by_map=True).drawn, SplineMap)
     with pytest.raises(UsageError, match="33 bands: at most 32 are summed directly"):
-        picture(evaluate="direct", n_bands=33)
+        picture_of(evaluate="direct", n_bands=33)
 
 
 def test_lobes_are_drawn_from_formulas_and_everything_else_from_a_map() -> None:
-    lobes, image = picture("studio"), picture("venice_sunset")
-    function = picture(FunctionLight(lambda d: d[:, 2]))
+    lobes, image = picture_of("studio"), picture_of("venice_sunset")
+    function = picture_of(FunctionLight(lambda d: d[:, 2]))
     assert len(lobes.original.lobes) == 4
     assert lobes.original.map is None
     for other in (image, function):
@@ -241,7 +238,7 @@ def test_lobes_are_drawn_from_formulas_and_everything_else_from_a_map() -> None:
 
 @pytest.mark.parametrize("light", ["green", "studio", "venice_sunset", "sun-sky", "constant", "hemisphere"])
 def test_automatic_exposure_leaves_one_hundredth_above_four_fifths_of_white(light: str) -> None:
-    shown = picture(light)
+    shown = picture_of(light)
     directions, weights = sphere_rule(300)
     brightest = shown.light.radiance(directions).max(axis=1) * 2**shown.exposure_stops
     assert weights[brightest > 0.8 * 1.03].sum() / (4 * np.pi) <= 0.0105  # 3 %: the grids are not the same
@@ -249,14 +246,14 @@ def test_automatic_exposure_leaves_one_hundredth_above_four_fifths_of_white(ligh
 
 
 def test_a_fixed_exposure_is_kept_and_offsets_are_added() -> None:
-    assert picture(exposure_stops=1.5).exposure_stops == 1.5
-    assert picture(exposure_stops=1.5, exposure_offset=-0.5).exposure_stops == 1.0
-    assert picture(exposure_offset=2.0).exposure_stops == picture().exposure_stops + 2
+    assert picture_of(exposure_stops=1.5).exposure_stops == 1.5
+    assert picture_of(exposure_stops=1.5, exposure_offset=-0.5).exposure_stops == 1.0
+    assert picture_of(exposure_offset=2.0).exposure_stops == picture_of().exposure_stops + 2
 
 
 def test_a_black_or_negative_light_has_an_exposure_all_the_same() -> None:
-    assert picture(FunctionLight(lambda d: 0 * d[:, 0])).exposure_stops == 0
-    negative = picture(FunctionLight(lambda d: 0 * d[:, 0] - 4.0))
+    assert picture_of(FunctionLight(lambda d: 0 * d[:, 0])).exposure_stops == 0
+    negative = picture_of(FunctionLight(lambda d: 0 * d[:, 0] - 4.0))
     assert negative.exposure_stops == pytest.approx(np.log2(0.8 / 4))
 
 
@@ -281,7 +278,7 @@ def test_a_black_or_negative_light_has_an_exposure_all_the_same() -> None:
 )
 def test_a_state_out_of_range_is_refused_with_value_and_rule(change: dict[str, object], words: str) -> None:
     with pytest.raises(UsageError) as caught:
-        picture(**change)
+        picture_of(**change)
     assert words in str(caught.value)
 
 
@@ -295,4 +292,4 @@ def test_a_size_out_of_range_is_refused(size: tuple[int, int]) -> None:
 def test_a_light_that_cannot_be_read_is_refused_every_time() -> None:
     for _ in range(2):
         with pytest.raises(LightError, match="unknown light 'gren': did you mean green"):
-            picture("gren")
+            picture_of("gren")

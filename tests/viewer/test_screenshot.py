@@ -19,11 +19,12 @@ from typing import Any
 import numpy as np
 import OpenEXR
 import pytest
+from helpers import picture_of
 from numpy.typing import NDArray
 from PIL import Image
 from places import DATA
 from scipy.special import sph_harm_y
-from viewer.gl.frames import picture_of, square_frame
+from viewer.gl.frames import square_frame
 
 from shviewer import files, resources
 from shviewer.errors import OutputError, ShaderError, UsageError

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
 
 from shviewer.viewer.derived import WHITE_LEVEL
 from shviewer.viewer.picture import prepare
@@ -33,8 +34,7 @@ def test_automatic_exposure_shows_one_hundredth_of_the_sphere_above_the_level_un
     light: str, tone: str
 ) -> None:
     picture = prepare(ViewState(lights=(light,), tone=tone))
-    directions = np.random.default_rng(0).normal(size=(40_000, 3))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    directions = random_directions(40_000)
     brightest = picture.light.radiance(directions).max(axis=1).clip(min=0)
     shown = toned(2.0**picture.exposure_stops * brightest, tone)
     above, up_to = (

@@ -8,7 +8,6 @@ import json
 import os
 import sys
 import threading
-import time
 from pathlib import Path
 
 import numpy as np
@@ -116,18 +115,21 @@ def test_a_child_that_ends_is_one_line(child_library):
 
 
 def test_a_child_that_hangs_is_ended(child_library, monkeypatch, tmp_path):
-    monkeypatch.setattr(isolated, "TIME_LIMIT", 2.0)
     pid = tmp_path / "pid"
     child_library(f"import os, time; open({str(pid)!r}, 'w').write(str(os.getpid())); time.sleep(600)")
-    assert "decoding it took more than 2 s" in refusal()
+    for limit in (1.0, 8.0, 64.0):  # a busy machine takes long to get to where the child hangs
+        monkeypatch.setattr(isolated, "TIME_LIMIT", limit)
+        assert f"decoding it took more than {limit:g} s" in refusal()
+        if pid.exists() and pid.read_text():
+            break
     with pytest.raises(ProcessLookupError):
         os.kill(int(pid.read_text()), 0)
 
 
 def test_a_child_that_takes_nothing_in_is_ended(child_answer, monkeypatch):
-    monkeypatch.setattr(isolated, "TIME_LIMIT", 2.0)
+    monkeypatch.setattr(isolated, "TIME_LIMIT", 1.0)
     child_answer("import time; time.sleep(600)")
-    assert "decoding it took more than 2 s" in refusal(bytes(10**6))  # more than a pipe holds
+    assert "decoding it took more than 1 s" in refusal(bytes(10**6))  # more than a pipe holds
 
 
 HEAD = {"height": 1, "width": 1, "encoding": "OpenEXR", "notes": [], "layout": None}
@@ -167,10 +169,10 @@ def test_a_child_whose_first_line_does_not_end_is_stopped(child_answer):
 def test_a_child_that_has_answered_is_not_waited_for(child_answer, monkeypatch):
     head = json.dumps(HEAD).encode() + b"\n" + np.ones(3, np.float32).tobytes()
     child_answer(f"import time; out.write({head!r}); out.flush(); time.sleep(600)")
-    monkeypatch.setattr(isolated, "TIME_LIMIT", 60.0)
-    begin = time.monotonic()
+    stopped = []
+    monkeypatch.setattr(isolated, "_stop", lambda child, late: (stopped.append(child), child.kill()))
     assert_same(decode_isolated(GOOD).pixels, np.ones((1, 1, 3)))
-    assert time.monotonic() - begin < 30
+    assert not stopped  # it would be, after TIME_LIMIT
 
 
 def test_a_programming_error_in_the_child_is_named(child_library):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from helpers import unavailable
 from viewer.desktop.desktop import Viewer, missing_programs, virtual_display
 
 
@@ -14,10 +14,7 @@ from viewer.desktop.desktop import Viewer, missing_programs, virtual_display
 def display() -> Iterator[str]:
     missing = missing_programs()
     if missing:
-        reason = f"window tests need {' and '.join(missing)} (apt-get install -y xvfb xauth xdotool)"
-        if os.environ.get("CI"):
-            pytest.fail(reason)
-        pytest.skip(reason)
+        unavailable(f"window tests need {' and '.join(missing)} (apt-get install -y xvfb xauth xdotool)")
     with virtual_display() as name:
         yield name
 

@@ -17,8 +17,11 @@ import numpy as np
 from PIL import Image
 
 NEEDED = ("Xvfb", "xdotool")
-PATIENCE = 30.0
-"""Seconds to wait for anything: the machines are slow and shared."""
+PATIENCE = 120.0
+"""Seconds to wait for anything. Only what never comes takes so long: the machines are slow and shared."""
+
+AT_REST = 0.01
+"""The share of a core that a window may take in which nothing happens."""
 
 
 def missing_programs() -> list[str]:
@@ -27,17 +30,19 @@ def missing_programs() -> list[str]:
 
 @contextmanager
 def virtual_display(size: str = "1400x900x24") -> Iterator[str]:
-    """Start Xvfb on a free number; yields the DISPLAY."""
+    """Start Xvfb on a free number; yields the DISPLAY. No key repeats (-r), however long a busy machine holds it down."""
     reading, writing = os.pipe()
     server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp"],
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", size, "-nolisten", "tcp", "-r"],
         pass_fds=(writing,),
         stderr=subprocess.DEVNULL,
     )
     os.close(writing)
     try:
         with os.fdopen(reading) as pipe:
-            yield f":{pipe.readline().strip()}"
+            number = pipe.readline().strip()
+            assert number, f"Xvfb ended with {server.wait(PATIENCE)}"
+            yield f":{number}"
     finally:
         server.terminate()
         server.wait(PATIENCE)
@@ -63,7 +68,14 @@ class Viewer:
         self.seen: list[str] = []
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
-        self.wait_for("frame 2:")
+        try:
+            self.wait_for("frame 2:")
+            self._find_window()
+        except BaseException:
+            self.close()
+            raise
+
+    def _find_window(self) -> None:
         self.window = self.xdotool("search", "--sync", "--pid", str(self.process.pid), "--name", "shviewer").split()[0]
         self.xdotool("windowfocus", self.window)
 
@@ -130,9 +142,27 @@ class Viewer:
         with Image.open(path) as image:
             return np.asarray(image.convert("RGB")), str(image.text["shviewer"])  # type: ignore[attr-defined]
 
+    def rest(self, seconds: float = 1.0) -> None:
+        """Wait until the viewer has said nothing for so long and has taken less than AT_REST of a core meanwhile.
+
+        Its own processor time is counted, so that neither a busy machine nor a late start fails a viewer that does rest.
+        """
+        shares = []
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            self.forget()
+            said, start, before = len(self.seen), time.monotonic(), self.cpu_seconds()
+            time.sleep(seconds)
+            shares.append((self.cpu_seconds() - before) / (time.monotonic() - start))
+            self.forget()
+            if shares[-1] < AT_REST and len(self.seen) == said:
+                return
+        raise AssertionError(f"it did not come to rest: {shares[-5:]} of a core; the viewer said: {self.seen[-5:]}")
+
     def cpu_seconds(self) -> float:
-        fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        """Processor time of all its threads. The kernel's tick in /proc/PID/stat is too coarse for a second."""
+        clock = ~self.process.pid << 3 | 2  # clock_getcpuclockid of the C library
+        return time.clock_gettime(clock)
 
     def close(self) -> int:
         if self.process.poll() is None:

@@ -6,13 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from helpers import frame_of, picture_of
 
 from shviewer.lights.function import FunctionLight
-from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import ViewState
 
 
 @pytest.fixture
@@ -23,21 +21,13 @@ def canvas(renderer: Renderer) -> Iterator[Canvas]:
     made.release()
 
 
-def frame(picture: Picture) -> Composition:
-    return compose(1280, 640, picture.state.zoom, n_spheres=picture.state.n_spheres)
-
-
-def picture(**changes: object) -> Picture:
-    return prepare(ViewState(**changes))  # type: ignore[arg-type]
-
-
 def test_the_pointer_adds_its_values_over_a_sphere_and_nothing_beside_it(canvas: Canvas) -> None:
-    shown = picture(error="signed")
-    canvas.show(shown, frame(shown))
-    plain = len(canvas.layers(frame(shown)))
-    sphere = frame(shown).spheres[1]
-    assert len(canvas.layers(frame(shown), (sphere.x, sphere.y))) == plain + 3  # the numbers, and two crosses
-    assert len(canvas.layers(frame(shown), (3.0, 3.0))) == plain
+    shown = picture_of(error="signed")
+    canvas.show(shown, frame_of(shown))
+    plain = len(canvas.layers(frame_of(shown)))
+    sphere = frame_of(shown).spheres[1]
+    assert len(canvas.layers(frame_of(shown), (sphere.x, sphere.y))) == plain + 3  # the numbers, and two crosses
+    assert len(canvas.layers(frame_of(shown), (3.0, 3.0))) == plain
 
 
 def test_a_light_that_fails_in_one_direction_does_not_end_the_program(canvas: Canvas) -> None:
@@ -46,30 +36,30 @@ def test_a_light_that_fails_in_one_direction_does_not_end_the_program(canvas: Ca
             raise ValueError("never alone")
         return np.asarray(1 + directions[:, 2])
 
-    shown = picture(lights=(FunctionLight(touchy, "touchy"),))
-    canvas.show(shown, frame(shown))
-    sphere = frame(shown).spheres[0]
-    assert len(canvas.layers(frame(shown), (sphere.x, sphere.y))) == len(canvas.layers(frame(shown)))
+    shown = picture_of(lights=(FunctionLight(touchy, "touchy"),))
+    canvas.show(shown, frame_of(shown))
+    sphere = frame_of(shown).spheres[0]
+    assert len(canvas.layers(frame_of(shown), (sphere.x, sphere.y))) == len(canvas.layers(frame_of(shown)))
 
 
 def test_nothing_is_read_through_a_sheet(canvas: Canvas) -> None:
-    shown = picture(sheet="convergence", error="signed")
-    canvas.show(shown, frame(shown))
+    shown = picture_of(sheet="convergence", error="signed")
+    canvas.show(shown, frame_of(shown))
     assert canvas.overlay is not None
     sheet = canvas.overlay.sheet
     assert sheet is not None
     middle = (sheet.left + sheet.right) / 2, (sheet.top + sheet.bottom) / 2
-    assert frame(shown).spheres[0].position(*middle) is not None
-    assert len(canvas.layers(frame(shown), middle)) == len(canvas.layers(frame(shown)))
+    assert frame_of(shown).spheres[0].position(*middle) is not None
+    assert len(canvas.layers(frame_of(shown), middle)) == len(canvas.layers(frame_of(shown)))
 
 
 def test_turning_writes_nothing_anew_and_a_band_does(canvas: Canvas) -> None:
-    shown = picture()
-    canvas.show(shown, frame(shown))
+    shown = picture_of()
+    canvas.show(shown, frame_of(shown))
     written = canvas.overlay
     for changes in ({"camera": (3.0, 4.0)}, {"light_rotation": (0.0, 0.0, 1.0, 0.0)}):
-        turned = picture(**changes)
-        canvas.show(turned, frame(turned))
+        turned = picture_of(**changes)
+        canvas.show(turned, frame_of(turned))
         assert canvas.overlay is written
-    canvas.show(picture(n_bands=6), frame(shown))
+    canvas.show(picture_of(n_bands=6), frame_of(shown))
     assert canvas.overlay is not written

@@ -8,12 +8,15 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from lights.images.hdr_files import exr_file, hdr_file, random_texels
 from viewer.desktop.desktop import PATIENCE, Viewer, screenshot
+
+from shviewer.viewer.desktop.window import LOOK_SECONDS
 
 Start = Callable[..., Viewer]
 A_FEW_LOOKS = 1.2
@@ -155,14 +158,26 @@ def test_a_file_that_is_written_piece_by_piece_is_read_when_it_is_whole(start: S
     path, data = tmp_path / "mine.hdr", radiance_hdr(2)
     path.write_bytes(radiance_hdr(1))
     viewer = start("mine.hdr", "--watch")
-    viewer.forget()
+    for _ in range(5):
+        viewer.forget()
+        said = len(viewer.seen)
+        longest = write_in_pieces(path, data)
+        viewer.wait_for("reloaded mine")
+        if longest < LOOK_SECONDS / 2:  # else a busy machine held up the writing, and a look may have found it at rest
+            assert not any("kept" in line for line in viewer.seen[said:])
+            break
+
+
+def write_in_pieces(path: Path, data: bytes) -> float:
+    """So that every look finds another size; the longest pause that was made, in seconds."""
+    times = [time.monotonic()]
     with path.open("wb") as file:
-        for start_of_piece in range(0, len(data), 100):
-            file.write(data[start_of_piece : start_of_piece + 100])
+        for begin in range(0, len(data), 200):
+            file.write(data[begin : begin + 200])
             file.flush()
-            time.sleep(0.06)  # so that every look finds another size
-    viewer.wait_for("reloaded mine")
-    assert not any("kept" in line for line in viewer.seen)
+            time.sleep(0.06)
+            times.append(time.monotonic())
+    return max(after - before for before, after in pairwise(times))
 
 
 def test_a_file_that_vanishes_leaves_its_picture_and_is_read_when_it_is_back(start: Start, tmp_path: Path) -> None:
@@ -204,11 +219,7 @@ def test_a_window_that_does_not_watch_leaves_a_changed_file_alone(start: Start, 
 
 def test_a_watching_window_at_rest_costs_under_one_percent_of_a_core(start: Start, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_bytes(scene(1))
-    viewer = start("mine.toml", "--watch")
-    time.sleep(0.5)
-    before = viewer.cpu_seconds()
-    time.sleep(3)
-    assert viewer.cpu_seconds() - before < 0.03 + 0.011  # one tick of the kernel's clock is 0.01 s
+    start("mine.toml", "--watch").rest(seconds=2)
 
 
 # --- by drop

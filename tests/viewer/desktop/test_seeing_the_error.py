@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -69,8 +68,7 @@ def test_the_mouse_over_a_sphere_draws_a_frame_and_elsewhere_none(start: Start) 
     viewer.wait_for("frame")
     viewer.mouse("640,630")
     viewer.wait_for("frame")  # and one that takes the numbers away
-    time.sleep(0.5)  # until whatever else was on its way has been drawn
-    viewer.forget()
+    viewer.rest()
     begin = len(viewer.seen)
     viewer.mouse("645,632")
     viewer.mouse("650,628")

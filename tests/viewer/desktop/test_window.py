@@ -225,52 +225,39 @@ def test_a_sweep_to_a_state_that_cannot_be_shown_ends_there_and_says_why(display
 
 
 def test_an_idle_window_costs_under_one_percent_of_a_core(start: Start) -> None:
-    viewer = start()
-    time.sleep(0.5)
-    before = viewer.cpu_seconds()
-    time.sleep(3)
-    assert viewer.cpu_seconds() - before < 0.03 + 0.011  # one tick of the kernel's clock is 0.01 s
+    start().rest(seconds=2)
 
 
 def test_ctrl_c_in_the_terminal_ends_it_at_once(start: Start) -> None:
     viewer = start()
-    begin = time.monotonic()
+    viewer.rest()
     viewer.process.send_signal(signal.SIGINT)
-    assert viewer.process.wait(PATIENCE) == 130
-    assert time.monotonic() - begin < 3  # it wakes up four times a second; the rest is Python closing down
+    assert viewer.process.wait(PATIENCE) == 130  # without a key or a mouse that wakes it up
     assert not any("Traceback" in line for line in viewer.seen)
 
 
 def test_space_plays_a_sweep_to_the_bands_in_use_and_then_costs_nothing(start: Start) -> None:
     viewer = start("green", "--bands", "4", "--size", "640", "320")
-    viewer.press("space", " 1 bands")
     begin = time.monotonic()
-    for n_bands in (2, 3, 4):
-        line = viewer.wait_for("frame")
-        assert f" {n_bands} bands" in line
-    taken = time.monotonic() - begin
-    assert taken > 3 * SWEEP_SECONDS - 0.3  # of which the first frame may have taken some
-    time.sleep(1.0)
-    before = viewer.cpu_seconds()
-    time.sleep(2)
-    assert viewer.cpu_seconds() - before < 0.02 + 0.011
-    assert viewer.lines.empty()
+    lines = [viewer.press("space", " 1 bands")]
+    while " 4 bands" not in lines[-1]:
+        lines.append(viewer.wait_for("frame"))
+    assert time.monotonic() - begin > 3 * SWEEP_SECONDS
+    shown = [int(line.split(" bands")[0].split()[-1]) for line in lines]
+    assert list(dict.fromkeys(shown)) == sorted(set(shown)) == [1, 2, 3, 4]
+    viewer.rest(seconds=1.2 * SWEEP_SECONDS)
+    assert json.loads(viewer.saved_picture()[1])["bands"] == 4
 
 
 def test_a_sweep_goes_on_under_other_keys_until_space_or_a_band_key(start: Start) -> None:
-    viewer = start("green", "--bands", "9", "--size", "640", "320")
-    viewer.press("space", " 1 bands")
-    viewer.press("e", "frame")
-    viewer.wait_for(" 3 bands")
-    viewer.press("space", "frame")
-    stopped = json.loads(viewer.saved_picture()[1])["bands"]
-    viewer.wait_for("frame")  # which says that it was saved
-    time.sleep(1.2 * SWEEP_SECONDS)
-    assert viewer.lines.empty()
-    assert 3 <= stopped < 9
-    viewer.press("space", " 1 bands")  # from the present count again
-    viewer.wait_for(" 2 bands")
-    viewer.press("Prior", " bands")
-    viewer.forget()
-    time.sleep(1.2 * SWEEP_SECONDS)
-    assert viewer.lines.empty()
+    viewer = start("green", "--bands", "32", "--size", "640", "320")
+    for key in ("space", "Prior"):
+        viewer.press("space", " 1 bands")  # the second time to where the first one was stopped
+        if key == "space":
+            viewer.press("e", "frame")
+            viewer.wait_for(" 3 bands")
+        viewer.press(key, "frame")
+        stopped = json.loads(viewer.saved_picture()[1])["bands"]
+        assert stopped < 32
+        viewer.rest(seconds=1.2 * SWEEP_SECONDS)
+        assert json.loads(viewer.saved_picture()[1])["bands"] == stopped

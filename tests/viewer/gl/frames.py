@@ -12,8 +12,7 @@ from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composition import Box, Composition, Sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap
-from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.picture import Picture
 
 SIDE = 128
 MAP_SIZE = (1025, 2048)
@@ -69,18 +68,8 @@ def rounding(seen: View) -> Array:
     return 2e-7 / seen.facing
 
 
-def picture_of(light: object, **changes: object) -> Picture:
-    """The picture of a light that is an object or a name."""
-    return prepare(ViewState(lights=(light,), **changes))  # type: ignore[arg-type]
-
-
 def lobes(*parts: Lobe) -> LobeLight:
     return LobeLight(parts)
-
-
-def random_directions(count: int, seed: int = 0) -> Array:
-    vectors = np.random.default_rng(seed).normal(size=(count, 3))
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
 def reconstructing(picture: Picture, coefficients: Array) -> Picture:

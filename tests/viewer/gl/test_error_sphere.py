@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import picture_of
 from numpy.typing import NDArray
-from viewer.gl.frames import lobes, picture_of, picture_view, positions, reconstructing, rounding, sum_of_harmonics
+from viewer.gl.frames import lobes, picture_view, positions, reconstructing, rounding, sum_of_harmonics
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian

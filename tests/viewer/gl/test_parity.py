@@ -11,14 +11,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
+from helpers import picture_of
 from numpy.typing import NDArray
 from PIL import Image
 from viewer.gl.frames import (
     lobes,
-    picture_of,
     picture_view,
     positions,
-    random_directions,
     reconstructing,
     rounding,
     square_frame,

@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import Lazily, frame_of, overlap, picture_of
 from numpy.typing import NDArray
 
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
-from shviewer.viewer.composition import Box, compose
+from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay.band_axis import SLOT_COUNTS
 from shviewer.viewer.overlay.captions import describe_light
 from shviewer.viewer.overlay.lettering import ACCENT, WARNING
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
-from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import ViewState
 from shviewer.words import percent, radiance
 
@@ -36,43 +36,37 @@ FRAMES = [(*size, scale) for size in SIZES for scale in (1.0, 2.0)]
 LONG = "a_light_whose_name_is_much_longer_than_anybody_would_ever_want_it_to_be_in_a_caption"
 
 
-def picture(**changes: object) -> Picture:
-    return prepare(ViewState(**changes))  # type: ignore[arg-type]
-
-
 LOW_RANGE = EnvironmentLight(
     np.random.default_rng(1).random((8, 16, 3), np.float32),
     name="photo",
     notes=("a",),
     encoding="PNG, 8 bit sRGB (LDR)",
 )
-PICTURES = {
-    "green": picture(),
-    "muted": picture(n_bands=12, muted=frozenset({0, 2, 4, 6, 8, 10}), cursor=3, cursor_visible=True),
-    "sampled": picture(lights=("sun-sky",), n_bands=32, method="jittered", samples=1_000_000),
-    "low range": picture(lights=(LOW_RANGE,), n_bands=9),
-    "split": picture(lights=("sun-sky",), split_sun=True),
-    "long name": picture(lights=(FunctionLight(lambda d: 1 + d[:, 2], LONG),), n_bands=128),
-    "message": picture(
-        message="a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); fetch or export it again"
-    ),
-    "zoomed": picture(zoom=3.0),
-    "signed error": picture(error="signed"),
-    "relative error": picture(lights=("venice_sunset",), n_bands=9, error="relative", tone="log"),
-    "tiny error": picture(n_bands=60, error="absolute", muted=frozenset({1, 2})),
-    "zoomed error": picture(error="signed", zoom=2.5, split_sun=True, lights=("sun-sky",)),
-}
-
-
-def overlap(one: Box, other: Box) -> bool:
-    return one.left < other.right and other.left < one.right and one.top < other.bottom and other.top < one.bottom
+PICTURES = Lazily(
+    {
+        "green": lambda: picture_of(),
+        "muted": lambda: picture_of(n_bands=12, muted=frozenset({0, 2, 4, 6, 8, 10}), cursor=3, cursor_visible=True),
+        "sampled": lambda: picture_of(lights=("sun-sky",), n_bands=32, method="jittered", samples=1_000_000),
+        "low range": lambda: picture_of(lights=(LOW_RANGE,), n_bands=9),
+        "split": lambda: picture_of(lights=("sun-sky",), split_sun=True),
+        "long name": lambda: picture_of(lights=(FunctionLight(lambda d: 1 + d[:, 2], LONG),), n_bands=128),
+        "message": lambda: picture_of(
+            message="a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); fetch or export it again"
+        ),
+        "zoomed": lambda: picture_of(zoom=3.0),
+        "signed error": lambda: picture_of(error="signed"),
+        "relative error": lambda: picture_of(lights=("venice_sunset",), n_bands=9, error="relative", tone="log"),
+        "tiny error": lambda: picture_of(n_bands=60, error="absolute", muted=frozenset({1, 2})),
+        "zoomed error": lambda: picture_of(error="signed", zoom=2.5, split_sun=True, lights=("sun-sky",)),
+    }
+)
 
 
 @pytest.mark.parametrize("name", PICTURES)
 @pytest.mark.parametrize("place", FRAMES, ids=str)
 def test_nothing_overlaps_and_nothing_is_cut(name: str, place: tuple[int, int, float]) -> None:
     shown = PICTURES[name]
-    composition = compose(place[0], place[1], shown.state.zoom, place[2], shown.state.n_spheres)
+    composition = frame_of(shown, *place)
     drawn = draw_overlay(shown, composition, timing=True)
     assert drawn.image.shape == (place[1], place[0], 4)
     assert drawn.image.dtype == np.uint8
@@ -92,7 +86,7 @@ def test_nothing_overlaps_and_nothing_is_cut(name: str, place: tuple[int, int, f
 def test_every_mark_is_in_a_box_that_was_reported(name: str, place: tuple[int, int, float]) -> None:
     """So that the test above sees all there is: outside the boxes there is only the hairline."""
     shown = PICTURES[name]
-    composition = compose(place[0], place[1], shown.state.zoom, place[2], shown.state.n_spheres)
+    composition = frame_of(shown, *place)
     drawn = draw_overlay(shown, composition)
     left = drawn.image[..., 3] > 0
     for box in drawn.boxes.values():
@@ -105,7 +99,7 @@ def test_every_mark_is_in_a_box_that_was_reported(name: str, place: tuple[int, i
 @pytest.mark.parametrize("height", [64, 65, 100, 160, 640])
 @pytest.mark.parametrize("content_scale", [1.0, 2.0])
 def test_every_frame_that_is_allowed_can_be_drawn(width: int, height: int, content_scale: float) -> None:
-    for shown in (PICTURES["green"], picture(help_visible=True)):
+    for shown in (PICTURES["green"], picture_of(help_visible=True)):
         composition = compose(width, height, 1.0, content_scale)
         assert draw_overlay(shown, composition, opengl="OpenGL 3.3").image.shape == (height, width, 4)
 
@@ -152,9 +146,9 @@ def test_figures_keep_their_place_whatever_they_say() -> None:
 def test_only_what_depends_on_the_state_differs_between_states() -> None:
     """Equal pictures are drawn equally; one band more is not."""
     composition = compose(640, 320)
-    first, again = (draw_overlay(picture(n_bands=n), composition).image for n in (7, 7))
+    first, again = (draw_overlay(picture_of(n_bands=n), composition).image for n in (7, 7))
     np.testing.assert_array_equal(first, again)
-    assert (first != draw_overlay(picture(n_bands=8), composition).image).any()
+    assert (first != draw_overlay(picture_of(n_bands=8), composition).image).any()
 
 
 def test_the_time_is_said_only_when_asked_for() -> None:
@@ -171,7 +165,8 @@ TEN_SIZES = [*SIZES, (800, 400), (1920, 1080)]
 def test_splitting_a_sun_off_takes_no_figure_and_no_label_away(size: tuple[int, int], content_scale: float) -> None:
     composition = compose(*size, 1.0, content_scale)
     whole, split = (
-        set(draw_overlay(picture(lights=("sun-sky",), split_sun=wanted), composition).boxes) for wanted in (False, True)
+        set(draw_overlay(picture_of(lights=("sun-sky",), split_sun=wanted), composition).boxes)
+        for wanted in (False, True)
     )
     figures = {
         f"{name}{end}" for name in ("relative_l2", "max_error", "minimum", "negative_area") for end in ("", "_label")
@@ -202,22 +197,22 @@ def test_the_description_ends_in_what_must_not_be_missed(
     quantity: str, encoding: str | None, notes: tuple[str, ...], end: str
 ) -> None:
     light = EnvironmentLight(np.ones((4, 8, 3), np.float32), name="mine", notes=notes, encoding=encoding)
-    shown = picture(lights=(light,), quantity=quantity)
+    shown = picture_of(lights=(light,), quantity=quantity)
     assert describe_light(shown)[0] == light.description + end
     width = written(draw_overlay(shown, compose(1280, 640)), "description")
-    bare = picture(lights=(EnvironmentLight(light.pixels, name="mine"),), quantity=quantity)
+    bare = picture_of(lights=(EnvironmentLight(light.pixels, name="mine"),), quantity=quantity)
     assert (width > written(draw_overlay(bare, compose(1280, 640)), "description")) == bool(end)
 
 
 def test_where_the_description_has_no_room_it_goes_before_what_must_not_be_missed() -> None:
     light = EnvironmentLight(np.ones((4, 8, 3), np.float32), name="mine", notes=("a",), encoding="PNG (LDR)")
-    assert describe_light(picture(lights=(light,)))[1:] == ["LDR, 1 note", "LDR"]
+    assert describe_light(picture_of(lights=(light,)))[1:] == ["LDR, 1 note", "LDR"]
 
 
 @pytest.mark.parametrize("size", TEN_SIZES[1:], ids=str)
 @pytest.mark.parametrize("name", ["p", "ldr_photo", LONG])
 def test_low_range_is_said_at_every_size_but_the_smallest(size: tuple[int, int], name: str) -> None:
-    shown = picture(lights=(replace(LOW_RANGE, name=name),))
+    shown = picture_of(lights=(replace(LOW_RANGE, name=name),))
     for content_scale in (1.0, 2.0):
         boxes = draw_overlay(shown, compose(*size, 1.0, content_scale)).boxes
         assert {"description", "encoding"} & set(boxes), content_scale
@@ -227,7 +222,7 @@ def test_low_range_is_said_at_every_size_but_the_smallest(size: tuple[int, int],
 
 
 def bars_of(n_bands: int, **changes: object) -> Overlay:
-    return draw_overlay(picture(n_bands=n_bands, **changes), compose(1280, 640))
+    return draw_overlay(picture_of(n_bands=n_bands, **changes), compose(1280, 640))
 
 
 @pytest.mark.parametrize("page", [(1, 10), (11, 16), (17, 32), (33, 64)])
@@ -285,7 +280,7 @@ def test_the_cursor_is_shown_under_its_band_once_it_is_used() -> None:
 
 
 def test_a_message_takes_the_place_of_the_hint_and_is_shortened_to_fit() -> None:
-    short = draw_overlay(picture(message="saved a.png"), compose(1280, 640))
+    short = draw_overlay(picture_of(message="saved a.png"), compose(1280, 640))
     assert "hint" not in short.boxes
     for size in ((320, 160), (640, 320), (1280, 640)):
         box = draw_overlay(PICTURES["message"], compose(*size)).boxes["message"]
@@ -305,7 +300,7 @@ def ink(drawn: NDArray[np.uint8]) -> NDArray[np.bool_]:
 def test_the_help_is_written_within_the_frame(size: tuple[int, int]) -> None:
     """Its present values may be long: then they are shortened, and nothing comes near an edge."""
     state = ViewState(lights=("file.py:" + LONG,), help_visible=True, n_bands=32, muted=frozenset(range(0, 32, 2)))
-    shown = replace(picture(n_bands=32), state=state)
+    shown = replace(picture_of(n_bands=32), state=state)
     composition = compose(*size)
     sheet = draw_overlay(shown, composition, opengl="OpenGL 4.5, llvmpipe (LLVM 15.0.6, 256 bits)").image
     written = ink(sheet)
@@ -322,7 +317,7 @@ def test_the_help_is_written_within_the_frame(size: tuple[int, int]) -> None:
 
 def test_the_help_shows_present_values() -> None:
     composition = compose(1280, 640)
-    five, six = (draw_overlay(picture(n_bands=n, help_visible=True), composition).image for n in (5, 6))
+    five, six = (draw_overlay(picture_of(n_bands=n, help_visible=True), composition).image for n in (5, 6))
     rows = np.flatnonzero((five != six).any(axis=(1, 2)) & ink(five).any(axis=1))
     assert len(rows)
 
@@ -376,9 +371,9 @@ def test_a_radiance_has_three_digits_or_a_power_of_ten(value: float, text: str) 
 @pytest.mark.parametrize("to", [9, 16, 32])
 def test_through_a_sweep_every_bar_stays_where_it_is(size: tuple[int, int], to: int) -> None:
     composition = compose(*size)
-    end = draw_overlay(picture(n_bands=to), composition)
+    end = draw_overlay(picture_of(n_bands=to), composition)
     for n_bands in range(1, to, max(to // 8, 1)):
-        drawn = draw_overlay(picture(n_bands=n_bands, sweep_to=to), composition)
+        drawn = draw_overlay(picture_of(n_bands=n_bands, sweep_to=to), composition)
         assert drawn.bars == end.bars
         assert drawn.boxes["bars"] == end.boxes["bars"]
     assert len(end.bars) > 9

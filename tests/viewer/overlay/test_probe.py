@@ -4,25 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from helpers import picture_of
 
 from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay.marks import place_marks
 from shviewer.viewer.overlay.probe import probe, probe_layers
-from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import ViewState
-
-
-def picture(**changes: object) -> Picture:
-    return prepare(ViewState(**changes))  # type: ignore[arg-type]
 
 
 def test_at_the_marks_the_probe_reads_the_figures() -> None:
     composition = compose(1280, 640, n_spheres=3)
-    extremes = picture().figures.extremes
+    extremes = picture_of().figures.extremes
     for name, direction in (("minimum", extremes.minimum_direction), ("largest", extremes.max_error_direction)):
         x, y, z = direction
         camera = float(np.degrees(np.arctan2(y, x))) % 360 + 5, float(np.degrees(np.arcsin(z))) * 0.9
-        shown = picture(error="signed", camera=camera)
+        shown = picture_of(error="signed", camera=camera)
         mark = place_marks(shown, composition)[name]
         assert not mark.behind
         found = probe(shown, composition, mark.x, mark.y)
@@ -35,7 +30,7 @@ def test_at_the_marks_the_probe_reads_the_figures() -> None:
 
 
 def test_every_sphere_reads_the_same_in_the_same_place() -> None:
-    shown = picture(lights=("venice_sunset",), n_bands=9, error="absolute")
+    shown = picture_of(lights=("venice_sunset",), n_bands=9, error="absolute")
     composition = compose(1280, 640, n_spheres=3)
     readings = [
         probe(shown, composition, sphere.x + 0.3 * sphere.radius, sphere.y - 0.4 * sphere.radius)
@@ -49,13 +44,13 @@ def test_every_sphere_reads_the_same_in_the_same_place() -> None:
 
 
 def test_the_middle_of_a_sphere_is_the_direction_of_the_camera_in_the_frame_of_the_light() -> None:
-    shown = picture(camera=(30.0, 40.0))
+    shown = picture_of(camera=(30.0, 40.0))
     composition = compose(1280, 640)
     sphere = composition.spheres[0]
     found = probe(shown, composition, sphere.x, sphere.y)
     assert found is not None
     assert found.theta_phi_degrees == pytest.approx((50.0, 30.0), abs=1e-9)
-    turned = picture(
+    turned = picture_of(
         camera=(30.0, 40.0), light_rotation=(0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5))
     )  # by 90 degrees about z
     found = probe(turned, composition, sphere.x, sphere.y)
@@ -66,10 +61,10 @@ def test_the_middle_of_a_sphere_is_the_direction_of_the_camera_in_the_frame_of_t
 def test_error_is_reconstruction_minus_original_and_the_suns_are_in_both() -> None:
     composition = compose(1280, 640)
     sphere = composition.spheres[1]
-    whole = probe(picture(n_bands=4), composition, sphere.x + 20, sphere.y - 30)
+    whole = probe(picture_of(n_bands=4), composition, sphere.x + 20, sphere.y - 30)
     assert whole is not None
     np.testing.assert_allclose(whole.error, whole.reconstruction - whole.original, atol=1e-15)
-    split = picture(lights=("sun-sky",), split_sun=True, n_bands=4)
+    split = picture_of(lights=("sun-sky",), split_sun=True, n_bands=4)
     (sun,) = split.suns
     at_sun = split.rest_at(sun.axis[None])[0] + sun.radiance
     np.testing.assert_allclose(split.rest_at(sun.axis[None]) + split.suns_at(sun.axis[None]), at_sun[None])
@@ -78,15 +73,15 @@ def test_error_is_reconstruction_minus_original_and_the_suns_are_in_both() -> No
 def test_beside_the_spheres_and_over_surfaces_there_is_nothing_to_read() -> None:
     composition = compose(1280, 640)
     sphere = composition.spheres[0]
-    assert probe(picture(), composition, 5.0, 5.0) is None
-    assert probe(picture(), composition, sphere.x + 1.01 * sphere.radius, sphere.y) is None
-    assert probe(picture(lobe_view=True), composition, sphere.x, sphere.y) is None
+    assert probe(picture_of(), composition, 5.0, 5.0) is None
+    assert probe(picture_of(), composition, sphere.x + 1.01 * sphere.radius, sphere.y) is None
+    assert probe(picture_of(lobe_view=True), composition, sphere.x, sphere.y) is None
 
 
 @pytest.mark.parametrize("size", [(640, 320), (1280, 640), (900, 1200)])
 @pytest.mark.parametrize("light", ["green", "venice_sunset"])
 def test_the_numbers_stay_in_the_frame_and_off_the_pixel_they_are_of(size: tuple[int, int], light: str) -> None:
-    shown = picture(lights=(light,), error="signed")
+    shown = picture_of(lights=(light,), error="signed")
     composition = compose(*size, n_spheres=3)
     for sphere in composition.spheres:
         for across in (-0.9, 0.0, 0.9):

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import Lazily, centre, overlap
 from numpy.typing import NDArray
 
 from shviewer.analysis.figures import errors_of
@@ -45,36 +46,34 @@ def smooth(directions: NDArray[np.float64]) -> NDArray[np.float64]:
     return 2 + evaluate_basis(directions, 3)[:, 8]
 
 
-PICTURES = {
-    "green": shown(),
-    "one band": shown(n_bands=1),
-    "128 bands": shown(n_bands=128, tolerance=0.002),
-    "samples": shown(method="jittered", samples=1000, n_bands=8),
-    "more bands than are searched": shown(method="gauss-legendre", samples=1000, n_bands=40),
-    "muted": shown(muted=frozenset({1, 3}), n_bands=7),
-    "muted and windowed": shown(muted=frozenset({0, 2, 4, 6, 8}), window="lanczos", window_width=12.0, n_bands=16),
-    "irradiance": shown(quantity="irradiance", n_bands=4),
-    "image": shown(lights=("venice_sunset",), n_bands=9, window="hann"),
-    "band-limited": shown(lights=(FunctionLight(smooth, "smooth"),), n_bands=3),
-    "black": shown(lights=(FunctionLight(lambda d: 0 * d[:, 0], "black"),), n_bands=3),
-    "black samples": shown(lights=(FunctionLight(lambda d: 0 * d[:, 0], "black"),), method="jittered", samples=100),
-    "loose": shown(tolerance=0.9, n_bands=10),
-    "zoomed": shown(zoom=3.0, message="saved"),
-}
+PICTURES = Lazily(
+    {
+        "green": lambda: shown(),
+        "one band": lambda: shown(n_bands=1),
+        "128 bands": lambda: shown(n_bands=128, tolerance=0.002),
+        "samples": lambda: shown(method="jittered", samples=1000, n_bands=8),
+        "more bands than are searched": lambda: shown(method="gauss-legendre", samples=1000, n_bands=40),
+        "muted": lambda: shown(muted=frozenset({1, 3}), n_bands=7),
+        "muted and windowed": lambda: shown(
+            muted=frozenset({0, 2, 4, 6, 8}), window="lanczos", window_width=12.0, n_bands=16
+        ),
+        "irradiance": lambda: shown(quantity="irradiance", n_bands=4),
+        "image": lambda: shown(lights=("venice_sunset",), n_bands=9, window="hann"),
+        "band-limited": lambda: shown(lights=(FunctionLight(smooth, "smooth"),), n_bands=3),
+        "black": lambda: shown(lights=(FunctionLight(lambda d: 0 * d[:, 0], "black"),), n_bands=3),
+        "black samples": lambda: shown(
+            lights=(FunctionLight(lambda d: 0 * d[:, 0], "black"),), method="jittered", samples=100
+        ),
+        "loose": lambda: shown(tolerance=0.9, n_bands=10),
+        "zoomed": lambda: shown(zoom=3.0, message="saved"),
+    }
+)
 
 
 def plot_of(picture: Picture, composition: Composition | None = None) -> tuple[Overlay, Convergence]:
     drawn = draw_overlay(picture, composition or compose(1280, 640))
     assert drawn.convergence is not None
     return drawn, drawn.convergence
-
-
-def overlap(one: Box, other: Box) -> bool:
-    return one.left < other.right and other.left < one.right and one.top < other.bottom and other.top < one.bottom
-
-
-def centre(box: Box) -> tuple[float, float]:
-    return (box.left + box.right) / 2, (box.top + box.bottom) / 2
 
 
 def coloured(drawn: Overlay, ink: tuple[int, int, int, int], box: Box, spread: int = 2) -> NDArray[np.int64]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import centre, overlap
 
 from shviewer.analysis import projections
 from shviewer.analysis.cache import MEMORY, MOST_LIGHTS
@@ -19,7 +19,7 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
-from shviewer.viewer.composition import Box, compose
+from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay.lettering import ACCENT
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.plots import plane
@@ -36,11 +36,7 @@ SIZES = [
 COUNTS = (625, 2_500, 10_000, 40_000, 160_000)
 
 
-@pytest.fixture(autouse=True)
-def fresh_memory() -> Iterator[None]:
-    MEMORY.clear()
-    yield
-    MEMORY.clear()
+pytestmark = pytest.mark.usefixtures("fresh_memory")
 
 
 @pytest.fixture
@@ -80,10 +76,6 @@ def made_up(errors: dict[tuple[str, int, int], tuple[float, float]]) -> tuple[Me
     return tuple(
         Measurement(*key, key[0], time, 1, np.full(MAX_DIRECT_BANDS, error)) for key, (time, error) in errors.items()
     )
-
-
-def overlap(one: Box, other: Box) -> bool:
-    return one.left < other.right and other.left < one.right and one.top < other.bottom and other.top < one.bottom
 
 
 # --- what is measured
@@ -192,10 +184,6 @@ def test_every_axis_has_two_ticks_that_do_not_touch(low: float, factor: float) -
     ticks = axis.ticks(16)
     assert len(ticks) >= 2
     assert all(abs(axis.at(one) - axis.at(two)) >= 16 for one, two in itertools.pairwise(ticks))
-
-
-def centre(box: Box) -> tuple[float, float]:
-    return (box.left + box.right) / 2, (box.top + box.bottom) / 2
 
 
 def test_points_stand_where_the_labels_of_the_axes_say_on_log_scales(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,72 @@
+"""What tests of several folders say in the same words."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from typing import NoReturn, TypeVar
+
+import pytest
+
+from shviewer.viewer.composition import Box, Composition, compose
+from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.state import ViewState
+
+T = TypeVar("T")
+
+
+def unavailable(reason: str) -> NoReturn:
+    """What a test needs is not on this machine: it is skipped with the reason; on CI, where all has to be, it fails."""
+    if os.environ.get("CI"):
+        pytest.fail(reason)
+    pytest.skip(reason)
+
+
+def hear_signals() -> None:
+    """From here on, child processes are ended by Ctrl+C and the like, as if they were started from a terminal.
+
+    A shell starts its background jobs with SIGINT ignored, nohup adds SIGHUP, and what is ignored is inherited. A handler
+    is not: a child has the default again. This process goes on ignoring them.
+    """
+    for name in ("SIGINT", "SIGTERM", "SIGQUIT", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) == signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
+
+
+def picture_of(light: object = "green", **changes: object) -> Picture:
+    """The picture of a light, an object or a name, with these changes to the state at the start."""
+    return prepare(ViewState(**{"lights": (light,), **changes}))  # type: ignore[arg-type]
+
+
+def frame_of(picture: Picture, width: int = 1280, height: int = 640, content_scale: float = 1.0) -> Composition:
+    """The frame that a picture is drawn in, with its zoom and as many spheres as it has."""
+    return compose(width, height, picture.state.zoom, content_scale, picture.state.n_spheres)
+
+
+def overlap(one: Box, other: Box) -> bool:
+    return one.left < other.right and other.left < one.right and one.top < other.bottom and other.top < one.bottom
+
+
+def centre(box: Box) -> tuple[float, float]:
+    return (box.left + box.right) / 2, (box.top + box.bottom) / 2
+
+
+class Lazily(Mapping[str, T]):
+    """Named values, each made when it is first asked for. While tests are collected only the names are."""
+
+    def __init__(self, makers: Mapping[str, Callable[[], T]]) -> None:
+        self._makers = makers
+        self._made: dict[str, T] = {}
+
+    def __getitem__(self, name: str) -> T:
+        if name not in self._made:
+            self._made[name] = self._makers[name]()
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
