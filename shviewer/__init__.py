@@ -20,8 +20,9 @@ from shviewer.version import __version__
 
 if TYPE_CHECKING:
     from shviewer.analysis.projected import Projected
-    from shviewer.api import evaluate_basis, find_light, project, reconstruct, report, screenshot, view
+    from shviewer.api import evaluate_basis, find_light, project, reconstruct, report
     from shviewer.errors import ShviewerError
+    from shviewer.pictures import screenshot, view
 
 __all__ = [
     "Projected",
@@ -39,9 +40,8 @@ __all__ = [
 _HOMES = {
     "ShviewerError": "shviewer.errors",
     "Projected": "shviewer.analysis.projected",
-    **dict.fromkeys(
-        ("evaluate_basis", "find_light", "project", "reconstruct", "report", "screenshot", "view"), "shviewer.api"
-    ),
+    **dict.fromkeys(("evaluate_basis", "find_light", "project", "reconstruct", "report"), "shviewer.api"),
+    **dict.fromkeys(("screenshot", "view"), "shviewer.pictures"),
 }
 
 

@@ -1,7 +1,7 @@
 """The functions of `import shviewer`, each of which does what the command of its name does.
 
 A light is what `find_light` takes: a text that the command line would take for LIGHT, a path, a function of directions, an
-array, or a Light. `options` are those of the window, by their names in ViewState; OPTIONS_HELP lists them.
+array, or a Light. `options` are those of the window, by their names in State; OPTIONS_HELP lists them.
 
 ShviewerError, with one line that says what to do, where an argument is out of range or a light is bad.
 """
@@ -9,15 +9,16 @@ ShviewerError, with one line that says what to do, where an argument is out of r
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import fields, replace
-from operator import index
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from shviewer.analysis.options import options_of, whole
+from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
@@ -28,60 +29,27 @@ if (
     from shviewer.analysis.projected import Projected
     from shviewer.benchmark.run import Summary
     from shviewer.lights.light import Light
-    from shviewer.viewer.state import ViewState
-
-OPTIONS_HELP = """options:
-        quantity        "radiance" (default) or "irradiance"
-        window          "none", "hann", "lanczos", "gauss" or "dering"; window_width in bands, as many as are shown unless given
-        muted           bands to leave out
-        method          "best" (default, the light's own), "jittered" or "gauss-legendre", with `samples` and `seed`
-        split_sun       take suns out of the light
-        exposure_stops  fixed, instead of chosen from the light
-        camera          azimuth and elevation, degrees
-        zoom            0.25 to 16
-        tone            "none" (default), "reinhard", "aces" or "log"
-        error           "off" (default), "signed", "absolute" or "relative": a third sphere; error_range ends its colours
-        marks           False: no rings at the minimum and the largest error
-        lobe_view       surfaces whose radius is the magnitude; basis, such as (2, -1): one function as the second of them
-        sheet           "convergence": the error against the number of bands
-        evaluate        "direct", "map" or "auto" (default): how the reconstruction is drawn
-        compare         somebody else's coefficients, shown instead of the light's own: a path, an array or a light of them
-"""
-"""At the end of the docstring of every function that takes them."""
 
 LightLike: TypeAlias = "str | os.PathLike[str] | Light | Callable[[Any], ArrayLike] | NDArray[np.generic]"
-
-OPTIONS = frozenset(
-    (
-        "quantity",
-        "window",
-        "window_width",
-        "muted",
-        "method",
-        "samples",
-        "seed",
-        "split_sun",
-        "exposure_stops",
-        "camera",
-        "zoom",
-        "tone",
-        "error",
-        "error_range",
-        "marks",
-        "lobe_view",
-        "basis",
-        "sheet",
-        "evaluate",
-        "compare",
-    )
-)
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
-def _with_options(function: _Function) -> _Function:
-    function.__doc__ = f"{function.__doc__}{OPTIONS_HELP}"
-    return function
+NAMED_ELSEWHERE = ("n_bands", "tolerance")
+"""Options that are an argument of their own, or none of these functions."""
+
+
+def with_options(*holders: type) -> Callable[[_Function], _Function]:
+    """Decorator: the options of these dataclasses, which the function takes, stand at the end of its docstring."""
+
+    def decorate(function: _Function) -> _Function:
+        rows = [(row.name, row.help) for row in options_of(*holders).values() if row.name not in NAMED_ELSEWHERE]
+        rows.append(("compare", "other coefficients in place of the light's own: a path, an array or a light of them"))
+        lines = [f"        {name:<16}{words}" for name, words in rows]
+        function.__doc__ = "\n".join([f"{function.__doc__}options:", *lines, ""])
+        return function
+
+    return decorate
 
 
 def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
@@ -104,48 +72,9 @@ def evaluate_basis(directions: ArrayLike, n_bands: int) -> Array:
     The convention is in harmonics/basis.py. ShviewerError for bad directions or too many bands.
     """
     try:
-        return basis.evaluate_basis(directions, _whole(n_bands, "n_bands"))
+        return basis.evaluate_basis(directions, whole(n_bands, "n_bands"))
     except (ValueError, TypeError) as error:
         raise UsageError(str(error)) from error
-
-
-WHOLE = ("samples", "seed")
-NUMBERS = ("window_width", "exposure_stops", "zoom", "error_range")
-WORDS = ("quantity", "window", "method", "tone", "error", "sheet", "evaluate")
-PAIRS = {"camera": "azimuth and elevation in degrees, such as (30, 10)", "basis": "l and m, such as (2, -1)"}
-NOT_SET = ("window_width", "exposure_stops", "error_range", "basis")
-"""Those that may be None."""
-
-
-def _checked(name: str, value: Any) -> Any:
-    """An option of the type that it has to have. UsageError."""
-    if value is None and name in NOT_SET:
-        return None
-    if name in WHOLE:
-        return _whole(value, name)
-    if name in NUMBERS and not _is_number(value):
-        raise UsageError(f"{name} {value!r}: it must be a finite number")
-    if name in WORDS and not isinstance(value, str):
-        raise UsageError(f"{name} {value!r}: it must be a text")
-    if name == "muted":
-        if not isinstance(value, Iterable) or isinstance(value, str):
-            raise UsageError(f"muted {value!r}: it must be several bands, such as [1, 3]")
-        return frozenset(_whole(band, "muted band") for band in value)
-    if name in PAIRS:
-        if not (isinstance(value, Sequence) and len(value) == 2 and all(map(_is_number, value))):
-            raise UsageError(f"{name} {value!r}: it must be {PAIRS[name]}")
-        return tuple(_whole(part, name) for part in value) if name == "basis" else tuple(map(float, value))
-    return value
-
-
-def _checked_size(size: Any) -> tuple[int, int]:
-    if not (isinstance(size, Sequence) and len(size) == 2):
-        raise UsageError(f"size {size!r}: it must be width and height, such as (1280, 640)")
-    return _whole(size[0], "width"), _whole(size[1], "height")
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float | np.integer | np.floating) and bool(np.isfinite(value))
 
 
 def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False, layout: str = "auto") -> Light:
@@ -191,43 +120,44 @@ def _array_light(array: NDArray[np.generic]) -> Light:
     )
 
 
-def _state(light: LightLike, bands: int | None, options: dict[str, Any]) -> ViewState:
-    """The state of the window with these options. UsageError for an unknown one."""
+def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *others: type) -> Recipe:
+    """The recipe with these options; those of `others` are somebody else's. UsageError for one that nobody knows."""
     from shviewer.analysis.comparison import as_the_file_holds
     from shviewer.lights.coefficient_light import CoefficientLight
-    from shviewer.viewer.state import ViewState
-    from shviewer.viewer.view_limits import check
 
-    if unknown := sorted(set(options) - OPTIONS):
-        raise UsageError(
-            f"option {unknown[0]!r}: there is {', '.join(field.name for field in fields(ViewState) if field.name in OPTIONS)}"
-        )
-    checked = {name: _checked(name, value) for name, value in options.items() if name != "compare"}
-    count = None if bands is None else _whole(bands, "bands")
+    known = [name for name in options_of(Recipe, *others) if name not in NAMED_ELSEWHERE] + ["compare"]
+    if unknown := sorted(set(options) - set(known)):
+        raise UsageError(f"option {unknown[0]!r}: there is {', '.join(known)}")
+    count = None if bands is None else whole(bands, "bands")
     found = find_light(light)
     if count is None:
-        count = found.n_bands if isinstance(found, CoefficientLight) else ViewState.n_bands
-    state = ViewState(lights=(found,), n_bands=count, **checked)
-    check(state)
+        count = found.n_bands if isinstance(found, CoefficientLight) else Recipe.n_bands
+    recipe = Recipe(found, n_bands=count, **taken(options, Recipe))
+    recipe.check()
     if (given := options.get("compare")) is not None:
-        state = _comparing(state, given)
-        state = as_the_file_holds(state, quantity="quantity" not in options, bands=bands is None)
-    return state
+        recipe = _comparing(recipe, given)
+        recipe, _ = as_the_file_holds(recipe, quantity="quantity" not in options, bands=bands is None)
+    return recipe
 
 
-def _comparing(state: ViewState, given: LightLike) -> ViewState:
+def taken(options: dict[str, Any], holder: type) -> dict[str, Any]:
+    """Those of the options that a dataclass holds, as it holds them. UsageError for a value of another type."""
+    return {name: row.kind.taken(name, options[name]) for name, row in options_of(holder).items() if name in options}
+
+
+def _comparing(recipe: Recipe, given: LightLike) -> Recipe:
     from shviewer.analysis.compared_files import compared_with
     from shviewer.lights.coefficient_light import CoefficientLight
 
     if isinstance(given, str | os.PathLike):
-        return compared_with(state, os.fspath(given), "compare=")[0]
+        return compared_with(recipe, os.fspath(given), "compare=")[0]
     light = find_light(given)
     if not isinstance(light, CoefficientLight):
         raise UsageError(f"compare {light.name!r}: it must be coefficients, a file or an array (n**2, 3) of them")
-    return replace(state, compare=light)
+    return replace(recipe, compare=light)
 
 
-@_with_options
+@with_options(Recipe)
 def project(light: LightLike, bands: int | None = None, **options: Any) -> Projected:
     """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
 
@@ -235,52 +165,9 @@ def project(light: LightLike, bands: int | None = None, **options: Any) -> Proje
     file and `numbers` converts, both for other programs, too. ShviewerError for whatever a caller can put right.
 
     """
-    from shviewer.analysis.projected import project_state
+    from shviewer.analysis.projected import project_recipe
 
-    return project_state(_state(light, bands, options))
-
-
-@_with_options
-def screenshot(
-    light: LightLike,
-    bands: int | None = None,
-    *,
-    size: tuple[int, int] = (1280, 640),
-    overlay: bool = True,
-    **options: Any,
-) -> NDArray[np.uint8]:
-    """The picture of the window: (height, width, 3) uint8, sRGB, top row first. size: width and height in pixels.
-
-    overlay: with captions and figures. GraphicsError where there is no OpenGL 3.3.
-
-    """
-    from shviewer.viewer.composition import compose
-    from shviewer.viewer.picture import prepare
-    from shviewer.viewer.screenshot import headless_renderer, render_rgb
-    from shviewer.viewer.view_limits import check
-
-    state = _state(light, bands, options)
-    check(state, _checked_size(size))
-    picture = prepare(state)
-    with headless_renderer() as renderer:
-        return render_rgb(renderer, picture, compose(*size, state.zoom, n_spheres=state.n_spheres), overlay=overlay)
-
-
-@_with_options
-def view(
-    light: LightLike = "green", bands: int | None = None, *, size: tuple[int, int] = (1280, 640), **options: Any
-) -> None:
-    """Open the window and stay until it is closed. size: width and height in screen coordinates.
-
-    NoDisplayError without a display, GraphicsError without OpenGL 3.3.
-
-    """
-    from shviewer.viewer.desktop import window
-    from shviewer.viewer.view_limits import check
-
-    state = _state(light, bands, options)
-    check(state, _checked_size(size))
-    window.run(state, size)
+    return project_recipe(recipe_of(light, bands, options))
 
 
 def report(
@@ -302,13 +189,3 @@ def report(
     chosen = [find_light(one) for one in (cast(Iterable[LightLike], of) if several else [cast(LightLike, of)])]
     wanted = Options(budget=DEFAULT_BUDGET if budget is None else budget, quick=quick, command="shviewer.report(...)")
     return write_report(chosen, Path(folder), wanted)
-
-
-def _whole(value: object, name: str) -> int:
-    """UsageError unless it is a whole number of some integer type."""
-    try:
-        if isinstance(value, bool):
-            raise TypeError
-        return index(value)  # type: ignore[arg-type]
-    except TypeError:
-        raise UsageError(f"{name} {value!r}: it must be a whole number, such as 5") from None

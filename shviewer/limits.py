@@ -12,6 +12,9 @@ MAX_BANDS = 128
 MAX_DIRECT_BANDS = 32
 """The most bands the fragment shader sums: 32**2 vec4 fill the 16 KiB that every driver grants a uniform block."""
 
+MAX_SAMPLES = 16_000_000
+"""The most directions a rule may have: 512 MB of directions and weights."""
+
 DIMMEST, BRIGHTEST = 1e-30, 1e30
 """The largest radiance of a light that can be drawn: beyond, sums and products would leave float32."""
 

@@ -11,7 +11,7 @@ import pytest
 
 from shviewer.viewer.composition import Box, Composition, compose
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import state_of
 
 T = TypeVar("T")
 
@@ -37,12 +37,12 @@ def hear_signals() -> None:
 
 def picture_of(light: object = "green", **changes: object) -> Picture:
     """The picture of a light, an object or a name, with these changes to the state at the start."""
-    return prepare(ViewState(**{"lights": (light,), **changes}))  # type: ignore[arg-type]
+    return prepare(state_of(light, **changes))  # type: ignore[arg-type]
 
 
 def frame_of(picture: Picture, width: int = 1280, height: int = 640, content_scale: float = 1.0) -> Composition:
     """The frame that a picture is drawn in, with its zoom and as many spheres as it has."""
-    return compose(width, height, picture.state.zoom, content_scale, picture.state.n_spheres)
+    return compose(width, height, picture.state.view.zoom, content_scale, picture.state.view.n_spheres)
 
 
 def overlap(one: Box, other: Box) -> bool:

@@ -11,7 +11,7 @@ from places import ROOT
 
 ROOMS = (
     ("__main__", "cli"),
-    ("__init__", "api"),
+    ("__init__", "api", "pictures"),
     ("benchmark",),
     ("viewer",),
     ("analysis",),

@@ -7,10 +7,10 @@ import re
 import pytest
 from documents import GUIDE, README, ROOT, code_blocks, read
 
+from shviewer.analysis.recipe import METHODS, Recipe
 from shviewer.cli.options import view_parser
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.keys import key_table
-from shviewer.viewer.state import METHODS, ViewState
 
 TEXT = read(README)
 
@@ -33,7 +33,7 @@ def test_the_table_of_pages_is_that_of_the_guide() -> None:
 def test_the_help_names_the_methods_the_default_bands_and_their_limit() -> None:
     text = "".join(view_parser().format_help().split())  # argparse breaks lines at hyphens, too
     assert all(method in text for method in METHODS)
-    assert f"1to{MAX_BANDS}(default{ViewState().n_bands})" in text
+    assert f"1to{MAX_BANDS}(default{Recipe.n_bands})" in text
 
 
 def test_the_two_commands_are_single_lines_and_ci_runs_the_second() -> None:

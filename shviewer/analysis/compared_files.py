@@ -10,6 +10,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from shviewer.analysis.projections import BEST, project
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.finding import FITS, Found, find_convention
 from shviewer.coefficients.reading import interpreted, read_numbers
@@ -18,14 +19,13 @@ from shviewer.files import naming
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import COEFFICIENT_SUFFIXES, IMAGE_SUFFIXES, built_in_lights
 from shviewer.limits import MAX_BANDS
-from shviewer.viewer.state import ViewState
 from shviewer.words import brief_percent
 
 
-def compared_with(state: ViewState, text: str, option: str = "--compare") -> tuple[ViewState, str]:
-    """The state, comparing with the coefficients in the file `text`, and which convention that was found to have, if any.
+def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple[Recipe, str]:
+    """The recipe, comparing with the coefficients in the file `text`, and which convention that was found to have, if any.
 
-    A bare list whose convention nobody names is read in the one that fits the state's light, or is nearest. LightError if the
+    A bare list whose convention nobody names is read in the one that fits the recipe's light, or is nearest. LightError if the
     file is bad or no coefficient file; option: what the caller calls it.
     """
     file = Path(text)
@@ -35,19 +35,19 @@ def compared_with(state: ViewState, text: str, option: str = "--compare") -> tup
             "makes them of a light"
         )
     with naming(text):
-        numbers, stamp = read_numbers(file, state.reading.limits)
-        if stamp or state.reading.convention:
-            read, found = interpreted(numbers, stamp, state.reading.convention), None
+        numbers, stamp = read_numbers(file, recipe.reading.limits)
+        if stamp or recipe.reading.convention:
+            read, found = interpreted(numbers, stamp, recipe.reading.convention), None
         else:
-            found = _found(state, numbers)
+            found = _found(recipe, numbers)
             read = interpreted(numbers, {}, found.best.text)
     light = CoefficientLight.of_file(read, file.name)
-    return replace(state, compare=light), _said(file.name, found) if found else ""
+    return replace(recipe, compare=light), _said(file.name, found) if found else ""
 
 
-def _found(state: ViewState, numbers: NDArray[Any]) -> Found:
+def _found(recipe: Recipe, numbers: NDArray[Any]) -> Found:
     """By the radiance of what is projected."""
-    light = load_light(replace(state, quantity="radiance"))
+    light = load_light(replace(recipe, quantity="radiance"))
     most = min(MAX_BANDS, max(1, ceil(sqrt(numbers.size))))  # of a grey list; others have fewer
     return find_convention(numbers / light.unit, project(light, *BEST, most).coefficients / light.unit)
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from shviewer.analysis.cache import remember
 from shviewer.analysis.projections import BEST, project
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import subject
 from shviewer.coefficients.finding import FITS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
@@ -20,7 +21,6 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
-from shviewer.viewer.state import ViewState
 from shviewer.words import brief_percent
 
 BAD = FITS
@@ -39,27 +39,28 @@ EXPLAINED = 0.25
 """A suspect is named if its error is at most this, and at most this part of the one without it."""
 
 
-def as_the_file_holds(state: ViewState, *, quantity: bool, bands: bool) -> ViewState:
-    """The state, showing the quantity and the bands of the coefficient file it compares with, or whose light it shows.
+def as_the_file_holds(recipe: Recipe, *, quantity: bool, bands: bool) -> tuple[Recipe, str]:
+    """The recipe, showing the quantity and the bands of the coefficient file it compares with, or whose light it shows.
 
-    quantity, bands: whether to follow the file; more bands than a compared file has are never shown. LightError if the light
-    is bad.
+    quantity, bands: whether to follow the file; more bands than a compared file has are never shown, which is then said.
+    LightError if the light is bad.
     """
-    file = state.compare or subject(replace(state, quantity="radiance", split_sun=False)).whole
+    file = recipe.compare or subject(replace(recipe, quantity="radiance", split_sun=False)).whole
     if not isinstance(file, CoefficientLight):
-        return state
+        return recipe, ""
+    said = ""
     if bands:
-        state = replace(state, n_bands=min(file.n_bands, MAX_BANDS))
-    elif state.compare and state.n_bands > file.n_bands:
-        state = replace(state, n_bands=file.n_bands, message=file.extent)
-    return replace(state, quantity=file.quantity) if quantity else state
+        recipe = replace(recipe, n_bands=min(file.n_bands, MAX_BANDS))
+    elif recipe.compare and recipe.n_bands > file.n_bands:
+        recipe, said = replace(recipe, n_bands=file.n_bands), file.extent
+    return replace(recipe, quantity=file.quantity) if quantity else recipe, said
 
 
-def caption(state: ViewState) -> str:
+def caption(recipe: Recipe) -> str:
     """Whose coefficients are shown, to stand before their number; "" for the light's own."""
-    if state.compare is None:
+    if recipe.compare is None:
         return ""
-    name = state.compare.name
+    name = recipe.compare.name
     return f"{name if len(name) <= LONGEST_NAME else f'{name[:11]}...{name[-14:]}'}: "
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from shviewer.analysis.cache import remember
 from shviewer.analysis.projections import BEST, Projection, project, sampling_of
+from shviewer.analysis.recipe import QUANTITIES, Recipe, Shown
 from shviewer.analysis.subjects import irradiance_of, load_light
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
@@ -36,7 +37,6 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
-from shviewer.viewer.state import QUANTITIES, ViewState
 
 MIN_ESTIMATE = 256
 """Fewer samples than this do not even tell how noisy they are."""
@@ -80,36 +80,36 @@ class Figures:
         return self.channels["all"].relative_l2
 
 
-def needs(state: ViewState) -> Needs:
-    """How many bands the state's light needs for its tolerance, by the best way and for both quantities.
+def needs(recipe: Recipe) -> Needs:
+    """How many bands the recipe's light needs for its tolerance, by the best way and for both quantities.
 
     With a sampled method the answer for the quantity shown is that of the samples' own error.
     """
     answers = {}
     for quantity in QUANTITIES:
-        light = load_light(replace(state, quantity=quantity))
-        errors = errors_of(light, *(sampling_of(state) if quantity == state.quantity else BEST))
-        answers[quantity] = smallest_band_count(errors, state.tolerance), errors
-    errors = answers[state.quantity][1]
+        light = load_light(replace(recipe, quantity=quantity))
+        errors = errors_of(light, *(sampling_of(recipe) if quantity == recipe.quantity else BEST))
+        answers[quantity] = smallest_band_count(errors, recipe.tolerance), errors
+    errors = answers[recipe.quantity][1]
     best = int(errors.argmin())
     return Needs(
-        state.tolerance, answers["radiance"][0], answers["irradiance"][0], float(errors[best]), best + 1, len(errors)
+        recipe.tolerance, answers["radiance"][0], answers["irradiance"][0], float(errors[best]), best + 1, len(errors)
     )
 
 
-def estimate_from_samples(state: ViewState) -> SampleEstimate:
-    """What the state's number of jittered samples alone says, as if the light were not known otherwise.
+def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
+    """What the recipe's number of jittered samples alone says, as if the light were not known otherwise.
 
     Two sets of half as many, drawn independently: the halves of one set would share its cells, and depend on each other.
     """
-    light = load_light(state)
-    halves = [jittered(max(state.samples // 2, 1), seed) for seed in (state.seed, state.seed + HALF_SEED)]
+    light = load_light(recipe)
+    halves = [jittered(max(recipe.samples // 2, 1), seed) for seed in (recipe.seed, recipe.seed + HALF_SEED)]
     first, second = (project_samples(light.integrand, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
     squares = np.concatenate([((light.integrand(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
     deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
     if len(squares) < MIN_ESTIMATE:
         return SampleEstimate(None, 1, None)
-    return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, state.tolerance)
+    return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, recipe.tolerance)
 
 
 @remember(most=16)
@@ -122,10 +122,9 @@ def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: 
 
 
 @remember(most=64)
-def reconstruct(
-    light: Light, projection: Projection, n_bands: int, muted: tuple[int, ...], window_name: str, width: float | None
-) -> tuple[Array, Figures]:
+def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Array, Figures]:
     """What is shown of a projection, (n_bands**2, 3), and how good it is."""
+    n_bands, muted, window_name, width = what
     exact = project(light, *BEST, projection.n_bands).coefficients
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
     factors = _window_factors(shown / light.unit, window_name, width)

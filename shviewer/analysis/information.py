@@ -13,6 +13,8 @@ from shviewer.analysis.coefficient_information import (
     describe_coefficients,
 )
 from shviewer.analysis.figures import error_grid, grid_rows, needs
+from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.basis import Array
@@ -22,8 +24,6 @@ from shviewer.lights.find import IMAGE_SUFFIXES, file_version, split_light
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
 from shviewer.lights.suns.sun import Sun
-from shviewer.viewer.picture import prepare
-from shviewer.viewer.state import ViewState
 from shviewer.words import theta_phi_degrees
 
 TOLERANCES = (0.10, 0.05, 0.01)
@@ -177,15 +177,15 @@ def as_text(information: Information) -> str:
 
 
 def _describe(text: str, reading: Reading) -> Information:
-    state = ViewState(lights=(text,), reading=reading)
-    picture = prepare(state)
-    light = picture.light
+    recipe = Recipe(text, reading)
+    found = reconstruction_of(recipe)
+    light = found.subject.light
     image = light if isinstance(light, EnvironmentLight) else None
     values, peak = _image_values(image) if image is not None else _grid_values(light)
-    mean = picture.projection.coefficients[0] / (2 * np.sqrt(np.pi))
-    irradiance = load_light(replace(state, quantity="irradiance"))
+    mean = found.projection.coefficients[0] / (2 * np.sqrt(np.pi))
+    irradiance = load_light(replace(recipe, quantity="irradiance"))
     file = file_version(text)
-    split = subject(replace(state, split_sun=True))
+    split = subject(replace(recipe, split_sun=True))
     total = float(mean.mean()) * 4 * np.pi
     return Information(
         light_argument=text,
@@ -205,17 +205,17 @@ def _describe(text: str, reading: Reading) -> Information:
         peak_direction=_triple(peak),
         peak_theta_phi_degrees=theta_phi_degrees(peak),
         irradiance_up=_triple(irradiance.radiance(np.array([[0.0, 0.0, 1.0]]))[0]),
-        method=picture.projection.method,
-        energy_share=picture.figures.energy_share[:SHOWN_BANDS],
-        bands_needed=_needed(state),
+        method=found.projection.method,
+        energy_share=found.figures.energy_share[:SHOWN_BANDS],
+        bands_needed=_needed(recipe),
         suns=tuple(_sun(sun, total) for sun in split.suns),
-        bands_needed_without_suns=_needed(replace(state, split_sun=True)) if split.suns else (),
+        bands_needed_without_suns=_needed(replace(recipe, split_sun=True)) if split.suns else (),
         coefficients=describe_coefficients(light),
     )
 
 
-def _needed(state: ViewState) -> tuple[BandsNeeded, ...]:
-    found = (needs(replace(state, tolerance=tolerance)) for tolerance in TOLERANCES)
+def _needed(recipe: Recipe) -> tuple[BandsNeeded, ...]:
+    found = (needs(replace(recipe, tolerance=tolerance)) for tolerance in TOLERANCES)
     return tuple(BandsNeeded(need.tolerance, need.radiance, need.irradiance, need.searched) for need in found)
 
 

@@ -1,4 +1,4 @@
-"""What `shviewer project` writes: the coefficients of a state, in our convention, and everything that is known of them."""
+"""What `shviewer project` writes: the coefficients of a recipe, in our convention, and everything that is known of them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.analysis.figures import Figures, error_grid, grid_rows, reconstruct
-from shviewer.analysis.projections import project, sampling_of
-from shviewer.analysis.subjects import Subject, load_light, subject
+from shviewer.analysis.figures import Figures
+from shviewer.analysis.recipe import Recipe, light_name
+from shviewer.analysis.reconstruction import reconstruction_of
+from shviewer.analysis.subjects import Subject
 from shviewer.coefficients.convention import IRRADIANCE, Convention
 from shviewer.coefficients.programs import parse_convention
 from shviewer.coefficients.stamp import Value, stamp_of
@@ -21,10 +22,7 @@ from shviewer.errors import UsageError
 from shviewer.files import write_atomically
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.lights.suns.sun import Sun
-from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, check_radiance
 from shviewer.version import __version__
-from shviewer.viewer.state import ViewState, light_name
-from shviewer.viewer.view_limits import check
 from shviewer.words import counted
 
 ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")
@@ -96,49 +94,41 @@ class Projected:
         return about | sun_keys([sun.directional_light for sun in self.suns], convention.axes)
 
 
-def project_state(state: ViewState) -> Projected:
-    """The coefficients that the window shows in that state. LightError or UsageError, as in `picture.prepare`."""
-    check(state)
-    shown = subject(state)
-    check_radiance(error_grid(shown.whole, grid_rows(1)).peak, shown.light.name)
-    bands = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
-    projection = project(shown.light, *sampling_of(state), bands)
-    coefficients, figures = reconstruct(
-        shown.light, projection, state.n_bands, state.muted_shown, state.window, state.window_width
-    )
+def project_recipe(recipe: Recipe) -> Projected:
+    """The coefficients that the window shows by that recipe. LightError or UsageError, as in `reconstruction_of`."""
+    found = reconstruction_of(recipe)
+    shown, projection, figures = found.subject, found.projection, found.figures
     both = {"radiance": figures.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
-    if state.quantity == IRRADIANCE:
-        radiance = load_light(replace(state, quantity="radiance"))
-        shape = state.n_bands, state.muted_shown, state.window, state.window_width
-        of_radiance = project(radiance, *sampling_of(state), bands)
-        both = {"radiance": reconstruct(radiance, of_radiance, *shape)[1].relative_l2, IRRADIANCE: figures.relative_l2}
+    if recipe.quantity == IRRADIANCE:
+        of_radiance = reconstruction_of(replace(recipe, quantity="radiance"))
+        both = {"radiance": of_radiance.figures.relative_l2, IRRADIANCE: figures.relative_l2}
     about: dict[str, Value] = {
-        **_light(state, shown),
-        "window": _window(state),
-        "muted": " ".join(map(str, state.muted_shown)) or "none",
+        **_light(recipe, shown),
+        "window": _window(recipe),
+        "muted": " ".join(map(str, recipe.muted_shown)) or "none",
         "method": projection.method,
         "samples": projection.evaluations,
-        "seed": state.seed if state.method == "jittered" else None,
+        "seed": recipe.seed if recipe.method == "jittered" else None,
         **_errors(figures),
     }
     about = {key: value for key, value in about.items() if value is not None and value != ""}
-    return Projected(coefficients, state.quantity, figures, about, shown.light.name, both, shown.suns)
+    return Projected(found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns)
 
 
-def _light(state: ViewState, shown: Subject) -> dict[str, Value]:
+def _light(recipe: Recipe, shown: Subject) -> dict[str, Value]:
     light, suns = shown.light, shown.suns
     without = f"; {counted(len(suns), 'sun')} left out" if suns else ""
     return {
-        "light": _one_line(light_name(state.light)),
+        "light": _one_line(light_name(recipe.light)),
         "light-is": _one_line(light.description + without),
         "light-notes": _one_line("; ".join(light.notes)),
     }
 
 
-def _window(state: ViewState) -> str:
-    if state.window in ("none", "dering"):
-        return state.window
-    return f"{state.window} of {state.window_width or state.n_bands:g} bands"
+def _window(recipe: Recipe) -> str:
+    if recipe.window in ("none", "dering"):
+        return recipe.window
+    return f"{recipe.window} of {recipe.window_width or recipe.n_bands:g} bands"
 
 
 def _errors(figures: Figures) -> dict[str, Value]:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from shviewer.analysis.cache import MEMORY, remember
+from shviewer.analysis.recipe import Recipe
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.metrics import (
@@ -24,7 +25,6 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
-from shviewer.viewer.state import ViewState
 
 BEST = ("best", 0, 0)
 """Method, samples and seed of the best way, to which the last two do not matter."""
@@ -72,19 +72,19 @@ class Measurement:
         return self.method, self.samples, self.seed
 
 
-def sampling_of(state: ViewState) -> tuple[str | CoefficientLight, int, int]:
+def sampling_of(recipe: Recipe) -> tuple[str | CoefficientLight, int, int]:
     """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them.
 
     Coefficients that are given are a method, too: that of the file they come from.
     """
-    return way_of(state) if state.compare is None else (state.compare, 0, 0)
+    return way_of(recipe) if recipe.compare is None else (recipe.compare, 0, 0)
 
 
-def way_of(state: ViewState) -> tuple[str, int, int]:
+def way_of(recipe: Recipe) -> tuple[str, int, int]:
     """The same by name; coefficients that are given are no way to project, and nothing is measured of them."""
-    if state.compare is not None:
+    if recipe.compare is not None:
         return "given", 0, 0
-    return BEST if state.method == "best" else (state.method, state.samples, state.seed)
+    return BEST if recipe.method == "best" else (recipe.method, recipe.samples, recipe.seed)
 
 
 def project(light: Light, method: str | CoefficientLight, samples: int, seed: int, n_bands: int) -> Projection:

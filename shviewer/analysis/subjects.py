@@ -1,4 +1,4 @@
-"""Which light a state shows, which of it is projected, and which file it came from. A light named by text is read once."""
+"""Which light a recipe shows, which of it is projected, and which file it came from. A light named by text is read once."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Hashable
 from dataclasses import dataclass, replace
 
 from shviewer.analysis.cache import MEMORY, remember
+from shviewer.analysis.recipe import Recipe
 from shviewer.errors import LightError
 from shviewer.files import FileVersion
 from shviewer.lights.find import built_in_lights, file_version, find_light
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.lights.suns.sun import Split, Sun, split_suns
-from shviewer.viewer.state import ViewState
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,55 +27,55 @@ class Subject:
     """Why nothing was split off although it was asked for."""
 
 
-def subject(state: ViewState) -> Subject:
-    """Of the state's light, or of its irradiance; a light named by text is read once."""
-    light = state.light
+def subject(recipe: Recipe) -> Subject:
+    """Of the recipe's light, or of its irradiance; a light named by text is read once."""
+    light = recipe.light
     if isinstance(light, str):
-        light = MEMORY.named(_name(state)) or read_again(state)
+        light = MEMORY.named(_name(recipe)) or read_again(recipe)
     found = Subject(light, light)
-    if state.split_sun:
+    if recipe.split_sun:
         split = _split(light)
         found = replace(found, refusal=split) if isinstance(split, str) else Subject(light, split.rest, split.suns)
-    if state.quantity == "irradiance":
+    if recipe.quantity == "irradiance":
         return replace(found, whole=irradiance_of(found.whole), light=irradiance_of(found.light))
     return found
 
 
-def load_light(state: ViewState) -> Light:
+def load_light(recipe: Recipe) -> Light:
     """The light that is projected."""
-    return subject(state).light
+    return subject(recipe).light
 
 
-def read_again(state: ViewState) -> Light:
-    """The light that the state names, read anew. LightError leaves what was known of it as it was.
+def read_again(recipe: Recipe) -> Light:
+    """The light that the recipe names, read anew. LightError leaves what was known of it as it was.
 
     A light that is not named by a text is what it is.
     """
-    if not isinstance(state.light, str):
-        return state.light
-    read = file_version(state.light)  # before: what is written during the reading is a later change
-    safe = state.light in built_in_lights()
-    light = find_light(state.light, replace(state.reading, isolated=False) if safe else state.reading)
-    MEMORY.name(_name(state), light)
+    if not isinstance(recipe.light, str):
+        return recipe.light
+    read = file_version(recipe.light)  # before: what is written during the reading is a later change
+    safe = recipe.light in built_in_lights()
+    light = find_light(recipe.light, replace(recipe.reading, isolated=False) if safe else recipe.reading)
+    MEMORY.name(_name(recipe), light)
     MEMORY.results(light, file_version)[None] = read
     return light
 
 
-def keep_light(state: ViewState, light: Light) -> None:
-    """Let the state's text go on meaning `light`, whatever its file holds by now."""
-    if isinstance(state.light, str):
-        MEMORY.name(_name(state), light)
+def keep_light(recipe: Recipe, light: Light) -> None:
+    """Let the recipe's text go on meaning `light`, whatever its file holds by now."""
+    if isinstance(recipe.light, str):
+        MEMORY.name(_name(recipe), light)
 
 
-def version_read(state: ViewState) -> FileVersion | None:
-    """The version that the file of the state's light had when it was read; None if that is not known."""
-    light = MEMORY.named(_name(state))
+def version_read(recipe: Recipe) -> FileVersion | None:
+    """The version that the file of the recipe's light had when it was read; None if that is not known."""
+    light = MEMORY.named(_name(recipe))
     found: FileVersion | None = MEMORY.results(light, file_version).get(None) if light is not None else None
     return found
 
 
-def _name(state: ViewState) -> Hashable:
-    return state.light, state.reading
+def _name(recipe: Recipe) -> Hashable:
+    return recipe.light, recipe.reading
 
 
 @remember(most=1)

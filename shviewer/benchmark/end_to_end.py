@@ -10,26 +10,26 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import moderngl
 
 from shviewer.analysis.cache import MEMORY
+from shviewer.analysis.recipe import Recipe
 from shviewer.benchmark.hard_cases.shader import Shader
 from shviewer.benchmark.measurement import Measurement, timed
 from shviewer.benchmark.timing import Timing, summarise, time_interleaved
 from shviewer.errors import GraphicsError
+from shviewer.viewer.actions import more_bands
 from shviewer.viewer.composition import compose
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.picture_files import metadata, write_png
 from shviewer.viewer.screenshot import offscreen, render_rgb
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed, state_of
 
 SECTION = "end to end"
 FRAME = compose(1280, 640)
@@ -59,7 +59,7 @@ WATCHED_WINDOW = """
 import _thread, signal, sys, threading, time
 from shviewer.errors import GraphicsError
 from shviewer.viewer.desktop import window
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which a background job is started without
 
@@ -79,7 +79,7 @@ class Watched(window.Window):
 
 window.Window = Watched
 try:
-    window.run(ViewState(), (1280, 640))
+    window.run(State(), (1280, 640))
 except KeyboardInterrupt:
     pass
 except GraphicsError as error:
@@ -101,7 +101,7 @@ def process_rows(text: str, name: str, drawing: Shader | str, *, budget: float, 
             works[SCREENSHOT] = _process("screenshot", str(Path(folder) / "out.png"), text)
         times = time_interleaved(works, budget=budget, at_least=at_least)
     return [_row(VERSION, "", None, times[VERSION])] + [
-        _row(SCREENSHOT, name, ViewState().n_bands, times[SCREENSHOT]) for _ in (0,) if SCREENSHOT in times
+        _row(SCREENSHOT, name, Recipe().n_bands, times[SCREENSHOT]) for _ in (0,) if SCREENSHOT in times
     ]
 
 
@@ -120,12 +120,12 @@ def session_rows(
     """
     if isinstance(drawing, str):
         return []
-    start = ViewState(lights=(text,))
+    start = state_of(text)
     works: dict[tuple[str, int], Work] = {}
     with offscreen(drawing.renderer, FRAME) as target, tempfile.TemporaryDirectory() as folder:
         session = _Session(drawing.renderer, target)
-        works[PICTURE, start.n_bands] = lambda: session.show(start)
-        works[SAVED, start.n_bands] = lambda: session.save(start, Path(folder) / "out.png")
+        works[PICTURE, start.recipe.n_bands] = lambda: session.show(start)
+        works[SAVED, start.recipe.n_bands] = lambda: session.save(start, Path(folder) / "out.png")
         for n_bands in key_bands:
             works[NEW_KEY, n_bands + 1] = works[KNOWN_KEY, n_bands + 1] = partial(session.press_up, start, n_bands)
 
@@ -133,9 +133,9 @@ def session_rows(
             if work[0] != KNOWN_KEY:
                 MEMORY.clear()
             if work[0] == KNOWN_KEY:
-                prepare(replace(start, n_bands=work[1]))
+                prepare(changed(start, n_bands=work[1]))
             if work[0] in (NEW_KEY, KNOWN_KEY):
-                session.upload(replace(start, n_bands=work[1] - 1))
+                session.upload(changed(start, n_bands=work[1] - 1))
 
         times = time_interleaved(works, budget=budget, at_least=at_least, before=before)
     MEMORY.clear()
@@ -155,7 +155,7 @@ def idle_row(seconds: int = IDLE_SECONDS) -> Measurement | str:
     if done.returncode:
         return (done.stderr.strip().splitlines() or [f"the window ended with {done.returncode}"])[-1]
     shares = [float(line) for line in done.stdout.split()]
-    return _row(IDLE, "green", ViewState().n_bands, summarise([1000 * share for share in shares]))
+    return _row(IDLE, "green", Recipe().n_bands, summarise([1000 * share for share in shares]))
 
 
 class _Session:
@@ -166,20 +166,20 @@ class _Session:
         self.target = target
         self.layers: tuple[Layer, ...] = ()
 
-    def upload(self, state: ViewState) -> None:
+    def upload(self, state: State) -> None:
         picture = prepare(state)
         self.renderer.show(picture)
         self.layers = draw_overlay(picture, FRAME, timing=True).layers
 
-    def show(self, state: ViewState) -> None:
+    def show(self, state: State) -> None:
         self.upload(state)
         self.renderer.draw(self.target, FRAME, self.layers)
         self.renderer.context.finish()
 
-    def press_up(self, start: ViewState, n_bands: int) -> None:
-        self.show(press(replace(start, n_bands=n_bands), "Up"))
+    def press_up(self, start: State, n_bands: int) -> None:
+        self.show(more_bands(1)(changed(start, n_bands=n_bands)))
 
-    def save(self, state: ViewState, out: Path) -> None:
+    def save(self, state: State, out: Path) -> None:
         picture = prepare(state)
         write_png(out, render_rgb(self.renderer, picture, FRAME), metadata(picture, FRAME, self.renderer.version))
 

@@ -27,7 +27,8 @@ from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import offscreen, render_linear
-from shviewer.viewer.state import CAMERA_HOME, ViewState
+from shviewer.viewer.state import state_of
+from shviewer.viewer.view import CAMERA_HOME
 
 SECTION = "reconstruction"
 BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
@@ -119,7 +120,7 @@ class _Stage:
     """One light with one band count: what is evaluated, on the CPU and how exactly."""
 
     def __init__(self, subject: Subject, n_bands: int) -> None:
-        picture = prepare(ViewState(lights=(subject.light,), n_bands=n_bands))
+        picture = prepare(state_of(subject.light, n_bands=n_bands))
         light = subject.light
         self.n_bands = n_bands
         self.light_name = subject.name

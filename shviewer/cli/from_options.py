@@ -7,41 +7,67 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
-from shviewer.cli.options import DEFAULT_BANDS
 from shviewer.errors import UsageError
 
 if TYPE_CHECKING:
     from shviewer.lights.reading import Reading
-    from shviewer.viewer.state import ViewState
+    from shviewer.viewer.state import State
 
 
-def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
-    """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
-    from shviewer.lights.find import COEFFICIENT_SUFFIXES, built_in_lights, split_light
-    from shviewer.viewer.actions import open_light
-    from shviewer.viewer.camera import IDENTITY, towards
-    from shviewer.viewer.state import ViewState
-    from shviewer.viewer.view_limits import check
+def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
+    """The recipe that the options ask for, of LIGHT, and what there is to say of it; "" if nothing.
 
-    elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
-    if any(abs(elevation) > 90 for elevation in elevations):
-        raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
+    UsageError for an option out of range, before the light is read if that does not depend on it.
+    """
+    from shviewer.lights.find import COEFFICIENT_SUFFIXES, split_light
+
     window, separator, width = options.window.partition(":")
     if separator and window in ("none", "dering"):
         raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
-    state = ViewState(
-        lights=tuple(built_in_lights()) if all_lights else (options.light,),
+    recipe = Recipe(
+        light=light,
         reading=reading_from(options),
-        n_bands=DEFAULT_BANDS if options.bands is None else options.bands,
+        n_bands=Recipe.n_bands if options.bands is None else options.bands,
         muted=options.mute,
-        quantity=options.quantity or "radiance",
+        quantity=options.quantity or Recipe.quantity,
         split_sun=options.split_sun,
         window=window,
         window_width=_finite_width(width) if separator else None,
         method=options.method,
         samples=options.samples,
         seed=options.seed,
+        tolerance=Recipe.tolerance if options.tolerance is None else options.tolerance,
+    )
+    recipe.check()
+    compared, said = vars(options).get("compare"), ""
+    if compared:
+        from shviewer.analysis.compared_files import compared_with
+
+        recipe, found = compared_with(recipe, compared)
+        if found:
+            print(f"shviewer: {found}", file=sys.stderr)
+    if compared or split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
+        from shviewer.analysis.comparison import as_the_file_holds
+
+        any_bands = options.bands is None and options.tolerance is None
+        recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
+    return (recipe if options.tolerance is None else _fitted(recipe, options)), said
+
+
+def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
+    """The state that the options ask for. UsageError for one out of range."""
+    from shviewer.lights.find import built_in_lights
+    from shviewer.viewer.actions import open_light
+    from shviewer.viewer.camera import IDENTITY, towards
+    from shviewer.viewer.state import State, changed
+    from shviewer.viewer.view import View
+
+    elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
+    if any(abs(elevation) > 90 for elevation in elevations):
+        raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
+    view = View(
         exposure_stops=options.exposure,
         error=options.error,
         error_range=_error_range(options),
@@ -50,31 +76,16 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
         lobe_view=options.lobes or options.basis is not None,
         evaluate=options.evaluate,
         sheet="convergence" if options.convergence else "",
+        camera=(options.camera[0] % 360, options.camera[1]) if options.camera else View.camera,
         light_rotation=towards(*options.rotate_light) if options.rotate_light else IDENTITY,
         zoom=options.zoom,
     )
-    if options.camera:
-        state = replace(state, camera=(options.camera[0] % 360, options.camera[1]))
-    if options.tolerance is not None:
-        state = replace(state, tolerance=options.tolerance)
-    check(state, tuple(options.size))
-    state = open_light(state, options.light)
-    if options.compare:
-        from shviewer.analysis.compared_files import compared_with
-
-        state, found = compared_with(state, options.compare)
-        if found:
-            print(f"shviewer: {found}", file=sys.stderr)
-    if options.compare or split_light(options.light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
-        from shviewer.analysis.comparison import as_the_file_holds
-
-        any_bands = options.bands is None and options.tolerance is None
-        state = as_the_file_holds(state, quantity=options.quantity is None, bands=any_bands)
-    if options.tolerance is not None:
-        state = _fitted(state, options)
-    if options.basis is not None:
-        state = replace(state, basis=(options.basis[0], options.basis[1]))
-        check(state)  # now that its bands are known
+    State(Recipe(), view).check(tuple(options.size))
+    recipe, said = recipe_from(options, options.light)
+    lights = tuple(built_in_lights()) if all_lights else (options.light,)
+    state = open_light(State(recipe, view, lights), options.light)
+    state = changed(state, message=said, basis=tuple(options.basis) if options.basis else None)
+    state.check()
     return state
 
 
@@ -92,27 +103,27 @@ def _error_range(options: argparse.Namespace) -> float | None:
         raise UsageError(f"error range {error}") from error
 
 
-def _fitted(state: ViewState, options: argparse.Namespace) -> ViewState:
+def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
     """As many bands as the tolerance needs, said on stderr; where none are enough, the best there is."""
     from shviewer.analysis.figures import estimate_from_samples, needs
 
     if options.bands is not None:
         raise UsageError(f"--bands {options.bands} and --tolerance {options.tolerance:g}: give one of them")
-    found = needs(state)
+    found = needs(recipe)
     counts = {"radiance": found.radiance, "irradiance": found.irradiance}
     says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
     print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
-    wanted = counts[state.quantity]
+    wanted = counts[recipe.quantity]
     if wanted is None:
         print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
-    if state.method == "jittered":
-        guess = estimate_from_samples(state)
+    if recipe.method == "jittered":
+        guess = estimate_from_samples(recipe)
         if guess.decided:
             says = f"{guess.likely} bands" if guess.likely else "no count up to 32"
         else:
             says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
         print(f"shviewer: the samples alone say {says}", file=sys.stderr)
-    return replace(state, n_bands=wanted or found.best_bands)
+    return replace(recipe, n_bands=wanted or found.best_bands)
 
 
 def reading_from(options: argparse.Namespace) -> Reading:
@@ -121,7 +132,7 @@ def reading_from(options: argparse.Namespace) -> Reading:
     from shviewer.limits import Limits
 
     if options.layout != "auto":
-        from shviewer.lights.layouts.recognise import LAYOUTS
+        from shviewer.lights.reading import LAYOUTS
 
         if options.layout not in LAYOUTS:
             raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 
 from shviewer.analysis.comparison import verdict
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import Subject, load_light
-from shviewer.viewer.state import ViewState
 
 
 def print_notes(subject: Subject) -> None:
@@ -16,7 +16,7 @@ def print_notes(subject: Subject) -> None:
         print(f"shviewer: note: {subject.refusal}", file=sys.stderr)
 
 
-def print_verdict(state: ViewState) -> None:
+def print_verdict(recipe: Recipe) -> None:
     """How well coefficients that are compared agree, or by which usual mistake they are off."""
-    if state.compare:
-        print(f"shviewer: {verdict(load_light(state), state.compare)}", file=sys.stderr)
+    if recipe.compare:
+        print(f"shviewer: {verdict(load_light(recipe), recipe.compare)}", file=sys.stderr)

@@ -119,13 +119,6 @@ def add_picture_options(parser: OneLineParser) -> None:
     )
 
 
-def picture_defaults() -> dict[str, object]:
-    """What a mode that draws nothing leaves them at."""
-    parser = OneLineParser(add_help=False)
-    add_picture_options(parser)
-    return vars(parser.parse_args([]))
-
-
 def add_reading_options(parser: OneLineParser, convention: str = "--convention") -> None:
     """How an image is read, and coefficients that do not say their convention."""
     parser.add_argument(

@@ -12,7 +12,6 @@ from shviewer.cli.option_groups import (
     add_reading_options,
     add_view_options,
     finite,
-    picture_defaults,
     share,
 )
 from shviewer.version import __version__
@@ -27,7 +26,6 @@ EXIT_CODES = """exit codes:
   6    a shader that does not compile
   130  interrupted"""
 
-DEFAULT_BANDS = 5
 DEFAULT_SWEEP = (1, 16)
 
 
@@ -165,7 +163,6 @@ def project_parser() -> OneLineParser:
     parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
     add_projection_options(parser)
     add_reading_options(parser, convention="--input-convention")
-    parser.set_defaults(**picture_defaults())
     return parser
 
 

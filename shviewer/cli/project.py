@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from shviewer.analysis.figures import errors_of
-from shviewer.analysis.projected import Projected, project_state
+from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.projections import sampling_of
+from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.cli.from_options import state_from
-from shviewer.cli.options import DEFAULT_BANDS
+from shviewer.cli.from_options import recipe_from
 from shviewer.cli.status_line import status_line
 from shviewer.coefficients.axes import Axes
 from shviewer.coefficients.convention import OVER_PI, Convention
@@ -25,7 +25,6 @@ from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, ShviewerError, UsageError
 from shviewer.files import file_stem, write_atomically
 from shviewer.lights.find import split_light
-from shviewer.viewer.state import ViewState, light_name
 from shviewer.words import counted
 
 STDOUT = "-"
@@ -34,8 +33,8 @@ BATCH_FAILED = 1
 ROUNDING = 1e-6
 """A minimum that is no farther below zero than this part of the largest coefficient is called zero."""
 
-StateOf = Callable[[str], ViewState]
-"""The state that the options ask for, of one LIGHT. It raises what reading the light raises."""
+RecipeOf = Callable[[str], Recipe]
+"""The recipe that the options ask for, of one LIGHT. It raises what reading the light raises."""
 
 
 @dataclass(frozen=True)
@@ -54,18 +53,18 @@ def run(options: argparse.Namespace) -> int:
     if convention.quantity:
         options.quantity = convention.quantity.removesuffix("-over-pi")
     if options.bands is None and options.tolerance is None and convention.most_bands:
-        options.bands = min(DEFAULT_BANDS, convention.most_bands)
+        options.bands = min(Recipe.n_bands, convention.most_bands)
 
-    def state_of(light: str) -> ViewState:
-        state = state_from(argparse.Namespace(**{**vars(options), "light": light}), all_lights=False)
+    def recipe_of(light: str) -> Recipe:
+        recipe, _ = recipe_from(options, light)
         if options.tolerance is not None:
-            check_tolerance(state, convention)
-        return state
+            check_tolerance(recipe, convention)
+        return recipe
 
     lights = options.lights or ["green"]
     with status_line() as line:
         show = line.show if line else None
-        return project_lights(lights, options.output, options.format, convention, state_of, show)
+        return project_lights(lights, options.output, options.format, convention, recipe_of, show)
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
@@ -86,17 +85,17 @@ def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str
     return convention
 
 
-def check_tolerance(state: ViewState, convention: Convention) -> None:
-    """UsageError if the state's tolerance needs more bands than the program has: what its bands give, and what may help."""
+def check_tolerance(recipe: Recipe, convention: Convention) -> None:
+    """UsageError if the recipe's tolerance needs more bands than the program has: what its bands give, and what may help."""
     most = convention.most_bands
-    if most is None or state.n_bands <= most:
+    if most is None or recipe.n_bands <= most:
         return
     bands = counted(most, "band")
-    reached = float(errors_of(load_light(state), *sampling_of(state))[most - 1])
-    suns = () if state.split_sun else subject(replace(state, split_sun=True)).suns
+    reached = float(errors_of(load_light(recipe), *sampling_of(recipe))[most - 1])
+    suns = () if recipe.split_sun else subject(replace(recipe, split_sun=True)).suns
     remedy = "take its sun out, --split-sun, or " if suns else ""
     raise UsageError(
-        f"{light_name(state.light)}: {100 * state.tolerance:g} % needs more than the {bands} that {convention.name} takes, "
+        f"{light_name(recipe.light)}: {100 * recipe.tolerance:g} % needs more than the {bands} that {convention.name} takes, "
         f"which reach {100 * reached:.3g} %; {remedy}give --bands {most}"
     )
 
@@ -106,7 +105,7 @@ def project_lights(
     out: str,
     kind: str | None,
     convention: Convention,
-    state_of: StateOf,
+    recipe_of: RecipeOf,
     status: Callable[[str], None] | None = None,
 ) -> int:
     """Project and write; the exit code. status: shows what is at work, "" clears it.
@@ -117,24 +116,24 @@ def project_lights(
     if kind is not None and kind not in FORMATS:
         raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
     if len(lights) > 1:
-        return _batch(lights, out, kind or "json", convention, state_of, status)
+        return _batch(lights, out, kind or "json", convention, recipe_of, status)
     (light,) = lights
     if out == STDOUT:
         if kind is None:
             raise UsageError(f"-o -: stdout has no suffix to go by; name a format: --format {', '.join(FORMATS)}")
-        projected = _noted(light, state_of, convention)
+        projected = _noted(light, recipe_of, convention)
         sys.stdout.buffer.write(projected.encode(convention, kind))
         sys.stdout.buffer.flush()
         _warn_below_zero(projected)
         return 0
     path = Path(out)
     if path.is_dir():
-        projected = _noted(light, state_of, convention)
+        projected = _noted(light, recipe_of, convention)
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
     else:
         kind = _kind_of(path, kind)
         _check_is_not_read(path, light)
-        projected = _noted(light, state_of, convention)
+        projected = _noted(light, recipe_of, convention)
     write_atomically(path, projected.encode(convention, kind or "json"))
     radiance, irradiance = (_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
     print(
@@ -149,7 +148,7 @@ def _batch(
     out: str,
     kind: str,
     convention: Convention,
-    state_of: StateOf,
+    recipe_of: RecipeOf,
     status: Callable[[str], None] | None,
 ) -> int:
     folder = Path(out)
@@ -164,7 +163,7 @@ def _batch(
         if status:
             filled = round(24 * number / len(lights))
             status(f"[{'#' * filled}{'.' * (24 - filled)}] {number + 1} of {len(lights)}  {light[:60]}")
-        rows.append(_one_of_many(light, folder, kind, convention, state_of, {row.file for row in rows}))
+        rows.append(_one_of_many(light, folder, kind, convention, recipe_of, {row.file for row in rows}))
         if rows[-1].error:
             if status:
                 status("")
@@ -176,11 +175,11 @@ def _batch(
 
 
 def _one_of_many(
-    light: str, folder: Path, kind: str, convention: Convention, state_of: StateOf, taken: set[str]
+    light: str, folder: Path, kind: str, convention: Convention, recipe_of: RecipeOf, taken: set[str]
 ) -> Row:
     """One light of a batch, written under a name of its own."""
     try:
-        projected = _noted(light, state_of, convention)
+        projected = _noted(light, recipe_of, convention)
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)
@@ -192,11 +191,11 @@ def _one_of_many(
     return Row(light, str(path), projected)
 
 
-def _noted(light: str, state_of: StateOf, convention: Convention) -> Projected:
+def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected:
     """Projected; what was done to the light, and what became of its suns, is said on stderr."""
-    state = state_of(light)
-    projected = project_state(state)
-    shown = subject(state)
+    recipe = recipe_of(light)
+    projected = project_recipe(recipe)
+    shown = subject(recipe)
     suns = [sun_left_out(sun.directional_light, convention.axes) for sun in projected.suns]
     for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else []), *suns):
         print(f"shviewer: note: {shown.light.name}: {note}", file=sys.stderr)

@@ -23,15 +23,15 @@ def run(options: argparse.Namespace) -> int:
     if options.reference and options.reference.resolve() == options.out.resolve():
         raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
     state = state_from(options, all_lights=False)
-    if state.lobe_view and options.out.suffix.lower() == ".exr":
+    if state.view.lobe_view and options.out.suffix.lower() == ".exr":
         raise UsageError(
             f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
         )
     picture = prepare(state)
-    composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
+    composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     print_notes(picture.subject)
-    print_verdict(state)
+    print_verdict(state.recipe)
     if options.reference is None or pixels is None:
         return 0
     difference = options.out.with_name(f"{options.out.stem}-difference.png")

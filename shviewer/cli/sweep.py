@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
         first = DEFAULT_SWEEP[0] if options.first is None else options.first
         last = DEFAULT_SWEEP[1] if options.last is None else options.last
         animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
-    composition = compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres)
+    composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
     with status_line() as line:
         picture = save_animation(
             animation,
@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
             progress=line.fraction if line else None,
         )
     print_notes(picture.subject)
-    print_verdict(state)
+    print_verdict(state.recipe)
     return 0
 
 

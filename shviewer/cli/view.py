@@ -31,14 +31,16 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.viewer.screenshot import save_picture
 
     state = state_from(options, all_lights=True)
-    print_notes(subject(state))
-    print_verdict(state)
+    print_notes(subject(state.recipe))
+    print_verdict(state.recipe)
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
-        out = Path(f"shviewer-{file_stem(subject(state).light.name)}.png")
+        out = Path(f"shviewer-{file_stem(subject(state.recipe).light.name)}.png")
         save_picture(
-            prepare(state), compose(options.size[0], options.size[1], state.zoom, n_spheres=state.n_spheres), out
+            prepare(state),
+            compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres),
+            out,
         )
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0

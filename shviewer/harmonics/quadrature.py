@@ -16,12 +16,10 @@ from math import isqrt
 import numpy as np
 
 from shviewer.harmonics.basis import Array
+from shviewer.limits import MAX_SAMPLES
 
 Radiance = Callable[[Array], Array]
 """Directions (k, 3) -> linear RGB (k, 3)."""
-
-MAX_SAMPLES = 16_000_000
-"""The most directions a rule may have: 512 MB of directions and weights."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,11 @@ from dataclasses import dataclass, field
 
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
+LAYOUTS = ("lat-long", "cube", "angular", "mirror-ball")
+"""How an image may cover the sphere; lights/layouts has a file for each."""
+
+LAYOUT_CHOICES = ("auto", *LAYOUTS)
+
 
 @dataclass(frozen=True)
 class Reading:

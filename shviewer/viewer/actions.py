@@ -5,236 +5,238 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from enum import Enum, auto
 
+from shviewer.analysis.recipe import METHODS, QUANTITIES, WINDOWS, Recipe
 from shviewer.harmonics.basis import degree_order, index
 from shviewer.lights.light import Light
+from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.camera import turned_by_drag
-from shviewer.viewer.error_scale import ERRORS
-from shviewer.viewer.state import (
-    LAYOUT_CHOICES,
-    MAX_EXPOSURE,
-    MAX_KEY_SAMPLES,
-    METHODS,
-    MIN_SAMPLES,
-    QUANTITIES,
-    WINDOWS,
-    ZOOM_RANGE,
-    ViewState,
-)
-from shviewer.viewer.tone import TONES
+from shviewer.viewer.state import State, changed
+from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, TONES, ZOOM_RANGE, View
 
-Action = Callable[[ViewState], ViewState]
+Action = Callable[[State], State]
+
+
+class Command(Enum):
+    """What a key asks for that is no other state: the session does it."""
+
+    SAVE = auto()
+    RELOAD = auto()
+    FIT = auto()
+    """As many bands as the tolerance asks for, which depends on the light."""
+    FACE_MARK = auto()
+    """Look at the next mark, whose place depends on the light."""
+    FULL_SCREEN = auto()
+    CLOSE = auto()
+
+
+EXPOSURE_STEP = 0.5
+MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
 
 SWEEP_BANDS = 10
 """Where a sweep ends that starts with one band in use."""
 
 
 def more_bands(count: int) -> Action:
-    return lambda state: with_bands(state, state.n_bands + count)
+    return lambda state: with_bands(state, state.recipe.n_bands + count)
 
 
-def with_bands(state: ViewState, n_bands: int) -> ViewState:
+def with_bands(state: State, n_bands: int) -> State:
     """So many bands, as far as they can be shown; a basis function above them is left."""
-    most = min(state.compare.n_bands, MAX_BANDS) if state.compare else MAX_BANDS
-    if state.compare and n_bands > most:
-        state = replace(state, message=state.compare.extent)
+    most = min(state.recipe.compare.n_bands, MAX_BANDS) if state.recipe.compare else MAX_BANDS
+    if state.recipe.compare and n_bands > most:
+        state = changed(state, message=state.recipe.compare.extent)
     n_bands = min(max(n_bands, 1), most)
-    basis = state.basis if state.basis is not None and state.basis[0] < n_bands else None
-    return replace(state, n_bands=n_bands, cursor=min(state.cursor, n_bands - 1), basis=basis, sweep_to=None)
+    basis = state.view.basis if state.view.basis is not None and state.view.basis[0] < n_bands else None
+    return changed(state, n_bands=n_bands, cursor=min(state.view.cursor, n_bands - 1), basis=basis, sweep_to=None)
 
 
-def toggle_band(state: ViewState, band: int) -> ViewState:
+def toggle_band(state: State, band: int) -> State:
     """Mute a band or take it back; one that is not in use only says so."""
-    return replace(state, muted=state.muted ^ {band}) if band < state.n_bands else not_in_use(state, band)
+    return changed(state, muted=state.recipe.muted ^ {band}) if band < state.recipe.n_bands else not_in_use(state, band)
 
 
-def not_in_use(state: ViewState, band: int) -> ViewState:
-    return replace(state, message=f"band {band} is above the {state.n_bands} in use: Up adds bands")
+def not_in_use(state: State, band: int) -> State:
+    return changed(state, message=f"band {band} is above the {state.recipe.n_bands} in use: Up adds bands")
 
 
-def solo_band(state: ViewState, band: int) -> ViewState:
+def solo_band(state: State, band: int) -> State:
     """Only this band; once more: all of them."""
     others = frozenset(range(MAX_BANDS)) - {band}
-    if band >= state.n_bands:
+    if band >= state.recipe.n_bands:
         return not_in_use(state, band)
-    return replace(state, muted=frozenset() if state.muted == others else others)
+    return changed(state, muted=frozenset() if state.recipe.muted == others else others)
 
 
 def move_cursor(step: int) -> Action:
     """Along the band bars; the first press only shows where the cursor is."""
 
-    def action(state: ViewState) -> ViewState:
-        moved = (state.cursor + step) % state.n_bands if state.cursor_visible else state.cursor
-        return replace(state, cursor=moved, cursor_visible=True)
+    def action(state: State) -> State:
+        moved = (state.view.cursor + step) % state.recipe.n_bands if state.view.cursor_visible else state.view.cursor
+        return changed(state, cursor=moved, cursor_visible=True)
 
     return action
 
 
-def toggle_cursor(state: ViewState) -> ViewState:
-    return replace(toggle_band(state, state.cursor), cursor_visible=True)
+def toggle_cursor(state: State) -> State:
+    return changed(toggle_band(state, state.view.cursor), cursor_visible=True)
 
 
 def next_light(step: int) -> Action:
-    return lambda state: replace(state, light_index=(state.light_index + step) % len(state.lights), layout_tried="")
+    """Through the lights, round again after the last."""
+
+    def action(state: State) -> State:
+        at = state.lights.index(state.recipe.light) + step
+        return changed(state, light=state.lights[at % len(state.lights)], layout_tried="")
+
+    return action
 
 
-def next_layout(state: ViewState) -> ViewState:
+def next_layout(state: State) -> State:
     """Through all layouts, for this image and those opened afterwards."""
-    last = state.layout_tried or state.reading.layout
+    last = state.view.layout_tried or state.recipe.reading.layout
     layout = _after(last, LAYOUT_CHOICES)
-    return replace(state, reading=replace(state.reading, layout=layout), layout_tried=layout)
+    return changed(state, reading=replace(state.recipe.reading, layout=layout), layout_tried=layout)
 
 
-def toggle_sanitizing(state: ViewState) -> ViewState:
+def toggle_sanitizing(state: State) -> State:
     """Of this image and those opened afterwards."""
-    return replace(state, reading=replace(state.reading, sanitize=not state.reading.sanitize))
+    return changed(state, reading=replace(state.recipe.reading, sanitize=not state.recipe.reading.sanitize))
 
 
-def next_window(state: ViewState) -> ViewState:
+def next_window(state: State) -> State:
     """Through all windows; deringing, which takes up to MAX_DIRECT_BANDS bands, is left out above them."""
-    names = WINDOWS if state.n_bands <= MAX_DIRECT_BANDS else WINDOWS[:-1]
-    at = names.index(state.window) if state.window in names else len(names) - 1
-    return replace(state, window=names[(at + 1) % len(names)])
+    names = WINDOWS if state.recipe.n_bands <= MAX_DIRECT_BANDS else WINDOWS[:-1]
+    at = names.index(state.recipe.window) if state.recipe.window in names else len(names) - 1
+    return changed(state, window=names[(at + 1) % len(names)])
 
 
-def next_quantity(state: ViewState) -> ViewState:
-    return replace(state, quantity=_after(state.quantity, QUANTITIES))
+def next_quantity(state: State) -> State:
+    return changed(state, quantity=_after(state.recipe.quantity, QUANTITIES))
 
 
-def toggle_split(state: ViewState) -> ViewState:
-    return replace(state, split_sun=not state.split_sun)
+def toggle_split(state: State) -> State:
+    return changed(state, split_sun=not state.recipe.split_sun)
 
 
-def next_method(state: ViewState) -> ViewState:
-    if state.compare:
-        return replace(state, message=f"the coefficients are those of {state.compare.name}, and no method's")
-    return replace(state, method=_after(state.method, METHODS))
+def next_method(state: State) -> State:
+    if state.recipe.compare:
+        return changed(state, message=f"the coefficients are those of {state.recipe.compare.name}, and no method's")
+    return changed(state, method=_after(state.recipe.method, METHODS))
 
 
 def scale_samples(factor: float) -> Action:
-    def action(state: ViewState) -> ViewState:
-        if state.method == "best":
-            return replace(state, message="no samples are drawn in this light's best way: M changes the method")
-        return replace(
-            state, samples=int(min(max(state.samples * factor, MIN_SAMPLES), max(state.samples, MAX_KEY_SAMPLES)))
+    def action(state: State) -> State:
+        if state.recipe.method == "best":
+            return changed(state, message="no samples are drawn in this light's best way: M changes the method")
+        return changed(
+            state,
+            samples=int(
+                min(max(state.recipe.samples * factor, MIN_SAMPLES), max(state.recipe.samples, MAX_KEY_SAMPLES))
+            ),
         )
 
     return action
 
 
 def expose(step: float) -> Action:
-    def action(state: ViewState) -> ViewState:
-        return replace(state, exposure_offset=min(max(state.exposure_offset + step, -MAX_EXPOSURE), MAX_EXPOSURE))
+    def action(state: State) -> State:
+        return changed(state, exposure_offset=min(max(state.view.exposure_offset + step, -MAX_EXPOSURE), MAX_EXPOSURE))
 
     return action
 
 
-def auto_exposure(state: ViewState) -> ViewState:
-    return replace(state, exposure_stops=None, exposure_offset=0.0)
+def auto_exposure(state: State) -> State:
+    return changed(state, exposure_stops=None, exposure_offset=0.0)
 
 
-def next_tone(state: ViewState) -> ViewState:
-    return replace(state, tone=_after(state.tone, TONES))
+def next_tone(state: State) -> State:
+    return changed(state, tone=_after(state.view.tone, TONES))
 
 
-def next_error(state: ViewState) -> ViewState:
-    return replace(state, error=_after(state.error, ERRORS))
+def next_error(state: State) -> State:
+    return changed(state, error=_after(state.view.error, ERRORS))
 
 
 def toggle_sheet(sheet: str) -> Action:
     """Show that sheet over the spheres instead of any other, or take it away."""
-    return lambda state: replace(state, sheet="" if state.sheet == sheet else sheet)
+    return lambda state: changed(state, sheet="" if state.view.sheet == sheet else sheet)
 
 
-def toggle_lobe_view(state: ViewState) -> ViewState:
+def toggle_lobe_view(state: State) -> State:
     """Surfaces of the light and its reconstruction, or spheres again."""
-    return replace(state, lobe_view=not state.lobe_view, basis=None)
+    return changed(state, lobe_view=not state.view.lobe_view, basis=None)
 
 
 def step_basis(step: int) -> Action:
     """Through the functions Y(l, m) of the bands in use, in the order of their coefficients, and none of them."""
 
-    def action(state: ViewState) -> ViewState:
-        count = state.n_bands**2
-        at = count if state.basis is None else index(*state.basis)
+    def action(state: State) -> State:
+        count = state.recipe.n_bands**2
+        at = count if state.view.basis is None else index(*state.view.basis)
         at = (at + step) % (count + 1)
-        return replace(state, lobe_view=True, basis=None if at == count else degree_order(at))
+        return changed(state, lobe_view=True, basis=None if at == count else degree_order(at))
 
     return action
 
 
-def toggle_sweep(state: ViewState) -> ViewState:
+def toggle_sweep(state: State) -> State:
     """Go through the band counts from 1 to the present one; where that is 1, to those that the bars show. Or stop."""
-    if state.sweep_to is not None:
-        return replace(state, sweep_to=None)
-    to = state.n_bands if state.n_bands > 1 else SWEEP_BANDS
-    return replace(with_bands(state, 1), sweep_to=to)
+    if state.view.sweep_to is not None:
+        return changed(state, sweep_to=None)
+    to = state.recipe.n_bands if state.recipe.n_bands > 1 else SWEEP_BANDS
+    return changed(with_bands(state, 1), sweep_to=to)
 
 
-def step_sweep(state: ViewState) -> ViewState:
+def step_sweep(state: State) -> State:
     """One band more; the last one ends the sweep."""
-    if state.sweep_to is None:
+    if state.view.sweep_to is None:
         return state
-    stepped = with_bands(replace(state, message=""), state.n_bands + 1)
-    going_on = state.n_bands < stepped.n_bands < state.sweep_to
-    return replace(stepped, sweep_to=state.sweep_to if going_on else None)
+    stepped = with_bands(changed(state, message=""), state.recipe.n_bands + 1)
+    going_on = state.recipe.n_bands < stepped.recipe.n_bands < state.view.sweep_to
+    return changed(stepped, sweep_to=state.view.sweep_to if going_on else None)
 
 
-def reset(state: ViewState) -> ViewState:
-    """Everything but the light and the window as it was at the start."""
-    return ViewState(
-        lights=state.lights,
-        light_index=state.light_index,
-        reading=state.reading,
-        compare=state.compare,
-        reloads=state.reloads,
-        fullscreen=state.fullscreen,
-        screenshots=state.screenshots,
-        fits=state.fits,
-        looks=state.looks,
-        layout_tried=state.layout_tried,
-        tolerance=state.tolerance,
-        evaluate=state.evaluate,
-    )
+def reset(state: State) -> State:
+    """Everything but the light, how it is read and what is asked of its numbers as it was at the start."""
+    last, view = state.recipe, state.view
+    recipe = Recipe(light=last.light, reading=last.reading, compare=last.compare, tolerance=last.tolerance)
+    return changed(state, recipe=recipe, view=View(evaluate=view.evaluate, layout_tried=view.layout_tried))
 
 
-def reload(state: ViewState) -> ViewState:
-    """Read the light's file anew and keep every other setting."""
-    return replace(state, reloads=state.reloads + 1)
-
-
-def escape(state: ViewState) -> ViewState:
+def escape(state: State) -> State | Command:
     """Close the help, or else the sheet over the spheres, or else stop the sweep, or else close the window."""
-    if state.help_visible:
-        return replace(state, help_visible=False)
-    if state.sheet:
-        return replace(state, sheet="")
-    return replace(state, closing=True) if state.sweep_to is None else replace(state, sweep_to=None)
+    if state.view.help_visible:
+        return changed(state, help_visible=False)
+    if state.view.sheet:
+        return changed(state, sheet="")
+    return Command.CLOSE if state.view.sweep_to is None else changed(state, sweep_to=None)
 
 
-def orbit(state: ViewState, right: float, up: float) -> ViewState:
+def orbit(state: State, right: float, up: float) -> State:
     """Turn all spheres as if their front was dragged, in radii of a sphere."""
-    azimuth, elevation = state.camera
+    azimuth, elevation = state.view.camera
     azimuth = (azimuth - right * 180 / math.pi) % 360
     elevation = min(max(elevation - up * 180 / math.pi, -90.0), 90.0)
-    return replace(state, camera=(azimuth, elevation))
+    return changed(state, camera=(azimuth, elevation))
 
 
-def rotate_light(state: ViewState, right: float, up: float) -> ViewState:
+def rotate_light(state: State, right: float, up: float) -> State:
     """Turn the light as if the front of a sphere was dragged, in radii of a sphere."""
-    return replace(state, light_rotation=turned_by_drag(state.light_rotation, state.camera, right, up))
+    return changed(state, light_rotation=turned_by_drag(state.view.light_rotation, state.view.camera, right, up))
 
 
-def zoom(state: ViewState, steps: float) -> ViewState:
+def zoom(state: State, steps: float) -> State:
     low, high = ZOOM_RANGE
-    return replace(state, zoom=min(max(state.zoom * 1.1**steps, low), high))
+    return changed(state, zoom=min(max(state.view.zoom * 1.1**steps, low), high))
 
 
-def open_light(state: ViewState, light: str | Light) -> ViewState:
+def open_light(state: State, light: str | Light) -> State:
     """Show `light`, adding it to those that Left and Right go through."""
     lights = state.lights if light in state.lights else (*state.lights, light)
-    return replace(state, lights=lights, light_index=lights.index(light), layout_tried="", message="")
+    return changed(state, lights=lights, light=light, layout_tried="", message="")
 
 
 def _after(present: str, choices: tuple[str, ...]) -> str:

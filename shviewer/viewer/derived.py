@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import error_grid, grid_rows, reconstruct
 from shviewer.analysis.projections import BEST, Projection, project
+from shviewer.analysis.recipe import Shown
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes import DISPLAY_ROUNDS, at_directions, climb
 from shviewer.harmonics.quadrature import directions_from_angles
@@ -15,7 +16,6 @@ from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 from shviewer.limits import DIMMEST
 from shviewer.viewer.error_scale import NOISE, ErrorScale, automatic_range, error_values
-from shviewer.viewer.state import ViewState
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
     Surface,
@@ -26,7 +26,8 @@ from shviewer.viewer.surface import (
     sample_reconstruction,
     surface,
 )
-from shviewer.viewer.tone import TONES, exposed_for
+from shviewer.viewer.tone import exposed_for
+from shviewer.viewer.view import TONES, View
 
 WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
@@ -37,46 +38,42 @@ WHITE_LEVEL = 0.8
 SURFACE_RADIUS = 222.0
 """Pixels at zoom 1 for which surfaces are made fine enough: those of the 1280 x 640 design."""
 
-Shape = tuple[int, tuple[int, ...], str, float | None]
-"""What of a projection is shown: bands, those muted, the window and its width."""
 
-
-def exposure_stops(state: ViewState, light: Light) -> float:
+def exposure_stops(view: View, light: Light) -> float:
     """The exposure in use: fixed by the state, or such that 99 % of the original stays just below white."""
-    base = _automatic_exposure(light, state.tone) if state.exposure_stops is None else state.exposure_stops
-    return base + state.exposure_offset
+    base = _automatic_exposure(light, view.tone) if view.exposure_stops is None else view.exposure_stops
+    return base + view.exposure_offset
 
 
-def surfaces(state: ViewState, light: Light, projection: Projection, shape: Shape) -> tuple[Surface, ...]:
+def surfaces(view: View, light: Light, projection: Projection, shown: Shown) -> tuple[Surface, ...]:
     """Of the light, its reconstruction or a basis function in place of it, and their difference."""
-    radius = SURFACE_RADIUS * state.zoom
+    radius = SURFACE_RADIUS * view.zoom
     original, reconstruction, error = _compared_surfaces(
-        light, projection, shape, max(LIGHT_ROWS, rows_for(state.n_bands, radius))
+        light, projection, shown, max(LIGHT_ROWS, rows_for(shown.n_bands, radius))
     )
-    if state.basis is not None:
-        l, m = state.basis
+    if view.basis is not None:
+        l, m = view.basis
         reconstruction = basis_surface(l, m, rows_for(l + 1, radius))
-    return (original, reconstruction, error)[: state.n_spheres]
+    return (original, reconstruction, error)[: view.n_spheres]
 
 
 @remember(most=2)
 def reconstruction_map(
-    light: Light, projection: Projection, shape: Shape, size: tuple[int, int]
+    light: Light, projection: Projection, shown: Shown, size: tuple[int, int]
 ) -> NDArray[np.float32]:
     """Of rows and columns `size`: spline coefficients (rows, columns, 4)."""
-    shown, _ = reconstruct(light, projection, *shape)
-    return Synthesis(shown).spline_map(*size)
+    return Synthesis(reconstruct(light, projection, shown)[0]).spline_map(*size)
 
 
 @remember(most=4)
 def _compared_surfaces(
     light: Light,
     projection: Projection,
-    shape: Shape,
+    shown: Shown,
     rows: int,
 ) -> tuple[Surface, Surface, Surface]:
-    shown, _ = reconstruct(light, projection, *shape)
-    original, reconstruction = sample_light(light, rows), sample_reconstruction(shown, rows)
+    coefficients = reconstruct(light, projection, shown)[0]
+    original, reconstruction = sample_light(light, rows), sample_reconstruction(coefficients, rows)
     scale = common_scale(original, reconstruction)
     values = original, reconstruction, reconstruction - original
     return surface(values[0], scale), surface(values[1], scale), surface(values[2], scale)
@@ -86,17 +83,17 @@ def _compared_surfaces(
 def error_scale(
     light: Light,
     projection: Projection,
-    shape: Shape,
+    shown: Shown,
     kind: str,
 ) -> ErrorScale:
     """From the grid on which the figures are found; the largest relative error, which is no figure, is climbed to there.
 
     The floor of the relative error is the light's mean.
     """
-    shown, figures = reconstruct(light, projection, *shape)
+    coefficients, figures = reconstruct(light, projection, shown)
     exact = project(light, *BEST, projection.n_bands).coefficients
     floor = max(float(np.abs(exact[0]).mean()) / (2 * np.sqrt(np.pi)), DIMMEST)
-    grid, synthesis = error_grid(light, grid_rows(shape[0])), Synthesis(shown)
+    grid, synthesis = error_grid(light, grid_rows(shown.n_bands)), Synthesis(coefficients)
     values = synthesis.on_rows(grid.theta, len(grid.phi))
     original, reconstruction = (part.transpose(0, 2, 1).reshape(-1, 3) for part in (grid.original, values))
     errors = error_values(kind, original, reconstruction, floor)

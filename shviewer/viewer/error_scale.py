@@ -13,9 +13,6 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array
 
-ERRORS = ("off", "signed", "absolute", "relative")
-"""What the third sphere shows, if there is one."""
-
 QUIET, SPIKE = 0.95, 2.5
 """The colours end at SPIKE times what this share of the sphere stays below: beyond, an error leaves no colours to the rest."""
 

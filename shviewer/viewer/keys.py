@@ -6,12 +6,14 @@ Keys are names ("PageUp", "Shift+3"), so nothing here needs a window; viewer/win
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
+from shviewer.analysis.recipe import light_name
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.actions import (
+    EXPOSURE_STEP,
     Action,
+    Command,
     auto_exposure,
     escape,
     expose,
@@ -24,7 +26,6 @@ from shviewer.viewer.actions import (
     next_quantity,
     next_tone,
     next_window,
-    reload,
     reset,
     scale_samples,
     solo_band,
@@ -38,16 +39,8 @@ from shviewer.viewer.actions import (
     toggle_sweep,
     with_bands,
 )
-from shviewer.viewer.state import (
-    CAMERA_HOME,
-    EXPOSURE_STEP,
-    ViewState,
-    describe_basis,
-    describe_exposure,
-    describe_muted,
-    describe_sanitizing,
-    light_name,
-)
+from shviewer.viewer.state import State, changed, describe_basis, describe_exposure, describe_muted, describe_sanitizing
+from shviewer.viewer.view import CAMERA_HOME
 
 
 class Binding(NamedTuple):
@@ -56,8 +49,8 @@ class Binding(NamedTuple):
     label: str
     group: str
     help: str
-    actions: Mapping[str, Action]
-    value: Callable[[ViewState], str] = lambda state: ""
+    actions: Mapping[str, Action | Command | Callable[[State], State | Command]]
+    value: Callable[[State], str] = lambda state: ""
 
 
 DIGITS = tuple("0123456789")
@@ -69,7 +62,7 @@ BINDINGS = (
         BANDS,
         "one band more, one fewer",
         {"Up": more_bands(1), "Down": more_bands(-1)},
-        lambda s: f"{s.n_bands}",
+        lambda s: f"{s.recipe.n_bands}",
     ),
     Binding(
         "PageUp / PageDown", BANDS, "four bands more, four fewer", {"PageUp": more_bands(4), "PageDown": more_bands(-4)}
@@ -85,7 +78,7 @@ BINDINGS = (
         BANDS,
         "mute or unmute that band",
         {digit: lambda s, band=int(digit): toggle_band(s, band) for digit in DIGITS},  # type: ignore[misc]
-        lambda s: describe_muted(s) or "none muted",
+        lambda s: describe_muted(s.recipe) or "none muted",
     ),
     Binding(
         "Shift+0-9",
@@ -98,69 +91,75 @@ BINDINGS = (
         BANDS,
         "cursor to the band before, after",
         {",": move_cursor(-1), ".": move_cursor(1)},
-        lambda s: f"band {s.cursor}",
+        lambda s: f"band {s.view.cursor}",
     ),
     Binding("Enter / click", BANDS, "mute or unmute the band there", {"Enter": toggle_cursor}),
     Binding(
         "T",
         BANDS,
         "as many as the tolerance needs",
-        {"T": lambda s: replace(s, fits=s.fits + 1)},
-        lambda s: f"{100 * s.tolerance:g} %",
+        {"T": Command.FIT},
+        lambda s: f"{100 * s.recipe.tolerance:g} %",
     ),
-    Binding("W", BANDS, "window against ringing", {"W": next_window}, lambda s: s.window),
-    Binding("A", BANDS, "all bands on", {"A": lambda s: replace(s, muted=frozenset())}),
+    Binding("W", BANDS, "window against ringing", {"W": next_window}, lambda s: s.recipe.window),
+    Binding("A", BANDS, "all bands on", {"A": lambda s: changed(s, muted=frozenset())}),
     Binding(
         "Space",
         BANDS,
         "sweep from 1 band, stop",
         {"Space": toggle_sweep},
-        lambda s: "" if s.sweep_to is None else f"to {s.sweep_to}",
+        lambda s: "" if s.view.sweep_to is None else f"to {s.view.sweep_to}",
     ),
     Binding(
         "Left / Right",
         LIGHT,
         "light before, after",
         {"Left": next_light(-1), "Right": next_light(1)},
-        lambda s: light_name(s.light),
+        lambda s: light_name(s.recipe.light),
     ),
-    Binding("I", LIGHT, "radiance or irradiance", {"I": next_quantity}, lambda s: s.quantity),
-    Binding("U", LIGHT, "sun as a disc of its own", {"U": toggle_split}, lambda s: "split" if s.split_sun else "whole"),
-    Binding("M", LIGHT, "projection method", {"M": next_method}, lambda s: s.method),
+    Binding("I", LIGHT, "radiance or irradiance", {"I": next_quantity}, lambda s: s.recipe.quantity),
+    Binding(
+        "U",
+        LIGHT,
+        "sun as a disc of its own",
+        {"U": toggle_split},
+        lambda s: "split" if s.recipe.split_sun else "whole",
+    ),
+    Binding("M", LIGHT, "projection method", {"M": next_method}, lambda s: s.recipe.method),
     Binding(
         "S / Shift+S",
         LIGHT,
         "samples x 4, / 4",
         {"S": scale_samples(4), "Shift+S": scale_samples(0.25)},
-        lambda s: f"{s.samples}",
+        lambda s: f"{s.recipe.samples}",
     ),
-    Binding("Ctrl+R / F5", LIGHT, "read its file again", dict.fromkeys(("Ctrl+R", "F5"), reload)),
-    Binding("L", LIGHT, "next layout of an image", {"L": next_layout}, lambda s: s.reading.layout),
-    Binding("Z", LIGHT, "repair bad values or not", {"Z": toggle_sanitizing}, describe_sanitizing),
+    Binding("Ctrl+R / F5", LIGHT, "read its file again", dict.fromkeys(("Ctrl+R", "F5"), Command.RELOAD)),
+    Binding("L", LIGHT, "next layout of an image", {"L": next_layout}, lambda s: s.recipe.reading.layout),
+    Binding("Z", LIGHT, "repair bad values or not", {"Z": toggle_sanitizing}, lambda s: describe_sanitizing(s.recipe)),
     Binding("Shift+drag", LIGHT, "turn the light", {}),
     Binding("drop a file", LIGHT, "open it", {}),
-    Binding("D", ERROR, "third sphere: the error", {"D": next_error}, lambda s: s.error),
+    Binding("D", ERROR, "third sphere: the error", {"D": next_error}, lambda s: s.view.error),
     Binding(
         "X",
         ERROR,
         "mark minimum, largest error",
-        {"X": lambda s: replace(s, marks=not s.marks)},
-        lambda s: "marked" if s.marks else "not marked",
+        {"X": lambda s: changed(s, marks=not s.view.marks)},
+        lambda s: "marked" if s.view.marks else "not marked",
     ),
-    Binding("Y", ERROR, "look at the next mark", {"Y": lambda s: replace(s, looks=s.looks + 1)}),
+    Binding("Y", ERROR, "look at the next mark", {"Y": Command.FACE_MARK}),
     Binding(
         "G",
         ERROR,
         "error against bands",
         {"G": toggle_sheet("convergence")},
-        lambda s: "shown" if s.sheet == "convergence" else "hidden",
+        lambda s: "shown" if s.view.sheet == "convergence" else "hidden",
     ),
     Binding(
         "B",
         ERROR,
         "time against error so far",
         {"B": toggle_sheet("plane")},
-        lambda s: "shown" if s.sheet == "plane" else "hidden",
+        lambda s: "shown" if s.view.sheet == "plane" else "hidden",
     ),
     Binding("mouse over", ERROR, "values in that direction", {}),
     Binding(
@@ -168,48 +167,56 @@ BINDINGS = (
         PICTURE,
         "half a stop brighter, darker",
         {"E": expose(EXPOSURE_STEP), "Shift+E": expose(-EXPOSURE_STEP)},
-        describe_exposure,
+        lambda s: describe_exposure(s.view),
     ),
     Binding("N", PICTURE, "exposure from the light", {"N": auto_exposure}),
-    Binding("O", PICTURE, "tone curve", {"O": next_tone}, lambda s: s.tone),
+    Binding("O", PICTURE, "tone curve", {"O": next_tone}, lambda s: s.view.tone),
     Binding(
         "V",
         PICTURE,
         "surfaces: radius is magnitude",
         {"V": toggle_lobe_view},
-        lambda s: "surfaces" if s.lobe_view else "spheres",
+        lambda s: "surfaces" if s.view.lobe_view else "spheres",
     ),
     Binding(
         "Tab / Shift+Tab",
         PICTURE,
         "basis function after, before",
         {"Tab": step_basis(1), "Shift+Tab": step_basis(-1)},
-        lambda s: describe_basis(s) or "none",
+        lambda s: describe_basis(s.view) or "none",
     ),
-    Binding("drag", PICTURE, "turn the spheres", {}, lambda s: f"{s.camera[0]:z.0f}, {s.camera[1]:z.0f} deg"),
-    Binding("scroll", PICTURE, "zoom", {}, lambda s: f"{s.zoom:.2f} x"),
-    Binding("F", PICTURE, "camera back", {"F": lambda s: replace(s, camera=CAMERA_HOME, zoom=1.0)}),
+    Binding("drag", PICTURE, "turn the spheres", {}, lambda s: f"{s.view.camera[0]:z.0f}, {s.view.camera[1]:z.0f} deg"),
+    Binding("scroll", PICTURE, "zoom", {}, lambda s: f"{s.view.zoom:.2f} x"),
+    Binding("F", PICTURE, "camera back", {"F": lambda s: changed(s, camera=CAMERA_HOME, zoom=1.0)}),
     Binding("R", PICTURE, "reset all but the light", {"R": reset}),
     Binding(
         "P / Ctrl+S",
         PROGRAM,
         "save this picture",
-        dict.fromkeys(("P", "Ctrl+S"), lambda s: replace(s, screenshots=s.screenshots + 1)),
+        dict.fromkeys(("P", "Ctrl+S"), Command.SAVE),
     ),
-    Binding("F11", PROGRAM, "full screen", {"F11": lambda s: replace(s, fullscreen=not s.fullscreen)}),
+    Binding("F11", PROGRAM, "full screen", {"F11": Command.FULL_SCREEN}),
     Binding(
-        "H / ?", PROGRAM, "this help", dict.fromkeys(("H", "?"), lambda s: replace(s, help_visible=not s.help_visible))
+        "H / ?",
+        PROGRAM,
+        "this help",
+        dict.fromkeys(("H", "?"), lambda s: changed(s, help_visible=not s.view.help_visible)),
     ),
     Binding("Esc", PROGRAM, "close what is open, then quit", {"Esc": escape}),
 )
 
-ACTIONS: Mapping[str, Action] = {key: action for binding in BINDINGS for key, action in binding.actions.items()}
+ACTIONS = {key: action for binding in BINDINGS for key, action in binding.actions.items()}
 
 
-def press(state: ViewState, key: str) -> ViewState:
-    """The state after `key`; a key without a binding changes nothing. Any bound key takes a message away."""
+def press(state: State, key: str) -> State | Command:
+    """The state after `key`, or what the key asks the session for; a key without a binding changes nothing.
+
+    Any bound key takes a message away.
+    """
     action = ACTIONS.get(key)
-    return state if action is None else action(replace(state, message=""))
+    if action is None:
+        return state
+    return action if isinstance(action, Command) else action(changed(state, message=""))
 
 
 def key_table() -> str:

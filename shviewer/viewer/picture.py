@@ -8,21 +8,21 @@ from typing import NamedTuple
 import numpy as np
 
 from shviewer.analysis.comparison import verdict
-from shviewer.analysis.figures import Figures, Needs, error_grid, grid_rows, needs, reconstruct
-from shviewer.analysis.projections import Projection, project, sampling_of
-from shviewer.analysis.subjects import Subject, subject
+from shviewer.analysis.figures import Figures, Needs, needs
+from shviewer.analysis.projections import Projection
+from shviewer.analysis.reconstruction import reconstruction_of
+from shviewer.analysis.subjects import Subject
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import Lobe, LobeLight
-from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, check_radiance
+from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
 from shviewer.viewer.error_scale import ErrorScale
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State
 from shviewer.viewer.tone import steepest
-from shviewer.viewer.view_limits import check
 
 
 class Source(NamedTuple):
@@ -36,7 +36,7 @@ class Source(NamedTuple):
 class Picture:
     """What the GPU and the overlay need for one state."""
 
-    state: ViewState
+    state: State
     subject: Subject
     """What is shown on the left, what is projected, and the suns that were split off."""
     original: Source
@@ -68,55 +68,51 @@ class Picture:
 
     def rest_at(self, directions: Array) -> Array:
         """What the coefficients give in unit directions of the light (k, 3), without suns: (k, 3) float64."""
-        return np.asarray(evaluate_basis(directions, self.state.n_bands) @ self.coefficients)
+        return np.asarray(evaluate_basis(directions, self.state.recipe.n_bands) @ self.coefficients)
 
     def suns_at(self, directions: Array) -> Array:
         """The suns that are drawn on top of it, (k, 3)."""
         return LobeLight(self.suns).radiance(directions) if self.suns else np.zeros((len(directions), 3))
 
 
-def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
+def prepare(state: State, *, by_map: bool = False) -> Picture:
     """Everything to be drawn and said. LightError if the light cannot be read, UsageError for a state out of range.
 
     by_map: draw the reconstruction from a map of it, although it could be summed per pixel.
     """
-    check(state)
-    shown = subject(state)
-    light, whole = shown.light, shown.whole
-    projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
-    projection = project(light, *sampling_of(state), projected)
-    check_radiance(error_grid(whole, grid_rows(1)).peak, light.name)
-    shape = state.n_bands, state.muted_shown, state.window, state.window_width
-    coefficients, figures = reconstruct(light, projection, *shape)
-    scale = None if state.error == "off" else error_scale(light, projection, shape, state.error)
-    if scale is not None and state.error_range is not None:
-        scale = replace(scale, end=state.error_range)
-    stops = exposure_stops(state, whole)
+    state.check()
+    recipe, view = state.recipe, state.view
+    found = reconstruction_of(recipe)
+    light, whole, projection = found.subject.light, found.subject.whole, found.projection
+    scale = None if view.error == "off" else error_scale(light, projection, recipe.shown, view.error)
+    if scale is not None and view.error_range is not None:
+        scale = replace(scale, end=view.error_range)
+    stops = exposure_stops(view, whole)
     drawn: Drawn
-    if state.lobe_view:
-        drawn = Surfaces(surfaces(state, light, projection, shape))
-    elif by_map or state.evaluate == "map" or state.n_bands > MAX_DIRECT_BANDS:
-        size = map_size(state.n_bands, _height(figures, scale, 2.0**stops * steepest(state.tone)))
-        drawn = SplineMap(reconstruction_map(light, projection, shape, size))
+    if view.lobe_view:
+        drawn = Surfaces(surfaces(view, light, projection, recipe.shown))
+    elif by_map or view.evaluate == "map" or recipe.n_bands > MAX_DIRECT_BANDS:
+        size = map_size(recipe.n_bands, _height(found.figures, scale, 2.0**stops * steepest(view.tone)))
+        drawn = SplineMap(reconstruction_map(light, projection, recipe.shown, size))
     else:
-        drawn = DirectSum(coefficients)
+        drawn = DirectSum(found.coefficients)
     return Picture(
         state=state,
-        subject=shown,
+        subject=found.subject,
         original=_source(whole),
         compared=_source(light),
-        suns=_sun_lobes(shown, state.quantity),
-        coefficients=coefficients,
+        suns=_sun_lobes(found.subject, recipe.quantity),
+        coefficients=found.coefficients,
         drawn=drawn,
-        world_from_view=camera.world_from_view(*state.camera),
-        light_from_world=camera.light_from_world(state.light_rotation),
+        world_from_view=camera.world_from_view(*view.camera),
+        light_from_world=camera.light_from_world(view.light_rotation),
         exposure_stops=stops,
         error_scale=scale,
         projection=projection,
-        figures=figures,
-        needs=needs(state),
-        needs_unsplit=needs(replace(state, split_sun=False)) if shown.suns else None,
-        verdict=verdict(light, state.compare) if state.compare else "",
+        figures=found.figures,
+        needs=needs(recipe),
+        needs_unsplit=needs(replace(recipe, split_sun=False)) if found.subject.suns else None,
+        verdict=verdict(light, recipe.compare) if recipe.compare else "",
     )
 
 

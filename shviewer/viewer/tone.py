@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 
-TONES = ("none", "reinhard", "aces", "log")
-
 ACES = (2.51, 0.03, 2.43, 0.59, 0.14)
 """x (a x + b) / (x (c x + d) + e): a fit to the filmic curve of the Academy Color Encoding System.
 

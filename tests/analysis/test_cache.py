@@ -17,6 +17,8 @@ from lights.images.hdr_files import hdr_file, random_texels
 from shviewer.analysis import figures as analysis
 from shviewer.analysis import projections
 from shviewer.analysis.cache import MEMORY, MOST_LIGHTS, Memory, Remembered, array_bytes, remember
+from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import keep_light, load_light, read_again, version_read
 from shviewer.errors import LightError
 from shviewer.lights.environment import EnvironmentLight
@@ -24,8 +26,6 @@ from shviewer.lights.find import built_in_lights, file_version, find_light
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
-from shviewer.viewer.picture import prepare
-from shviewer.viewer.state import ViewState
 
 pytestmark = pytest.mark.usefixtures("fresh_memory")
 
@@ -37,8 +37,8 @@ def image(tmp_path: Path) -> Path:
     return path
 
 
-def state_of(path: Path, **changes: object) -> ViewState:
-    return ViewState(lights=(str(path),), **changes)  # type: ignore[arg-type]
+def recipe_of(path: Path | str, **changes: object) -> Recipe:
+    return Recipe(str(path), **changes)  # type: ignore[arg-type]
 
 
 class Counting:
@@ -134,11 +134,11 @@ def test_every_array_is_counted_once_wherever_it_is() -> None:
 
 
 def test_the_bytes_of_an_image_and_of_its_figures_are_found(image: Path) -> None:
-    picture = prepare(state_of(image))
-    assert isinstance(picture.light, EnvironmentLight)
-    grid = analysis.error_grid(picture.light, 96)
-    assert array_bytes(picture.light) >= picture.light.map.texels.nbytes
-    assert array_bytes(grid, picture.light) >= grid.original.nbytes + picture.light.map.texels.nbytes
+    light = reconstruction_of(recipe_of(image)).subject.light
+    assert isinstance(light, EnvironmentLight)
+    grid = analysis.error_grid(light, 96)
+    assert array_bytes(light) >= light.map.texels.nbytes
+    assert array_bytes(grid, light) >= grid.original.nbytes + light.map.texels.nbytes
 
 
 def test_all_built_in_lights_are_remembered_together() -> None:
@@ -154,8 +154,8 @@ def test_of_sixty_images_the_oldest_are_gone_without_waiting_for_the_collector(t
             path = tmp_path / f"{number}.hdr"
             path.write_bytes(hdr_file(random_texels(4, 8, seed=number)))
             for quantity in ("radiance", "irradiance"):
-                picture = prepare(state_of(path, quantity=quantity, n_bands=3))
-            light = load_light(state_of(path))
+                picture = reconstruction_of(recipe_of(path, quantity=quantity, n_bands=3))
+            light = load_light(recipe_of(path))
             lights.append(weakref.ref(light))
             texels.append(weakref.ref(light.radiance_map()))
             del picture, light
@@ -170,22 +170,24 @@ def test_of_sixty_images_the_oldest_are_gone_without_waiting_for_the_collector(t
 
 
 def test_a_file_is_read_once_until_it_is_asked_for_again(image: Path) -> None:
-    state = state_of(image)
-    first = load_light(state)
+    recipe = recipe_of(image)
+    first = load_light(recipe)
     image.write_bytes(hdr_file(random_texels(8, 16, seed=1)))
-    assert load_light(state) is first
-    second = read_again(state)
+    assert load_light(recipe) is first
+    second = read_again(recipe)
     assert second is not first
-    assert load_light(state) is second
+    assert load_light(recipe) is second
     assert not np.array_equal(first.coefficients(2), second.coefficients(2))
 
 
 def test_reading_again_leaves_nothing_of_the_light_before(image: Path) -> None:
-    state = state_of(image)
+    recipe = recipe_of(image)
     for quantity in ("radiance", "irradiance"):
-        prepare(replace(state, quantity=quantity, n_bands=33))  # above 32 bands with a map of the reconstruction
-    before = weakref.ref(load_light(state))
-    read_again(state)
+        reconstruction_of(
+            replace(recipe, quantity=quantity, n_bands=33)
+        )  # above 32 bands with a map of the reconstruction
+    before = weakref.ref(load_light(recipe))
+    read_again(recipe)
     assert before() is None
 
 
@@ -195,32 +197,32 @@ def test_a_functions_file_is_executed_again_at_the_same_size_within_the_same_sec
     """Python's own cache of compiled files would take the second for the first."""
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     path = tmp_path / "my.py"
-    state = ViewState(lights=(f"{path}:sky",))
+    recipe = recipe_of(f"{path}:sky")
     for level in (1, 3):
         path.write_text(f"def sky(directions):\n    return {level} + 0 * directions\n")
         os.utime(path, (1_700_000_000, 1_700_000_000))
-        assert read_again(state).radiance(np.eye(3))[0, 0] == level
+        assert read_again(recipe).radiance(np.eye(3))[0, 0] == level
     assert [file.name for file in tmp_path.iterdir()] == ["my.py"]
 
 
 def test_a_file_that_has_become_unreadable_leaves_what_is_known(image: Path) -> None:
-    state = state_of(image)
-    light, read = load_light(state), version_read(state)
+    recipe = recipe_of(image)
+    light, read = load_light(recipe), version_read(recipe)
     results = projections.project(light, "best", 0, 0, 32)
     image.write_bytes(b"#?RADIANCE\n")
     with pytest.raises(LightError, match=r"image\.hdr"):
-        read_again(state)
-    assert load_light(state) is light
+        read_again(recipe)
+    assert load_light(recipe) is light
     assert projections.project(light, "best", 0, 0, 32) is results
-    assert version_read(state) == read != file_version(str(image))
+    assert version_read(recipe) == read != file_version(str(image))
 
 
 def test_a_light_can_be_kept_although_its_file_says_otherwise(image: Path) -> None:
-    state = state_of(image)
-    light = load_light(state)
-    read_again(state)
-    keep_light(state, load_light(replace(state_of(image), lights=(light,), quantity="irradiance")))
-    assert load_light(state) is light
+    recipe = recipe_of(image)
+    light = load_light(recipe)
+    read_again(recipe)
+    keep_light(recipe, load_light(Recipe(light, quantity="irradiance")))
+    assert load_light(recipe) is light
 
 
 def test_the_stamp_is_that_of_the_file_before_it_was_read(image: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -232,18 +234,18 @@ def test_the_stamp_is_that_of_the_file_before_it_was_read(image: Path, monkeypat
         return light
 
     monkeypatch.setattr("shviewer.analysis.subjects.find_light", find_and_change)
-    state = state_of(image)
-    assert version_read(state) is None
-    load_light(state)
-    assert version_read(state) == before != file_version(str(image))
+    recipe = recipe_of(image)
+    assert version_read(recipe) is None
+    load_light(recipe)
+    assert version_read(recipe) == before != file_version(str(image))
 
 
 def test_a_light_without_a_file_is_what_it_is() -> None:
     light = find_light("green")
-    state = ViewState(lights=(light,))
-    assert read_again(state) is light
-    keep_light(state, light)
-    assert version_read(state) is None
+    recipe = recipe_of(light)
+    assert read_again(recipe) is light
+    keep_light(recipe, light)
+    assert version_read(recipe) is None
 
 
 def test_only_files_of_ones_own_are_decoded_in_isolation(image: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -255,8 +257,8 @@ def test_only_files_of_ones_own_are_decoded_in_isolation(image: Path, monkeypatc
 
     monkeypatch.setattr("shviewer.analysis.subjects.find_light", find)
     for text in ("film_studio", str(image)):
-        load_light(ViewState(lights=(text,), reading=Reading(isolated=True)))
-        load_light(ViewState(lights=(text,)))  # isolation makes no other light of it
+        load_light(recipe_of(text, reading=Reading(isolated=True)))
+        load_light(recipe_of(text))  # isolation makes no other light of it
     assert asked == [("film_studio", False), (str(image), True)]
 
 
@@ -266,12 +268,15 @@ def test_what_is_left_without_suns_belongs_to_its_light(tmp_path: Path, monkeypa
     pixels[10, 20] = 1e5
     path = tmp_path / "sun.exr"
     OpenEXR.File({}, {"RGB": pixels}).write(str(path))
-    state = state_of(path, split_sun=True)
-    first = prepare(state)
+    recipe = recipe_of(path, split_sun=True)
+    first = reconstruction_of(recipe)
     path.unlink()
     for n_bands in (6, 7):
-        assert prepare(replace(state, n_bands=n_bands)).subject.light is first.subject.light
-        assert prepare(replace(state, n_bands=n_bands, quantity="irradiance")).light.source is first.subject.light
+        assert reconstruction_of(replace(recipe, n_bands=n_bands)).subject.light is first.subject.light
+        assert (
+            reconstruction_of(replace(recipe, n_bands=n_bands, quantity="irradiance")).subject.light.source
+            is first.subject.light
+        )
     rest = weakref.ref(first.subject.light)
     MEMORY.forget(first.subject.whole)
     del first

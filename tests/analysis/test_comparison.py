@@ -15,6 +15,7 @@ from coefficients.peer_cases import spoiled
 
 from shviewer.analysis.compared_files import compared_with
 from shviewer.analysis.comparison import as_the_file_holds, caption, verdict
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
@@ -30,7 +31,8 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, state_of
+from shviewer.viewer.view import View
 
 
 @cache
@@ -43,13 +45,14 @@ def given(coefficients: Array, name: str = "theirs.txt") -> CoefficientLight:
 
 
 def compared(file: CoefficientLight, **changes: object) -> Picture:
-    state = ViewState(lights=(venice(),), compare=file, **changes)  # type: ignore[arg-type]
-    return prepare(as_the_file_holds(state, quantity="quantity" not in changes, bands="n_bands" not in changes))
+    recipe = Recipe(venice(), compare=file, **changes)  # type: ignore[arg-type]
+    recipe, said = as_the_file_holds(recipe, quantity="quantity" not in changes, bands="n_bands" not in changes)
+    return prepare(State(recipe, View(message=said), (recipe.light,)))
 
 
 def test_the_lights_own_coefficients_fit_and_have_its_own_figures() -> None:
     picture = compared(given(venice().coefficients(4)))
-    plain = prepare(ViewState(lights=(venice(),), n_bands=4))
+    plain = prepare(state_of(venice(), n_bands=4))
     np.testing.assert_allclose(picture.coefficients, plain.coefficients, rtol=0, atol=1e-14)
     assert picture.figures.relative_l2 == pytest.approx(plain.figures.relative_l2, rel=1e-9)
     assert picture.verdict == "theirs.txt agrees with the light's own to 0.0001 % over its 4 bands"
@@ -75,9 +78,9 @@ def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
     path.write_text(json.dumps(np.asarray(CONVENTIONS["unity"].from_ours(venice().coefficients(3))).tolist()))
     file = CoefficientLight.read(path, Reading(convention="unity"))
     picture = compared(file)
-    assert (picture.state.quantity, picture.state.n_bands) == ("irradiance", 3)
+    assert (picture.state.recipe.quantity, picture.state.recipe.n_bands) == ("irradiance", 3)
     assert picture.verdict == "probe agrees with the light's own to 0.0001 % over its 3 bands"
-    own = prepare(ViewState(lights=(venice(),), n_bands=3, quantity="irradiance"))
+    own = prepare(state_of(venice(), n_bands=3, quantity="irradiance"))
     np.testing.assert_allclose(picture.coefficients, own.coefficients, rtol=0, atol=1e-13)
     assert picture.figures.relative_l2 == pytest.approx(own.figures.relative_l2, rel=1e-9)
 
@@ -104,7 +107,7 @@ def test_another_programs_file_is_recognised_by_its_numbers(tmp_path: Path) -> N
         path.write_text(json.dumps(np.asarray(CONVENTIONS[name].from_ours(venice().coefficients(3))).tolist()))
         file = CoefficientLight.read(path, Reading(convention="shviewer"))
         for quantity in ("radiance", "irradiance"):
-            light = load_light(ViewState(lights=(venice(),), quantity=quantity))
+            light = load_light(Recipe(venice(), quantity=quantity))
             assert verdict(light, file).endswith(f"not at all if its numbers are in the convention of {name}")
 
 
@@ -118,24 +121,24 @@ def test_what_nothing_explains_is_said_to_be_so() -> None:
 def test_no_more_bands_are_shown_than_the_file_has() -> None:
     file = given(venice().coefficients(3))
     picture = compared(file, n_bands=9)
-    assert picture.state.n_bands == 3
-    assert picture.state.message == "theirs.txt has 3 bands"
+    assert picture.state.recipe.n_bands == 3
+    assert picture.state.view.message == "theirs.txt has 3 bands"
     more = with_bands(picture.state, 4)
-    assert (more.n_bands, more.message) == (3, "theirs.txt has 3 bands")
-    assert with_bands(picture.state, 2).n_bands == 2
+    assert (more.recipe.n_bands, more.view.message) == (3, "theirs.txt has 3 bands")
+    assert with_bands(picture.state, 2).recipe.n_bands == 2
 
 
 def test_keys_keep_the_comparison() -> None:
-    state = ViewState(lights=(venice(),), compare=given(venice().coefficients(3)), n_bands=3)
-    assert reset(state).compare is state.compare
-    assert "those of theirs.txt" in next_method(state).message
-    assert next_method(state).method == state.method
+    state = state_of(venice(), compare=given(venice().coefficients(3)), n_bands=3)
+    assert reset(state).recipe.compare is state.recipe.compare
+    assert "those of theirs.txt" in next_method(state).view.message
+    assert next_method(state).recipe.method == state.recipe.method
 
 
 def test_the_picture_says_whose_coefficients_they_are() -> None:
     picture = compared(given(spoiled(venice().coefficients(3), "phase")))
     overlay = draw_overlay(picture, compose(1280, 640, 1.0))
-    own = draw_overlay(prepare(ViewState(lights=(venice(),), n_bands=3)), compose(1280, 640, 1.0))
+    own = draw_overlay(prepare(state_of(venice(), n_bands=3)), compose(1280, 640, 1.0))
     longer, shorter = (sheet.boxes["reconstruction"] for sheet in (overlay, own))
     assert longer.right - longer.left > 1.2 * (shorter.right - shorter.left)
     assert "message" in overlay.boxes
@@ -146,8 +149,8 @@ def test_the_picture_says_whose_coefficients_they_are() -> None:
 
 def test_a_long_name_is_shortened_in_the_caption() -> None:
     file = given(venice().coefficients(1), "environment-of-the-second-courtyard-at-noon.json")
-    assert caption(ViewState(lights=(venice(),), compare=file)) == "environment...d-at-noon.json: "
-    assert caption(ViewState(lights=(venice(),), compare=given(venice().coefficients(1)))) == "theirs.txt: "
+    assert caption(Recipe(venice(), compare=file)) == "environment...d-at-noon.json: "
+    assert caption(Recipe(venice(), compare=given(venice().coefficients(1)))) == "theirs.txt: "
     assert "reconstruction" in draw_overlay(compared(file), compose(640, 320, 1.0)).boxes
 
 
@@ -228,9 +231,9 @@ def test_a_convention_that_nobody_names_is_found(text: str, tmp_path: Path) -> N
     numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
     file = tmp_path / "bare.npy"
     np.save(file, numbers)
-    state, said = compared_with(ViewState(lights=(venice(),)), str(file))
+    recipe, said = compared_with(Recipe(venice()), str(file))
     assert said == f"bare.npy does not name its convention: {text} fits"
-    assert verdict(venice(), state.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
+    assert verdict(venice(), recipe.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
 
 
 @pytest.mark.parametrize(
@@ -239,25 +242,25 @@ def test_a_convention_that_nobody_names_is_found(text: str, tmp_path: Path) -> N
 def test_a_bent_convention_is_found_too(text: str, tmp_path: Path) -> None:
     numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
     (tmp_path / "bare.json").write_text(json.dumps(numbers.tolist()))
-    state, said = compared_with(ViewState(lights=(venice(),)), str(tmp_path / "bare.json"))
+    recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.json"))
     assert said.endswith(" fits")
     if text.startswith("shviewer"):  # the simplest of several that fit as well
         assert parse_convention(said.split()[-2]) == parse_convention(text)
-    assert "agrees" in verdict(venice(), state.compare)
+    assert "agrees" in verdict(venice(), recipe.compare)
 
 
 def test_where_no_convention_fits_the_nearest_is_named_and_what_is_wrong(tmp_path: Path) -> None:
     numbers = 2 * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
     (tmp_path / "bare.txt").write_text(" ".join(map(str, numbers.reshape(-1))))
-    state, said = compared_with(ViewState(lights=(venice(),)), str(tmp_path / "bare.txt"))
+    recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.txt"))
     assert re.search(r"none fits within 2 %; the nearest is \S+, \d+ % off$", said)
-    assert "times 2" in verdict(venice(), state.compare)
+    assert "times 2" in verdict(venice(), recipe.compare)
 
 
 def test_what_fits_alike_is_said(tmp_path: Path) -> None:
     """A constant light tells neither phases nor axes apart."""
     (tmp_path / "bare.txt").write_text("3.5449077018110318 " * 3 + "0 " * 24)
-    said = compared_with(ViewState(lights=("constant",)), str(tmp_path / "bare.txt"))[1]
+    said = compared_with(Recipe("constant"), str(tmp_path / "bare.txt"))[1]
     others = "three, unreal, sphericart and shviewer,irradiance-over-pi"
     assert said == f"bare.txt does not name its convention: shviewer fits, as {others} would"
 

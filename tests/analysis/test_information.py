@@ -19,7 +19,7 @@ from shviewer.errors import LightError
 from shviewer.lights.find import built_in_lights
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import state_of
 
 Pixels = NDArray[np.float32]
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -97,12 +97,12 @@ def test_file_size_encoding_and_layout_are_those_of_the_file(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("light", ["green", "venice_sunset", "film_studio"])
 def test_the_figures_are_the_windows(light: str) -> None:
-    found, state = describe(light, DEFAULT_READING), ViewState(lights=(light,))
+    found, state = describe(light, DEFAULT_READING), state_of(light)
     picture = prepare(state)
     assert found.energy_share == picture.figures.energy_share[:9]
     assert found.peak == pytest.approx(picture.figures.extremes.peak, rel=1e-9)
     assert [need.tolerance for need in found.bands_needed] == [0.1, 0.05, 0.01]
-    in_window = asdict(needs(state))
+    in_window = asdict(needs(state.recipe))
     assert found.bands_needed[1].radiance == in_window["radiance"]
     assert found.bands_needed[1].irradiance == in_window["irradiance"]
     assert found.notes == picture.light.notes

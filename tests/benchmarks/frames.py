@@ -24,7 +24,7 @@ from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import headless_renderer, offscreen, render_linear
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, state_of
 
 BANDS = (3, 4, 5, 8, 16, 32)
 COMPOSITION = compose(1280, 640)
@@ -32,15 +32,15 @@ REPEATS = 9
 
 
 def frame_costs(renderer: Renderer) -> dict[str, float]:
-    base = replace(prepare(ViewState(n_bands=1)), coefficients=np.ones((1, 3)))
-    pictures = {"base": base} | {f"{n} bands, sum": prepare(ViewState(n_bands=n)) for n in BANDS}
-    pictures |= {f"{n} bands, map": prepare(ViewState(n_bands=n), by_map=True) for n in (3, 16, 32, 128)}
-    pictures["16 bands, map, error"] = prepare(ViewState(n_bands=16, error="signed"), by_map=True)
+    base = replace(prepare(state_of(n_bands=1)), coefficients=np.ones((1, 3)))
+    pictures = {"base": base} | {f"{n} bands, sum": prepare(state_of(n_bands=n)) for n in BANDS}
+    pictures |= {f"{n} bands, map": prepare(state_of(n_bands=n), by_map=True) for n in (3, 16, 32, 128)}
+    pictures["16 bands, map, error"] = prepare(state_of(n_bands=16, error="signed"), by_map=True)
     pictures["16 bands, map, written over"] = pictures["16 bands, map"]
     costs = {}
     with offscreen(renderer, COMPOSITION) as target:
         for name, picture in pictures.items():  # one after the other: uploading a map is no part of a frame
-            composition = compose(1280, 640, n_spheres=picture.state.n_spheres)
+            composition = compose(1280, 640, n_spheres=picture.state.view.n_spheres)
             layers: tuple[Layer, ...] = ()
             if "written" in name:
                 layers = (*mark_layers(picture, composition), *draw_overlay(picture, composition).layers)
@@ -58,7 +58,7 @@ def map_differences(renderer: Renderer) -> None:
     for light in ("green", "studio", "venice_sunset", "film_studio"):
         steps = []
         for n_bands in (8, 16, 32):
-            pictures = [prepare(ViewState(lights=(light,), n_bands=n_bands), by_map=by_map) for by_map in (False, True)]
+            pictures = [prepare(state_of(light, n_bands=n_bands), by_map=by_map) for by_map in (False, True)]
             shown = [
                 np.clip(2.0**picture.exposure_stops * render_linear(renderer, picture, COMPOSITION), -1, 1)
                 for picture in pictures
@@ -68,11 +68,11 @@ def map_differences(renderer: Renderer) -> None:
 
 
 def event_costs() -> None:
-    prepare(ViewState())
+    prepare(state_of())
     for n_bands in (4, 8, 16, 32):
-        state = ViewState(n_bands=n_bands)
+        state = state_of(n_bands=n_bands)
 
-        def press(state: ViewState = state) -> Picture:
+        def press(state: State = state) -> Picture:
             reconstruct.cache_clear()
             return prepare(state)
 
@@ -81,7 +81,7 @@ def event_costs() -> None:
             {"picture": press, "overlay": lambda p=picture: draw_overlay(p, COMPOSITION)}, 25, wall_milliseconds
         )
         print(f"key to {n_bands:>3} bands: picture {times['picture']:6.2f} ms, overlay {times['overlay']:6.2f} ms")
-    turned = ViewState(n_bands=32)
+    turned = state_of(n_bands=32)
 
     def turn() -> None:
         nonlocal turned

@@ -18,7 +18,7 @@ from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.irradiance import IrradianceLight
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State
 
 Capture = pytest.CaptureFixture[str]
 
@@ -220,8 +220,8 @@ def test_a_light_cannot_break_out_of_a_comment(tmp_path: Path) -> None:
 def test_progress_goes_through_the_lights_and_is_cleared(tmp_path: Path, capsys: Capture) -> None:
     shown: list[str] = []
 
-    def state_of(light: str) -> ViewState:
-        return ViewState(lights=(light,), n_bands=2)
+    def state_of(light: str) -> State:
+        return state_of(light, n_bands=2)
 
     assert (
         project_lights(

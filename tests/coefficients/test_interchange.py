@@ -11,14 +11,14 @@ import pytest
 from coefficients import peer_evaluators as peers
 from coefficients.peer_cases import EXACT, PEERS, asymmetric, directions_here, theirs
 
-from shviewer.analysis.projected import Projected, project_state
+from shviewer.analysis.projected import Projected, project_recipe
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.harmonics.basis import Array
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
-from shviewer.viewer.state import ViewState
 
 OVER_PI = ("filament", "unity")
 """They hold irradiance over pi; the others here hold radiance."""
@@ -30,14 +30,14 @@ def given(n_bands: int) -> CoefficientLight:
 
 def projected(name: str, n_bands: int) -> Projected:
     quantity = "irradiance" if name in OVER_PI else "radiance"
-    return project_state(ViewState(lights=(given(n_bands),), n_bands=n_bands, quantity=quantity))
+    return project_recipe(Recipe(given(n_bands), n_bands=n_bands, quantity=quantity))
 
 
 def held(name: str, light: CoefficientLight, directions: Array) -> Array:
     """What the program's numbers are of."""
     if name not in OVER_PI:
         return light.radiance(directions)
-    return load_light(ViewState(lights=(light,), quantity="irradiance")).radiance(directions) / np.pi
+    return load_light(Recipe(light, quantity="irradiance")).radiance(directions) / np.pi
 
 
 def numbers_of_json(data: bytes) -> peers.Numbers:

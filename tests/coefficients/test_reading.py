@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from shviewer.analysis.recipe import Recipe
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.reading import COEFFICIENT_SUFFIXES, MAX_FILE_BYTES
 from shviewer.coefficients.stamp import stamp_of
@@ -256,11 +257,10 @@ def test_a_stamp_may_say_more_than_is_understood_but_not_something_else_than_the
 
 def seeds() -> dict[str, bytes]:
     """One small file of every kind that is written here, and a bare list."""
-    from shviewer.analysis.projected import project_state
+    from shviewer.analysis.projected import project_recipe
     from shviewer.coefficients.writing import FORMATS
-    from shviewer.viewer.state import ViewState
 
-    found = project_state(ViewState(n_bands=2))
+    found = project_recipe(Recipe(n_bands=2))
     files = {f"seed.{kind}": found.encode(CONVENTIONS["three"], kind) for kind in FORMATS}
     scipy = {f"complex.{kind}": found.encode(CONVENTIONS["scipy"], kind) for kind in ("json", "csv", "h")}
     return files | scipy | {"bare.txt": b"(1, 2, 3); // L\n(4, 5, 6);\n7 8 9f\n-1e-3 0 .5"}

@@ -15,7 +15,8 @@ from helpers import unavailable
 from places import ASSETS
 
 import shviewer
-from shviewer.analysis.projected import Projected, project_state
+from shviewer.analysis.projected import Projected, project_recipe
+from shviewer.analysis.recipe import Recipe
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.source_code import identifier
 from shviewer.coefficients.writing import real_columns
@@ -25,7 +26,6 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.irradiance import IrradianceLight
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.state import ViewState
 
 COMPILER = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
 
@@ -36,7 +36,7 @@ SCREEN = (
 
 def projected(n_bands: int, name: str = "a 2nd light!", quantity: str = "radiance") -> Projected:
     light = CoefficientLight(asymmetric(n_bands), name)
-    return project_state(ViewState(lights=(light,), n_bands=n_bands, quantity=quantity))
+    return project_recipe(Recipe(light, n_bands=n_bands, quantity=quantity))
 
 
 @pytest.mark.parametrize("name", ["shviewer", "three", "scipy"])

@@ -7,7 +7,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import (
-    MAX_SAMPLES,
     column_azimuths,
     directions_from_angles,
     fejer,
@@ -18,6 +17,7 @@ from shviewer.harmonics.quadrature import (
 )
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.find import find_light
+from shviewer.limits import MAX_SAMPLES
 
 SAMPLE_COUNTS = (1000, 3162, 10_000, 31_623, 100_000)
 

@@ -21,7 +21,8 @@ from shviewer.lights.layouts.cube import (
 )
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
-from shviewer.lights.layouts.recognise import LAYOUTS, recognise
+from shviewer.lights.layouts.recognise import recognise
+from shviewer.lights.reading import LAYOUTS
 
 FORWARD, LEFT, UP = np.eye(3)
 CUBES = (VERTICAL_STRIP, HORIZONTAL_STRIP, OPENEXR, VERTICAL_CROSS, HORIZONTAL_CROSS)

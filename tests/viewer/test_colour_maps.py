@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shviewer.viewer.colour_maps import DIVERGING, SEQUENTIAL, linear, map_of, table
-from shviewer.viewer.error_scale import ERRORS
+from shviewer.viewer.view import ERRORS
 
 matplotlib = pytest.importorskip("matplotlib")
 

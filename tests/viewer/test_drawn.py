@@ -19,7 +19,7 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.surface_mesh import MAX_TRIANGLES, surface_mesh
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import render_linear
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import state_of
 from shviewer.viewer.surface import basis_surface, rows_for
 
 RADIUS = 222.0
@@ -42,7 +42,7 @@ RADIUS = 222.0
     ],
 )
 def test_each_state_is_drawn_in_one_way(options: dict[str, object], by_map: bool, drawn: type[Drawn]) -> None:
-    assert type(prepare(ViewState(**options), by_map=by_map).drawn) is drawn  # type: ignore[arg-type]
+    assert type(prepare(state_of(**options), by_map=by_map).drawn) is drawn  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("n_bands", [33, 40, 128])
@@ -71,7 +71,7 @@ def test_a_sweep_of_surfaces_goes_past_what_the_shader_sums(
 
 def test_surfaces_hold_no_radiance_that_could_be_drawn(renderer: Renderer) -> None:
     with pytest.raises(ValueError, match="no radiance"):
-        render_linear(renderer, prepare(ViewState(lobe_view=True)), compose(64, 64))
+        render_linear(renderer, prepare(state_of(lobe_view=True)), compose(64, 64))
 
 
 @pytest.mark.parametrize("degree", [8, 31, 32, 64, 127])

@@ -26,7 +26,7 @@ def test_the_relative_error_is_of_the_original_or_of_the_floor_where_that_is_dar
 
 
 def test_the_largest_error_in_any_pixel_is_the_figure_of_that_name() -> None:
-    shown = picture_of(lights=("studio",), n_bands=6)
+    shown = picture_of("studio", n_bands=6)
     rng = np.random.default_rng(0)
     directions = rng.normal(size=(20_000, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
@@ -36,7 +36,7 @@ def test_the_largest_error_in_any_pixel_is_the_figure_of_that_name() -> None:
 
 @pytest.mark.parametrize("error", ["signed", "absolute", "relative"])
 def test_no_pixel_has_a_larger_error_than_the_one_that_is_marked(error: str) -> None:
-    shown = picture_of(lights=("studio",), n_bands=7, error=error)
+    shown = picture_of("studio", n_bands=7, error=error)
     scale = shown.error_scale
     assert scale is not None
     directions = random_directions(20_000, seed=1)
@@ -68,13 +68,13 @@ def test_relative_errors_end_at_all_of_it_and_no_error_has_a_range_all_the_same(
 
 @pytest.mark.parametrize("light", ["green", "hemisphere", "cosine"])
 def test_a_light_without_spikes_is_coloured_up_to_its_largest_error(light: str) -> None:
-    shown = picture_of(lights=(light,), n_bands=5, error="signed")
+    shown = picture_of(light, n_bands=5, error="signed")
     assert shown.error_scale.end == pytest.approx(shown.figures.extremes.max_error, rel=1e-9)
     assert not shown.error_scale.beyond
 
 
 def test_a_sun_does_not_leave_the_rest_without_colours() -> None:
-    shown = picture_of(lights=("venice_sunset",), n_bands=9, error="signed")
+    shown = picture_of("venice_sunset", n_bands=9, error="signed")
     assert shown.error_scale.beyond
     assert shown.error_scale.end < 0.01 * shown.figures.extremes.max_error
 

@@ -19,8 +19,7 @@ from shviewer.viewer.drawn import MAP_COLUMNS, DirectSum, SplineMap, map_size
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import ViewState
-from shviewer.viewer.view_limits import check
+from shviewer.viewer.state import state_of
 
 
 def sphere_rule(rows: int = 400) -> tuple[Array, Array]:
@@ -218,7 +217,7 @@ def test_what_shows_finer_differences_takes_a_finer_map(change: dict[str, object
 def test_a_map_is_drawn_where_it_is_asked_for_and_refused_nowhere_but_directly_above_32_bands() -> None:
     assert isinstance(picture_of(evaluate="map").drawn, SplineMap)
     assert isinstance(picture_of(evaluate="direct", n_bands=32).drawn, DirectSum)
-    assert isinstance(prepare(ViewState(), by_map=True).drawn, SplineMap)
+    assert isinstance(prepare(state_of(), by_map=True).drawn, SplineMap)
     with pytest.raises(UsageError, match="33 bands: at most 32 are summed directly"):
         picture_of(evaluate="direct", n_bands=33)
 
@@ -284,9 +283,9 @@ def test_a_state_out_of_range_is_refused_with_value_and_rule(change: dict[str, o
 
 @pytest.mark.parametrize("size", [(63, 640), (640, 63), (8193, 640), (640, 8193), (-1, 5)])
 def test_a_size_out_of_range_is_refused(size: tuple[int, int]) -> None:
-    check(ViewState(), (64, 8192))
+    state_of().check((64, 8192))
     with pytest.raises(UsageError, match=rf"size {size[0]} x {size[1]}: each side must be 64 to 8192 pixels"):
-        check(ViewState(), size)
+        state_of().check(size)
 
 
 def test_a_light_that_cannot_be_read_is_refused_every_time() -> None:

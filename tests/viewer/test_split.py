@@ -9,16 +9,18 @@ from numpy.testing import assert_allclose
 
 from shviewer.analysis.figures import needs
 from shviewer.analysis.information import as_text, describe
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import subject
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.reading import DEFAULT_READING
 from shviewer.lights.suns.sun import split_suns
 from shviewer.viewer.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.picture_files import metadata
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import changed, state_of
 
 
 def noon():
@@ -31,18 +33,18 @@ def noon():
 
 
 def state(light, **changes):
-    return ViewState(lights=(light,), split_sun=True, **changes)
+    return state_of(light, split_sun=True, **changes)
 
 
 def test_u_splits_and_joins_again():
-    first = press(ViewState(), "U")
-    assert first.split_sun
+    first = press(state_of(), "U")
+    assert first.recipe.split_sun
     assert not press(first, "U").split_sun
 
 
 def test_a_noon_sky_becomes_a_few_bands_and_a_sun():
     light = noon()
-    before, after = needs(ViewState(lights=(light,))), needs(state(light))
+    before, after = needs(Recipe(light)), needs(state(light))
     assert before.radiance is None
     assert after.radiance is not None
     assert after.radiance <= 9
@@ -55,12 +57,12 @@ def test_the_figures_are_those_of_the_rest():
     coefficients = rest.coefficients(4)
     expected = errors_by_band_count(rest.products(), coefficients, coefficients)[-1]
     assert_allclose(picture.figures.relative_l2, expected, rtol=1e-9)  # a difference of norms
-    assert picture.needs_unsplit == needs(ViewState(lights=(light,)))
+    assert picture.needs_unsplit == needs(Recipe(light))
 
 
 def test_the_original_is_the_very_map_of_the_whole():
     light = noon()
-    unsplit, split = prepare(ViewState(lights=(light,))), prepare(state(light))
+    unsplit, split = prepare(state_of(light)), prepare(state(light))
     assert split.original.map is unsplit.original.map
     assert split.exposure_stops == unsplit.exposure_stops
     assert split.subject.whole is light
@@ -77,21 +79,21 @@ def test_rest_and_sun_add_up_to_the_whole(quantity, tolerance):
 
 
 def test_a_light_without_a_sun_is_shown_whole_with_the_reason():
-    picture = prepare(ViewState(lights=("green",), split_sun=True))
+    picture = prepare(state_of("green", split_sun=True))
     assert picture.suns == ()
-    assert picture.light is prepare(ViewState(lights=("green",))).light
+    assert picture.light is prepare(state_of("green")).light
     assert "green has no sun" in picture.subject.refusal
     assert "message" in draw_overlay(picture, compose(1280, 640)).boxes
 
 
 def test_the_picture_gives_the_reason_without_the_rule_and_so_uncut():
-    picture = prepare(ViewState(lights=("venice_sunset",), split_sun=True))
+    picture = prepare(state_of("venice_sunset", split_sun=True))
     refusal = picture.subject.refusal
     if not refusal:
-        picture = prepare(ViewState(lights=("green",), split_sun=True))
+        picture = prepare(state_of("green", split_sun=True))
         refusal = picture.subject.refusal
     assert ";" in refusal
-    reason = replace(picture, state=replace(picture.state, message=refusal.partition(";")[0]))
+    reason = replace(picture, state=changed(picture.state, message=refusal.partition(";")[0]))
     drawn, wanted = (draw_overlay(each, compose(1280, 640)).boxes["message"] for each in (picture, reason))
     assert drawn == wanted
     assert drawn.right < 1280 / 2 + 400
@@ -109,11 +111,11 @@ def test_the_text_of_a_picture_describes_the_sun():
 
 
 def test_info_names_the_sun_and_what_the_rest_needs():
-    found = describe("sun-sky", ViewState().reading)
+    found = describe("sun-sky", DEFAULT_READING)
     assert [need.radiance for need in found.bands_needed_without_suns] == [1, 1, 1]
     assert_allclose(found.suns[0].theta_phi_degrees, [52, 107], atol=1e-9)
     assert "0.53 deg wide" in as_text(found)
-    assert describe("green", ViewState().reading).suns == ()
+    assert describe("green", DEFAULT_READING).suns == ()
 
 
 def test_the_irradiance_of_a_split_light_is_that_of_the_rest():

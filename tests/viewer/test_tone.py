@@ -8,8 +8,9 @@ from harmonics.independent import random_directions
 
 from shviewer.viewer.derived import WHITE_LEVEL
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.state import ViewState
-from shviewer.viewer.tone import TONES, exposed_for, toned
+from shviewer.viewer.state import state_of
+from shviewer.viewer.tone import exposed_for, toned
+from shviewer.viewer.view import TONES
 
 
 def test_the_curves_are_the_published_ones() -> None:
@@ -33,7 +34,7 @@ def test_a_curve_rises_and_its_way_back_is_its_inverse(tone: str) -> None:
 def test_automatic_exposure_shows_one_hundredth_of_the_sphere_above_the_level_under_every_curve(
     light: str, tone: str
 ) -> None:
-    picture = prepare(ViewState(lights=(light,), tone=tone))
+    picture = prepare(state_of(light, tone=tone))
     directions = random_directions(40_000)
     brightest = picture.light.radiance(directions).max(axis=1).clip(min=0)
     shown = toned(2.0**picture.exposure_stops * brightest, tone)

@@ -33,7 +33,7 @@ from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata, write_exr
 from shviewer.viewer.screenshot import render_linear, render_rgb
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, state_of
 
 WALKS, STEPS = 12, 170
 """2040 states in all."""
@@ -52,7 +52,7 @@ class Walk:
         self.renderer = renderer
         self.drops = drops
         compare = CoefficientLight(np.random.default_rng(seed).normal(size=(36, 3)), "given") if seed % 4 == 3 else None
-        self.state = ViewState(lights=lights, light_index=seed % len(lights), compare=compare)
+        self.state = state_of(lights=lights, light_index=seed % len(lights), compare=compare)
         self.size = SIZES[0]
         self.trail: list[str] = []
         self.picture = prepare(self.state)
@@ -77,7 +77,7 @@ class Walk:
     def composition(self) -> Composition:
         return compose(*self.size, self.state.zoom, n_spheres=self.state.n_spheres)
 
-    def _something(self) -> tuple[str, ViewState]:
+    def _something(self) -> tuple[str, State]:
         state, random = self.state, self.random
         turn = random.uniform(-1, 1), random.uniform(-1, 1)
         choice = random.random()
@@ -104,13 +104,13 @@ class Walk:
             return f"click on band {band}", toggle_band(state, band)
         return "beat", step_sweep(state)
 
-    def _grant(self, last: ViewState) -> None:
+    def _grant(self, last: State) -> None:
         """What a state asks for beyond being drawn."""
         state = self.state
         if state.reloads != last.reloads:
-            read_again(state)
+            read_again(state.recipe)
         if state.fits != last.fits:
-            found = needs(state)
+            found = needs(state.recipe)
             wanted = found.irradiance if state.quantity == "irradiance" else found.radiance
             self.state = with_bands(state, wanted or found.best_bands)
         marks = marks_of(self.picture) if state.looks != last.looks else ()

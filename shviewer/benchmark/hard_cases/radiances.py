@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from shviewer.analysis.recipe import Shown
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.benchmark.hard_cases.projecting import ProjectImage
 from shviewer.benchmark.hard_cases.views import SEED, SUN_AXIS
@@ -51,7 +52,7 @@ def figures_of(light: Light) -> list[float]:
     from shviewer.analysis.figures import reconstruct
     from shviewer.analysis.projections import BEST, project
 
-    figures = reconstruct(light, project(light, *BEST, 32), 5, (), "none", None)[1]
+    figures = reconstruct(light, project(light, *BEST, 32), Shown(5))[1]
     return [figures.relative_l2, *figures.energy_share]
 
 

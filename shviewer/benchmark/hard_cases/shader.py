@@ -59,12 +59,12 @@ class Shader:
         from shviewer.viewer.drawn import DirectSum
         from shviewer.viewer.picture import prepare
         from shviewer.viewer.screenshot import render_linear
-        from shviewer.viewer.state import ViewState
+        from shviewer.viewer.state import state_of
 
         n_bands = count_bands(view.coefficients)
         coefficients = np.repeat(view.coefficients[:, None], 3, axis=1)
         picture = replace(
-            prepare(ViewState(n_bands=n_bands)),
+            prepare(state_of(n_bands=n_bands)),
             coefficients=coefficients,
             drawn=DirectSum(coefficients),
             world_from_view=view.world_from_view,

@@ -19,8 +19,7 @@ from shviewer.lights.layouts.cube import (
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
-
-LAYOUTS = ("lat-long", "cube", "angular", "mirror-ball")
+from shviewer.lights.reading import LAYOUTS
 
 TOLERANCE = 0.02
 """How far texels that show nothing may be from one colour, as a share of how far those that show something are."""

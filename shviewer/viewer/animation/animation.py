@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
@@ -25,7 +25,7 @@ from shviewer.viewer.composition import Composition
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.picture_files import metadata
 from shviewer.viewer.screenshot import headless_renderer, render_rgb
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed
 
 Progress = Callable[[float, float, str], None]
 """Told the share that is done, the seconds left, and what is at work."""
@@ -55,23 +55,23 @@ MAX_PIXELS = 2**29
 class Animation:
     """Its frames, how long each is shown, and the state that its description is of."""
 
-    states: tuple[ViewState, ...]
+    states: tuple[State, ...]
     milliseconds: tuple[int, ...]
-    portrait: ViewState
+    portrait: State
     about: dict[str, object]
     """What kind it is, for its description."""
 
 
-def band_sweep(state: ViewState, first: int, last: int, seconds: float = SWEEP_SECONDS) -> Animation:
+def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECONDS) -> Animation:
     """The state with `first` to `last` bands, as the window plays it. UsageError for bands that cannot be swept."""
     for option, n_bands in (("from", first), ("to", last)):
         if not 1 <= n_bands <= MAX_BANDS:
             raise UsageError(f"--{option} {n_bands}: the viewer shows 1 to {MAX_BANDS} bands")
     if first > last:
         raise UsageError(f"--from {first} --to {last}: a sweep adds bands; let --from be at most --to")
-    step = replace(with_bands(state, first), sweep_to=last if first < last else None)
+    step = changed(with_bands(state, first), sweep_to=last if first < last else None)
     states = [step]
-    while step.sweep_to is not None:
+    while step.view.sweep_to is not None:
         step = step_sweep(step)
         states.append(step)
     shown = _milliseconds(seconds)
@@ -79,12 +79,12 @@ def band_sweep(state: ViewState, first: int, last: int, seconds: float = SWEEP_S
     return _checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
 
 
-def turntable(state: ViewState, frames: int = TURN_FRAMES, seconds: float = TURN_SECONDS) -> Animation:
+def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SECONDS) -> Animation:
     """The camera once round in equal steps, beginning where it stands. UsageError for a number of frames out of range."""
     if not 2 <= frames <= MAX_FRAMES:
         raise UsageError(f"--frames {frames}: a turn has 2 to {MAX_FRAMES}")
-    azimuth, elevation = state.camera
-    states = [replace(state, camera=((azimuth + 360 * k / frames) % 360, elevation)) for k in range(frames)]
+    azimuth, elevation = state.view.camera
+    states = [changed(state, camera=((azimuth + 360 * k / frames) % 360, elevation)) for k in range(frames)]
     return _checked(states, [_milliseconds(seconds)] * frames, state, {"kind": "turntable"})
 
 
@@ -96,9 +96,7 @@ def _milliseconds(seconds: float) -> int:
     return 10 * round(100 * seconds)
 
 
-def _checked(
-    states: list[ViewState], milliseconds: list[int], portrait: ViewState, about: dict[str, object]
-) -> Animation:
+def _checked(states: list[State], milliseconds: list[int], portrait: State, about: dict[str, object]) -> Animation:
     total = sum(milliseconds) / 1000
     if total > MAX_SECONDS:
         raise UsageError(f"{len(states)} frames last {total:g} s: at most {MAX_SECONDS:g}; lower --seconds")

@@ -20,7 +20,8 @@ from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.plots.plane import measured
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed
+from shviewer.viewer.view import View
 
 Point = tuple[float, float]
 
@@ -34,10 +35,10 @@ class Canvas:
         self._overlay_key: object = None
         self._evaluation = Evaluation()
 
-    def by_map(self, state: ViewState, composition: Composition) -> bool:
+    def by_map(self, state: State, composition: Composition) -> bool:
         """Whether the reconstruction is to be drawn from a map, where that is left to the time that frames take."""
         pixels = summed_pixels(composition)
-        return state.evaluate == "auto" and self._evaluation.choose(state.n_bands, pixels, perf_counter())
+        return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
 
     def show(self, picture: Picture, composition: Composition) -> None:
         """Upload and write what has changed. GraphicsError for a map that this OpenGL cannot hold."""
@@ -54,7 +55,7 @@ class Canvas:
         """
         picture = self._picture
         layers = self.layers(composition, pointer)
-        timed = picture.state.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
+        timed = picture.state.view.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
         if timed:
             self.renderer.context.finish()
         start = perf_counter()
@@ -62,7 +63,7 @@ class Canvas:
         if not timed:
             return False
         self.renderer.context.finish()
-        now, pixels, n_bands = perf_counter(), summed_pixels(composition), picture.state.n_bands
+        now, pixels, n_bands = perf_counter(), summed_pixels(composition), picture.state.recipe.n_bands
         again = self._evaluation.drawn(n_bands, pixels, 1000 * (now - start), now)
         return again or self._evaluation.choose(n_bands, pixels, now)
 
@@ -74,7 +75,7 @@ class Canvas:
             return mark_layers(picture, composition)
         layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
         covered = written.sheet is not None and pointer is not None and written.sheet.contains(*pointer)
-        if pointer is None or covered or picture.state.help_visible:
+        if pointer is None or covered or picture.state.view.help_visible:
             return layers
         with suppress(ShviewerError):  # a light that cannot be evaluated there has no values to show
             found = probe(picture, composition, *pointer)
@@ -85,7 +86,7 @@ class Canvas:
     def say(self, message: str, picture: Picture, composition: Composition) -> None:
         """Draw a picture with a message over it; the next one is written anew."""
         self.renderer.show(picture)
-        waiting = replace(picture, state=replace(picture.state, message=message))
+        waiting = replace(picture, state=changed(picture.state, message=message))
         self.renderer.draw(
             self.renderer.context.screen, composition, draw_overlay(waiting, composition, timing=True).layers
         )
@@ -112,9 +113,8 @@ def _overlay_key(picture: Picture, composition: Composition) -> object:
     Zooming may, since text gives way to spheres; and the time-error plane changes with what has been measured.
     """
     state = picture.state
-    if not state.help_visible:
-        home = ViewState()
-        state = replace(state, camera=home.camera, light_rotation=home.light_rotation, zoom=home.zoom)
-    known = measured(picture) if state.sheet == "plane" else ()
+    if not state.view.help_visible:
+        state = changed(state, camera=View.camera, light_rotation=View.light_rotation, zoom=View.zoom)
+    known = measured(picture) if state.view.sheet == "plane" else ()
     place = composition.width, composition.height, composition.scale, composition.spheres
     return state, known, describe_evaluation(picture, timing=True), place

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from shviewer.analysis.recipe import Recipe
 from shviewer.lights.find import split_light
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
-from shviewer.viewer.state import ViewState, describe_sanitizing
+from shviewer.viewer.state import describe_sanitizing
 
 
 def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
@@ -31,7 +32,7 @@ def notes_of(light: Light) -> str:
     return f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
 
 
-def reading_news(before: ViewState, after: ViewState) -> str:
+def reading_news(before: Recipe, after: Recipe) -> str:
     """How files are read from now on, if that changed."""
     if before.reading.layout != after.reading.layout:
         return f"layout {after.reading.layout}"

@@ -13,7 +13,6 @@ from shviewer.lights.lobes import Lobe
 from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Composition, Sphere
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
-from shviewer.viewer.error_scale import ERRORS
 from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.gl.shared import (
     BACKGROUND,
@@ -28,6 +27,7 @@ from shviewer.viewer.gl.surface_renderer import SurfaceRenderer
 from shviewer.viewer.gl.textures import ArrayTexture
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.view import ERRORS
 
 GL_VERSIONS = (450, 410, 330)
 """Asked for in this order; every shader is written for the last."""
@@ -198,7 +198,7 @@ class Renderer:
         """The program that draws this of a picture, compiled when it is first wanted; what it does not read is all one."""
         original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
         reconstruction = "MAP" if isinstance(picture.drawn, SplineMap) and shown != "ORIGINAL" else "SUM"
-        tone = "NONE" if shown == "ERROR" else picture.state.tone.upper()
+        tone = "NONE" if shown == "ERROR" else picture.state.view.tone.upper()
         lobes = {
             "ORIGINAL": picture.original.lobes,
             "RECONSTRUCTION": picture.suns,

@@ -14,8 +14,8 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.lobes import MAX_LOBES, Lobe
 from shviewer.lights.suns.compact_sources import MOST as MAX_SUNS
 from shviewer.limits import MAX_DIRECT_BANDS
-from shviewer.viewer.error_scale import ERRORS
-from shviewer.viewer.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE, TONES
+from shviewer.viewer.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE
+from shviewer.viewer.view import ERRORS, TONES
 
 CHOICES: dict[str, tuple[str, ...]] = {
     "SHOWN": ("ORIGINAL", "RECONSTRUCTION", "ERROR"),

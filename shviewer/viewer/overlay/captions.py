@@ -18,9 +18,9 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     at, state = painter.at, picture.state
     y = at.caption_y
     left, right = (sphere.x for sphere in at.spheres[:2])
-    muted = describe_muted(state)
-    bands = f"{caption(state)}{counted(state.n_bands, 'band')}, {counted(state.n_bands**2, 'coefficient')}"
-    original = "Original" if state.quantity == "radiance" else "Irradiance"
+    muted = describe_muted(state.recipe)
+    bands = f"{caption(state.recipe)}{counted(state.recipe.n_bands, 'band')}, {counted(state.recipe.n_bands**2, 'coefficient')}"
+    original = "Original" if state.recipe.quantity == "radiance" else "Irradiance"
     suns = len(picture.subject.suns)
     surfaces = picture.drawn.shown if isinstance(picture.drawn, Surfaces) else ()
     if surfaces and suns:
@@ -29,12 +29,12 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
         original = f"{original}, cut at the circle"
     painter.text("original", left, y, original, 17, INK, "mm")
     apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
-    changes = [change for change in (apart, describe_window(state), muted) if change]
+    changes = [change for change in (apart, describe_window(state.recipe), muted) if change]
     if surfaces and surfaces[1].clipped:
         changes.append("cut at the circle")
-    if state.basis is not None:
-        value = float(picture.projection.coefficients[index(*state.basis)] @ LUMINANCE)
-        bands, changes = describe_basis(state), [f"coefficient {radiance(value, picture.figures.extremes.peak)}"]
+    if state.view.basis is not None:
+        value = float(picture.projection.coefficients[index(*state.view.basis)] @ LUMINANCE)
+        bands, changes = describe_basis(state.view), [f"coefficient {radiance(value, picture.figures.extremes.peak)}"]
     captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
     any(painter.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
     projection = picture.projection
@@ -45,9 +45,9 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     drawn = describe_evaluation(picture, timing)
     times = [", ".join(filter(None, (time, drawn))), drawn or time, time]
     far, below = at.width - at.margin, y + at.px(20)
-    if state.error != "off":
+    if state.view.error != "off":
         error = at.spheres[-1]
-        kind = "Error" if state.lobe_view else f"{state.error.capitalize()} error"
+        kind = "Error" if state.view.lobe_view else f"{state.view.error.capitalize()} error"
         if surfaces and surfaces[2].clipped:
             kind = f"{kind}, cut at the circle"
         painter.text("error", error.x, error.caption_y, kind, 17, INK, "mm")

@@ -77,7 +77,7 @@ def _band_bars(painter: Painter, picture: Picture) -> None:
         share = share if share > picture.figures.floor**2 else 0.0  # below, it is rounding
         top = base - max(share * scale, 1.0)
         edge = (middle - bar / 2, top, middle + bar / 2, base)
-        used = band < state.n_bands
+        used = band < state.recipe.n_bands
         factor = min(max(picture.figures.factors[band], 0.0), 1.0) if used else 0.0
         if not used:
             painter.draw.rectangle(edge, fill=RULE)
@@ -91,7 +91,7 @@ def _band_bars(painter: Painter, picture: Picture) -> None:
         if band % step == 0:
             ink = UNUSED if not used else FAINT if not factor else GREY
             painter.draw.text((middle, base + at.px(13)), str(band), ink, face, anchor="mm")
-        if used and band == state.cursor and state.cursor_visible:
+        if used and band == state.view.cursor and state.view.cursor_visible:
             y = base + at.px(3)
             painter.draw.rectangle((middle - bar / 2, y, middle + bar / 2, y + max(1, at.px(1.5))), fill=INK)
         painter.bars[band] = Box(middle - pitch / 2, base - tallest - at.px(16), middle + pitch / 2, base + at.px(20))

@@ -8,7 +8,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.keys import BINDINGS, Binding
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State
 
 DIM = (10, 10, 12, 232)
 KEY_COLUMN = 10.5
@@ -19,7 +19,7 @@ LEGEND = "blue: radiance below zero, the ringing of few bands; W takes it away"
 TITLE, KEY, TEXT, VALUE = (100, 160, 255, 255), (236, 236, 240, 255), (178, 178, 188, 255), (236, 236, 240, 255)
 
 
-def draw_help(sheet: Image.Image, state: ViewState, composition: Composition, opengl: str) -> None:
+def draw_help(sheet: Image.Image, state: State, composition: Composition, opengl: str) -> None:
     """Dim the sheet and write the table in two columns, as large as fits."""
     draw = ImageDraw.Draw(sheet)
     draw.rectangle((0, 0, composition.width, composition.height), fill=DIM)
@@ -60,7 +60,7 @@ def _line_count(column: list[tuple[str, list[Binding]]]) -> float:
     return sum(1.6 + len(rows) for _, rows in column)
 
 
-def _fitting_size(columns: list[list[tuple[str, list[Binding]]]], state: ViewState, composition: Composition) -> float:
+def _fitting_size(columns: list[list[tuple[str, list[Binding]]]], state: State, composition: Composition) -> float:
     """The largest type, up to 15 pixels of the design, with which every line and column fits."""
     size = composition.px(15)
     width = (composition.width - 3 * composition.margin) / 2

@@ -56,7 +56,7 @@ def marks_of(picture: Picture) -> list[Mark]:
     """The minimum, if it is negative, and the largest error, if the error is shown. None of surfaces."""
     state, extremes = picture.state, picture.figures.extremes
     marks: list[Mark] = []
-    if not state.marks or state.lobe_view or state.help_visible:
+    if not state.view.marks or state.view.lobe_view or state.view.help_visible:
         return marks
     lowest = radiance(extremes.minimum, extremes.peak)
     if extremes.minimum < 0 and lowest != "0":

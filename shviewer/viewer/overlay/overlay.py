@@ -70,14 +70,14 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     write_captions(painter, picture, timing)
     painter.boxes.update(draw_colour_bar(sheet, picture, composition))
     write_figures(painter, picture)
-    wanted = "" if picture.state.help_visible else picture.state.sheet
+    wanted = "" if picture.state.view.help_visible else picture.state.view.sheet
     drawing = sheet, picture, composition, list(painter.boxes.values())
     plane = draw_plane(*drawing) if wanted == "plane" else None
     convergence = draw_convergence(*drawing) if wanted == "convergence" else None
     shown = plane or convergence
     painter.boxes.update(shown.boxes if shown else {})
     _write_hint(painter, picture, NO_ROOM[wanted] if wanted and not shown else "")
-    if picture.state.help_visible:
+    if picture.state.view.help_visible:
         draw_help(sheet, picture.state, composition, opengl)
     image = np.asarray(sheet)
     return Overlay(image, strips(image), painter.boxes, painter.bars, plane, convergence)
@@ -87,7 +87,7 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
     """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
     at, state = painter.at, picture.state
     y = at.hairline_y + at.px(104)
-    message = state.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
+    message = state.view.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
     if message:
         face = painter.face(13)
         text = message
@@ -95,8 +95,8 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
             text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
         good = message == picture.verdict and agrees(message)
         painter.text("message", at.margin, y, text, 13, GREY if good else WARNING, "lm")
-    curve = "" if state.tone == "none" else f", {state.tone} curve"
-    stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state)}){curve}"
+    curve = "" if state.view.tone == "none" else f", {state.view.tone} curve"
+    stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state.view)}){curve}"
     needs, far = picture.needs, at.width - at.margin
     radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
     bands = "band" if needs.radiance == 1 else "bands"

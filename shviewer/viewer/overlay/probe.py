@@ -40,7 +40,7 @@ def probe(picture: Picture, composition: Composition, x: float, y: float) -> Pro
     """What the pixel at x, y of the frame shows; None beside the spheres, and of surfaces."""
     places = [sphere.position(x, y) for sphere in composition.spheres]
     place = next((found for found in places if found is not None), None)
-    if place is None or picture.state.lobe_view:
+    if place is None or picture.state.view.lobe_view:
         return None
     right, up = place
     view = np.array([right, up, np.sqrt(max(0.0, 1 - right * right - up * up))])

@@ -14,16 +14,16 @@ from shviewer.viewer.actions import step_sweep
 from shviewer.viewer.animation.animation import HOLD, MAX_PIXELS, band_sweep, save_animation, turntable
 from shviewer.viewer.composition import compose
 from shviewer.viewer.keys import press
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import changed, state_of
 
-START = ViewState(lights=("studio",), muted=frozenset({2}), camera=(300.0, -10.0), zoom=1.5)
+START = state_of("studio", muted=frozenset({2}), camera=(300.0, -10.0), zoom=1.5)
 
 
 def test_a_band_sweep_changes_nothing_but_the_bands_and_ends_as_the_screenshot_of_the_last() -> None:
     animation = band_sweep(START, 2, 6)
-    assert [state.n_bands for state in animation.states] == [2, 3, 4, 5, 6]
-    assert [replace(state, n_bands=5, sweep_to=None) for state in animation.states] == [START] * 5
-    assert [state.sweep_to for state in animation.states] == [
+    assert [state.recipe.n_bands for state in animation.states] == [2, 3, 4, 5, 6]
+    assert [changed(state, n_bands=5, sweep_to=None) for state in animation.states] == [START] * 5
+    assert [state.view.sweep_to for state in animation.states] == [
         6,
         6,
         6,
@@ -42,8 +42,8 @@ def test_a_band_sweep_is_what_space_plays() -> None:
 
 def test_a_basis_function_and_a_cursor_above_the_bands_of_a_frame_are_left() -> None:
     states = band_sweep(replace(START, n_bands=8, basis=(4, -3), cursor=6), 2, 8).states
-    assert [state.cursor for state in states] == [1] * 7
-    assert {state.basis for state in states} == {None}
+    assert [state.view.cursor for state in states] == [1] * 7
+    assert {state.view.basis for state in states} == {None}
 
 
 def test_a_sweep_of_one_band_count_is_one_frame() -> None:
@@ -60,12 +60,12 @@ def test_the_last_band_count_is_held_and_times_are_hundredths_of_a_second() -> N
 
 def test_a_turntable_goes_once_round_in_equal_steps_from_where_the_camera_stands() -> None:
     animation = turntable(START, 8)
-    azimuths = [state.camera[0] for state in animation.states]
+    azimuths = [state.view.camera[0] for state in animation.states]
     assert azimuths == [300, 345, 30, 75, 120, 165, 210, 255]
     assert animation.states[0] == animation.portrait == START
-    assert [replace(state, camera=START.camera) for state in animation.states] == [START] * 8
-    assert {state.camera[1] for state in animation.states} == {-10.0}
-    steps = np.diff([state.camera[0] for state in turntable(START).states], append=300) % 360
+    assert [changed(state, camera=START.view.camera) for state in animation.states] == [START] * 8
+    assert {state.view.camera[1] for state in animation.states} == {-10.0}
+    steps = np.diff([state.view.camera[0] for state in turntable(START).states], append=300) % 360
     np.testing.assert_allclose(steps, 5, rtol=0, atol=1e-9)
 
 

@@ -28,10 +28,10 @@ from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import state_of
 
 SMALL = compose(480, 300)
-STATE = ViewState(lights=("green",), muted=frozenset({1}))
+STATE = state_of("green", muted=frozenset({1}))
 
 GIF_LARGEST, GIF_RMS = 20, 2.5
 """Of 255. Measured at 1280 x 640: 16 and 1.7 for the sweep of venice_sunset, 6 and 0.4 for that of green."""
@@ -95,7 +95,7 @@ def screenshots(renderer: Renderer, made: Animation, composition: Composition = 
 def test_every_frame_of_a_webp_sweep_is_the_screenshot_of_its_state_to_the_bit(
     save: Save, renderer: Renderer, light: str
 ) -> None:
-    made = band_sweep(replace(STATE, lights=(light,)), 1, 12, 0.3)
+    made = band_sweep(replace(STATE, light=light), 1, 12, 0.3)
     pixels, durations = frames_of(save(made, "a.webp"))
     assert durations == [300] * 11 + [300 * HOLD]
     for shown, wanted in zip(pixels, screenshots(renderer, made), strict=True):
@@ -117,7 +117,7 @@ def test_a_turntable_in_webp_begins_with_the_screenshot_and_every_frame_is_one(s
 def test_every_frame_of_a_gif_is_the_screenshot_within_the_error_of_the_palette(
     save: Save, renderer: Renderer, light: str, kind: str
 ) -> None:
-    state = replace(STATE, lights=(light,))
+    state = replace(STATE, light=light)
     made = band_sweep(state, 1, 8) if kind == "bands" else turntable(state, 8)
     pixels, durations = frames_of(save(made, "a.gif"))
     assert durations == list(made.milliseconds)
@@ -128,7 +128,7 @@ def test_every_frame_of_a_gif_is_the_screenshot_within_the_error_of_the_palette(
 
 
 def test_a_gif_has_one_palette_and_keeps_the_blue_of_negative_radiance(save: Save, renderer: Renderer) -> None:
-    made = band_sweep(ViewState(), 1, 6)
+    made = band_sweep(state_of(), 1, 6)
     path = save(made, "a.gif")
     assert local_tables(path.read_bytes()) == [False] * 6
     last, wanted = frames_of(path)[0][-1].astype(int), screenshots(renderer, made)[-1].astype(int)
@@ -153,14 +153,14 @@ def test_the_files_tell_what_made_them(save: Save) -> None:
         assert (in_gif["light"], in_gif["version"], in_gif["muted"]) == ("green", __version__, [1])
         assert in_gif["bands"] == (5 if name == "a" else 3)
         assert in_gif["method"] == ("jittered" if name == "a" else "best")
-        assert in_gif["camera_degrees"] == list(STATE.camera)
+        assert in_gif["camera_degrees"] == list(STATE.view.camera)
 
 
 def test_equal_frames_become_one_that_is_shown_as_long(save: Save, tmp_path: Path) -> None:
     """A constant light looks the same from everywhere."""
     scene = tmp_path / "scene.toml"
     scene.write_text('[[lobe]]\nprofile = "constant"\nradiance = 2\n')
-    made = turntable(ViewState(lights=(str(scene),)), 5, 0.1)
+    made = turntable(state_of(str(scene)), 5, 0.1)
     with Image.open(save(made, "a.gif")) as image:
         assert (image.n_frames, image.info["duration"]) == (1, 500)  # type: ignore[attr-defined]
     with Image.open(save(made, "a.webp")) as image:

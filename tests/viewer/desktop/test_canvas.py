@@ -36,7 +36,7 @@ def test_a_light_that_fails_in_one_direction_does_not_end_the_program(canvas: Ca
             raise ValueError("never alone")
         return np.asarray(1 + directions[:, 2])
 
-    shown = picture_of(lights=(FunctionLight(touchy, "touchy"),))
+    shown = picture_of(light=FunctionLight(touchy, "touchy"))
     canvas.show(shown, frame_of(shown))
     sphere = frame_of(shown).spheres[0]
     assert len(canvas.layers(frame_of(shown), (sphere.x, sphere.y))) == len(canvas.layers(frame_of(shown)))

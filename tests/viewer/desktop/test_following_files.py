@@ -16,7 +16,7 @@ import pytest
 from lights.images.hdr_files import exr_file, hdr_file, random_texels
 from viewer.desktop.desktop import PATIENCE, Viewer, screenshot
 
-from shviewer.viewer.desktop.window import LOOK_SECONDS
+from shviewer.viewer.desktop.session import LOOK_SECONDS
 
 Start = Callable[..., Viewer]
 A_FEW_LOOKS = 1.2
@@ -230,7 +230,7 @@ import sys
 from pathlib import Path
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.viewer.desktop import window
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed, state_of
 
 isolated, read = [], EnvironmentLight.read
 EnvironmentLight.read = classmethod(
@@ -239,12 +239,12 @@ EnvironmentLight.read = classmethod(
 path, *contents = map(Path, sys.argv[1:])
 path.write_bytes(contents[0].read_bytes())
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, ViewState(lights=(str(path),)), False)
+    shown = window.Window(handle, state_of(str(path)), False)
     for content in contents[1:]:
         path.write_bytes(content.read_bytes())
         shown._on_drop(handle, [str(path)])
         shown.frame()
-        print(shown.state.message.split(":")[0], shown.picture.light.coefficients(1)[0, 0], sep="|")
+        print(shown.state.view.message.split(":")[0], shown.picture.light.coefficients(1)[0, 0], sep="|")
     shown._on_drop(handle, ["film_studio"])
     shown.frame()
 print(isolated)

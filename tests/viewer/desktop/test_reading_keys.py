@@ -18,20 +18,20 @@ import json
 import sys
 from shviewer.viewer.desktop import window
 from shviewer.viewer.keys import press
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed, state_of
 
 first, *steps = sys.argv[1:]
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, ViewState(lights=(first,)), False)
+    shown = window.Window(handle, state_of(first), False)
     for step in ["", *steps]:
         if step.startswith("drop "):
             shown._on_drop(handle, [step.removeprefix("drop ")])
         elif step:
             shown.change(press(shown.state, step))
         shown.frame()
-        light, reading = shown.picture.light, shown.state.reading
+        light, reading = shown.picture.light, shown.state.recipe.reading
         layout = light.layout.name if hasattr(light, "layout") else ""
-        print(json.dumps([light.name, layout, reading.layout, reading.sanitize, shown.state.message]))
+        print(json.dumps([light.name, layout, reading.layout, reading.sanitize, shown.state.view.message]))
 """
 
 Step = tuple[str, str, str, bool, str]

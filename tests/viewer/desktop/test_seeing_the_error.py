@@ -82,7 +82,7 @@ import operator
 import sys
 from shviewer.viewer.desktop import canvas, window
 from shviewer.viewer.keys import press
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed, state_of
 from shviewer.viewer.actions import orbit, rotate_light
 
 drawn = []
@@ -90,7 +90,7 @@ draw_overlay = canvas.draw_overlay
 canvas.draw_overlay = lambda *a, **k: (drawn.append(1), draw_overlay(*a, **k))[1]
 said = {}
 with window.open_window((800, 400)) as handle:
-    shown = window.Window(handle, ViewState(evaluate=sys.argv[1], n_bands=int(sys.argv[2])), False)
+    shown = window.Window(handle, state_of(evaluate=sys.argv[1], n_bands=int(sys.argv[2])), False)
     for _ in range(4):
         shown.frame()
     said["evaluated"] = type(shown.picture.drawn).__name__

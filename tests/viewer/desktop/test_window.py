@@ -167,13 +167,13 @@ def test_pictures_are_numbered_and_never_overwritten(start: Start, tmp_path: Pat
 DROP_SCRIPT = """
 import sys
 from shviewer.viewer.desktop import window
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed, state_of
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, ViewState(), False)
+    shown = window.Window(handle, state_of(), False)
     for path in sys.argv[1:]:
         shown._on_drop(handle, [path])
         shown.frame()
-        print(shown.picture.light.name, "|", shown.state.message)
+        print(shown.picture.light.name, "|", shown.state.view.message)
 """
 
 
@@ -201,13 +201,13 @@ REFUSED_SWEEP_SCRIPT = """
 from dataclasses import replace
 from shviewer.viewer.desktop import window
 from shviewer.viewer.actions import step_sweep
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, changed, state_of
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, ViewState(n_bands=32, window="dering", sweep_to=40), False)
+    shown = window.Window(handle, state_of(n_bands=32, window="dering", sweep_to=40), False)
     shown.frame()
     shown.change(step_sweep(shown.state))
     shown.frame()
-    print(shown.state.n_bands, shown.state.sweep_to, shown.state.message)
+    print(shown.state.recipe.n_bands, shown.state.view.sweep_to, shown.state.view.message)
 """
 
 

@@ -21,8 +21,9 @@ from shviewer.viewer.error_scale import error_values
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import render_linear, render_rgb
-from shviewer.viewer.state import ViewState
-from shviewer.viewer.tone import TONES, toned
+from shviewer.viewer.state import state_of
+from shviewer.viewer.tone import toned
+from shviewer.viewer.view import TONES
 
 ORIGINAL, RECONSTRUCTION, ERROR = range(3)
 SIDE = 128
@@ -249,4 +250,4 @@ def test_pixels_and_positions_agree(renderer: Renderer) -> None:
     found = sphere.position(300.5, 70.5)
     assert found == pytest.approx(tuple(place[70, 300]))
     assert sphere.position(10.0, 10.0) is None
-    assert ViewState(error="signed").n_spheres == 3
+    assert state_of(error="signed").n_spheres == 3

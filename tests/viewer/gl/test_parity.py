@@ -47,7 +47,7 @@ from shviewer.viewer.gl.shared import (
 )
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.screenshot import render_linear, render_rgb
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import State, state_of
 
 ORIGINAL, RECONSTRUCTION = 0, 1
 VIEWS = {
@@ -76,7 +76,7 @@ def assert_sum_is_right(renderer: Renderer, picture: Picture, side: int = 128) -
     Close to the rim the rounding of the direction counts as well: n bands change by at most n peaks per radian (Bernstein).
     A map of splines adds 0.006 w^3 along each axis for waves of w radians a node (Synthesis.spline_map).
     """
-    n_bands = picture.state.n_bands
+    n_bands = picture.state.recipe.n_bands
     frame = square_frame(side)
     seen = picture_view(frame, RECONSTRUCTION, picture)
     wanted = sum_of_harmonics(seen.directions, picture.coefficients)
@@ -449,13 +449,13 @@ def test_the_generated_constants_carry_every_digit() -> None:
 
 def test_equal_states_give_equal_bytes_whatever_was_shown_before(renderer: Renderer) -> None:
     states = [
-        ViewState(n_bands=5),
-        ViewState(n_bands=9, muted=frozenset({2})),
-        ViewState(lights=("venice_sunset",), n_bands=4),
-        ViewState(n_bands=40),
-        ViewState(lights=("studio",), camera=(10.0, 60.0), help_visible=True),
-        ViewState(lights=("film_studio",), n_bands=36, exposure_stops=1.0),
-        ViewState(n_bands=9, message="a message"),
+        state_of(n_bands=5),
+        state_of(n_bands=9, muted=frozenset({2})),
+        state_of("venice_sunset", n_bands=4),
+        state_of(n_bands=40),
+        state_of("studio", camera=(10.0, 60.0), help_visible=True),
+        state_of("film_studio", n_bands=36, exposure_stops=1.0),
+        state_of(n_bands=9, message="a message"),
     ]
     frame = compose(400, 300)
     order = np.random.default_rng(0).integers(len(states), size=40)
@@ -467,7 +467,7 @@ def test_equal_states_give_equal_bytes_whatever_was_shown_before(renderer: Rende
     assert len(set(first.values())) == len(states)
 
 
-def changes(state: ViewState) -> dict[str, object]:
+def changes(state: State) -> dict[str, object]:
     names = ("n_bands", "muted", "camera", "help_visible", "exposure_stops", "message")
     return {name: getattr(state, name) for name in names}
 

@@ -36,7 +36,7 @@ def test_a_mark_that_is_looked_at_stands_in_the_middle_of_its_sphere() -> None:
 def test_the_value_at_the_pixel_of_the_mark_is_the_figure() -> None:
     """By the frame's own arithmetic, through camera and light rotation."""
     for light_rotation in ((0.0, 0.0, 0.0, 1.0), (0.5, 0.1, 0.3, np.sqrt(0.65))):
-        shown = picture_of(lights=("studio",), n_bands=6, error="absolute", light_rotation=light_rotation)
+        shown = picture_of("studio", n_bands=6, error="absolute", light_rotation=light_rotation)
         composition = frame_of(shown)
         placed = place_marks(shown, composition)
         assert set(placed) == {"minimum", "largest"}

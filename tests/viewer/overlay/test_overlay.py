@@ -17,7 +17,7 @@ from shviewer.viewer.overlay.band_axis import SLOT_COUNTS
 from shviewer.viewer.overlay.captions import describe_light
 from shviewer.viewer.overlay.lettering import ACCENT, WARNING
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import state_of
 from shviewer.words import percent, radiance
 
 SIZES = [
@@ -46,18 +46,18 @@ PICTURES = Lazily(
     {
         "green": lambda: picture_of(),
         "muted": lambda: picture_of(n_bands=12, muted=frozenset({0, 2, 4, 6, 8, 10}), cursor=3, cursor_visible=True),
-        "sampled": lambda: picture_of(lights=("sun-sky",), n_bands=32, method="jittered", samples=1_000_000),
-        "low range": lambda: picture_of(lights=(LOW_RANGE,), n_bands=9),
-        "split": lambda: picture_of(lights=("sun-sky",), split_sun=True),
-        "long name": lambda: picture_of(lights=(FunctionLight(lambda d: 1 + d[:, 2], LONG),), n_bands=128),
+        "sampled": lambda: picture_of("sun-sky", n_bands=32, method="jittered", samples=1_000_000),
+        "low range": lambda: picture_of(LOW_RANGE, n_bands=9),
+        "split": lambda: picture_of("sun-sky", split_sun=True),
+        "long name": lambda: picture_of(light=FunctionLight(lambda d: 1 + d[:, 2], LONG), n_bands=128),
         "message": lambda: picture_of(
             message="a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); fetch or export it again"
         ),
         "zoomed": lambda: picture_of(zoom=3.0),
         "signed error": lambda: picture_of(error="signed"),
-        "relative error": lambda: picture_of(lights=("venice_sunset",), n_bands=9, error="relative", tone="log"),
+        "relative error": lambda: picture_of("venice_sunset", n_bands=9, error="relative", tone="log"),
         "tiny error": lambda: picture_of(n_bands=60, error="absolute", muted=frozenset({1, 2})),
-        "zoomed error": lambda: picture_of(error="signed", zoom=2.5, split_sun=True, lights=("sun-sky",)),
+        "zoomed error": lambda: picture_of(error="signed", zoom=2.5, split_sun=True, light="sun-sky"),
     }
 )
 
@@ -137,7 +137,7 @@ def test_figures_keep_their_place_whatever_they_say() -> None:
     composition = compose(1280, 640)
     places = set()
     for shown in PICTURES.values():
-        if shown.state.zoom == 1:
+        if shown.state.view.zoom == 1:
             boxes = draw_overlay(shown, composition).boxes
             places.add(tuple(round(boxes[f"{name}_label"].left) for name in names))
     assert len(places) == 1
@@ -165,8 +165,7 @@ TEN_SIZES = [*SIZES, (800, 400), (1920, 1080)]
 def test_splitting_a_sun_off_takes_no_figure_and_no_label_away(size: tuple[int, int], content_scale: float) -> None:
     composition = compose(*size, 1.0, content_scale)
     whole, split = (
-        set(draw_overlay(picture_of(lights=("sun-sky",), split_sun=wanted), composition).boxes)
-        for wanted in (False, True)
+        set(draw_overlay(picture_of("sun-sky", split_sun=wanted), composition).boxes) for wanted in (False, True)
     )
     figures = {
         f"{name}{end}" for name in ("relative_l2", "max_error", "minimum", "negative_area") for end in ("", "_label")
@@ -197,22 +196,22 @@ def test_the_description_ends_in_what_must_not_be_missed(
     quantity: str, encoding: str | None, notes: tuple[str, ...], end: str
 ) -> None:
     light = EnvironmentLight(np.ones((4, 8, 3), np.float32), name="mine", notes=notes, encoding=encoding)
-    shown = picture_of(lights=(light,), quantity=quantity)
+    shown = picture_of(light, quantity=quantity)
     assert describe_light(shown)[0] == light.description + end
     width = written(draw_overlay(shown, compose(1280, 640)), "description")
-    bare = picture_of(lights=(EnvironmentLight(light.pixels, name="mine"),), quantity=quantity)
+    bare = picture_of(light=EnvironmentLight(light.pixels, name="mine"), quantity=quantity)
     assert (width > written(draw_overlay(bare, compose(1280, 640)), "description")) == bool(end)
 
 
 def test_where_the_description_has_no_room_it_goes_before_what_must_not_be_missed() -> None:
     light = EnvironmentLight(np.ones((4, 8, 3), np.float32), name="mine", notes=("a",), encoding="PNG (LDR)")
-    assert describe_light(picture_of(lights=(light,)))[1:] == ["LDR, 1 note", "LDR"]
+    assert describe_light(picture_of(light))[1:] == ["LDR, 1 note", "LDR"]
 
 
 @pytest.mark.parametrize("size", TEN_SIZES[1:], ids=str)
 @pytest.mark.parametrize("name", ["p", "ldr_photo", LONG])
 def test_low_range_is_said_at_every_size_but_the_smallest(size: tuple[int, int], name: str) -> None:
-    shown = picture_of(lights=(replace(LOW_RANGE, name=name),))
+    shown = picture_of(light=replace(LOW_RANGE, name=name))
     for content_scale in (1.0, 2.0):
         boxes = draw_overlay(shown, compose(*size, 1.0, content_scale)).boxes
         assert {"description", "encoding"} & set(boxes), content_scale
@@ -299,7 +298,7 @@ def ink(drawn: NDArray[np.uint8]) -> NDArray[np.bool_]:
 )
 def test_the_help_is_written_within_the_frame(size: tuple[int, int]) -> None:
     """Its present values may be long: then they are shortened, and nothing comes near an edge."""
-    state = ViewState(lights=("file.py:" + LONG,), help_visible=True, n_bands=32, muted=frozenset(range(0, 32, 2)))
+    state = state_of("file.py:" + LONG, help_visible=True, n_bands=32, muted=frozenset(range(0, 32, 2)))
     shown = replace(picture_of(n_bands=32), state=state)
     composition = compose(*size)
     sheet = draw_overlay(shown, composition, opengl="OpenGL 4.5, llvmpipe (LLVM 15.0.6, 256 bits)").image

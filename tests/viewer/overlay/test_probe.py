@@ -30,7 +30,7 @@ def test_at_the_marks_the_probe_reads_the_figures() -> None:
 
 
 def test_every_sphere_reads_the_same_in_the_same_place() -> None:
-    shown = picture_of(lights=("venice_sunset",), n_bands=9, error="absolute")
+    shown = picture_of("venice_sunset", n_bands=9, error="absolute")
     composition = compose(1280, 640, n_spheres=3)
     readings = [
         probe(shown, composition, sphere.x + 0.3 * sphere.radius, sphere.y - 0.4 * sphere.radius)
@@ -64,7 +64,7 @@ def test_error_is_reconstruction_minus_original_and_the_suns_are_in_both() -> No
     whole = probe(picture_of(n_bands=4), composition, sphere.x + 20, sphere.y - 30)
     assert whole is not None
     np.testing.assert_allclose(whole.error, whole.reconstruction - whole.original, atol=1e-15)
-    split = picture_of(lights=("sun-sky",), split_sun=True, n_bands=4)
+    split = picture_of("sun-sky", split_sun=True, n_bands=4)
     (sun,) = split.suns
     at_sun = split.rest_at(sun.axis[None])[0] + sun.radiance
     np.testing.assert_allclose(split.rest_at(sun.axis[None]) + split.suns_at(sun.axis[None]), at_sun[None])
@@ -81,7 +81,7 @@ def test_beside_the_spheres_and_over_surfaces_there_is_nothing_to_read() -> None
 @pytest.mark.parametrize("size", [(640, 320), (1280, 640), (900, 1200)])
 @pytest.mark.parametrize("light", ["green", "venice_sunset"])
 def test_the_numbers_stay_in_the_frame_and_off_the_pixel_they_are_of(size: tuple[int, int], light: str) -> None:
-    shown = picture_of(lights=(light,), error="signed")
+    shown = picture_of(light, error="signed")
     composition = compose(*size, n_spheres=3)
     for sphere in composition.spheres:
         for across in (-0.9, 0.0, 0.9):

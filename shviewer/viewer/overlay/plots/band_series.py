@@ -52,16 +52,16 @@ def band_series(picture: Picture) -> BandSeries:
         shares = enumerate(map(float, errors[: slots + 1]), 1)
         return {n: max(share, floor) for n, share in shares if np.isfinite(share)}
 
-    altered = bool(state.muted_shown) or state.window != "none"
+    altered = bool(state.recipe.muted_shown) or state.recipe.window != "none"
     energy = {band: share for band, share in enumerate(figures.energy_share[:slots]) if share > floor**2}
     factors = np.clip(figures.factors, 0, 1).tolist()
     return BandSeries(
         slots=slots,
         errors=on_axis(errors_by_count(picture)),
-        exact=on_axis(errors_of(picture.light, *BEST)) if state.method != "best" else {},
+        exact=on_axis(errors_of(picture.light, *BEST)) if state.recipe.method != "best" else {},
         shown=max(figures.relative_l2, floor) if altered and np.isfinite(figures.relative_l2) else None,
         tolerance=needs.tolerance,
-        needed=needs.irradiance if state.quantity == "irradiance" else needs.radiance,
+        needed=needs.irradiance if state.recipe.quantity == "irradiance" else needs.radiance,
         energy=energy,
         kept={band: energy[band] * factor**2 for band, factor in enumerate(factors) if band in energy},
     )
@@ -69,9 +69,9 @@ def band_series(picture: Picture) -> BandSeries:
 
 def errors_by_count(picture: Picture) -> Array:
     """The relative L2 error of the picture's light with the first 1 ... N bands, none muted and no window, (N,), N >= n."""
-    light, sampling = picture.light, sampling_of(picture.state)
+    light, sampling = picture.light, sampling_of(picture.state.recipe)
     errors = errors_of(light, *sampling)
-    if picture.state.n_bands <= len(errors):
+    if picture.state.recipe.n_bands <= len(errors):
         return errors
     exact = project(light, *BEST, picture.projection.n_bands).coefficients  # beyond what samples were searched for
     return errors_by_band_count(light.products(), exact / light.unit, picture.projection.coefficients / light.unit)

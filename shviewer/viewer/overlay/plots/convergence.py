@@ -100,7 +100,7 @@ class _Drawing:
         bands = BandAxis(series.slots, left + pad, right - pad)
         points = {n: (bands.at(n), error.at(share)) for n, share in series.errors.items()}
         needed = points.get(series.needed) if series.needed and series.needed <= series.slots else None
-        shown = (bands.at(self.state.n_bands), error.at(series.shown)) if series.shown is not None else None
+        shown = (bands.at(self.state.recipe.n_bands), error.at(series.shown)) if series.shown is not None else None
         self.found = Convergence(box, bands, error, energy, points, shown, needed, boxes=sheet.boxes)
 
     def axes(self) -> None:
@@ -108,8 +108,8 @@ class _Drawing:
         sheet, found, area, unit = self.sheet, self.found, self.area, self.sheet.unit
         caption = sheet.title(["error against bands"], "relative L2 error")
         if self.series.exact:
-            words = f"{self.picture.projection.method} {short_count(self.state.samples)}"
-            samples = Entry("samples", "line", words, LOOKS[self.state.method][1])
+            words = f"{self.picture.projection.method} {short_count(self.state.recipe.samples)}"
+            samples = Entry("samples", "line", words, LOOKS[self.state.recipe.method][1])
             room = caption._replace(left=caption.right + 14 * unit, right=area.right)
             sheet.legend(room, [samples, Entry("exact", "line", "exact", EXACT)])
         sheet.levels("error", found.error, self.levels["error"], area)
@@ -117,12 +117,14 @@ class _Drawing:
         if self.split:
             words = "energy of each band" if found.energy else "no energy in any band"
             sheet.write("energy", caption.left, area.bottom + 14 * unit, words, FAINT, "lm")
-        x, bottom = round(found.bands.at(self.state.n_bands)), self.lower.bottom
+        x, bottom = round(found.bands.at(self.state.recipe.n_bands)), self.lower.bottom
         sheet.rule(Box(x, area.top, x + sheet.line, bottom), HERE)
         y = bottom + 15 * unit
         sheet.write("bands", area.left - 8 * unit, y, "bands", FAINT, "rm")
         for n in found.bands.ticks(sheet.width_of("128") + 4):
-            sheet.write(f"bands_{n}", found.bands.at(n), y, str(n), INK if n == self.state.n_bands else GREY, "mm")
+            sheet.write(
+                f"bands_{n}", found.bands.at(n), y, str(n), INK if n == self.state.recipe.n_bands else GREY, "mm"
+            )
 
     def energy(self) -> None:
         """A bar per band: filled as far as it is kept, hollow when muted, dim above n."""
@@ -154,7 +156,7 @@ class _Drawing:
         if found.error.low < series.tolerance < found.error.high:
             sheet.dashes(area.left, area.right, found.error.at(series.tolerance), FAINT)
         dot = min(2 * sheet.unit, 0.2 * found.bands.pitch)
-        for errors, ink in ((series.exact, EXACT), (series.errors, LOOKS[self.state.method][1])):
+        for errors, ink in ((series.exact, EXACT), (series.errors, LOOKS[self.state.recipe.method][1])):
             places = [(found.bands.at(n), found.error.at(share)) for n, share in errors.items()]
             if places:
                 sheet.curve(area, places, ink, 1.5 * sheet.unit, dot if dot > 1.2 * sheet.unit else 0)
@@ -164,7 +166,7 @@ class _Drawing:
         sheet, found = self.sheet, self.found
         if found.needed:
             sheet.point("disc", sheet.radius, found.needed, INK)
-        present = found.points.get(self.state.n_bands)
+        present = found.points.get(self.state.recipe.n_bands)
         if present:
             sheet.point("disc", sheet.radius, present, ACCENT)
             sheet.stamp("ring", sheet.ring, present, ACCENT)
@@ -174,10 +176,10 @@ class _Drawing:
     def labels(self) -> None:
         """The present error, that of what is shown, and what the tolerance needs, in as many words as there is room for."""
         sheet, found, area, state, series = self.sheet, self.found, self.area, self.state, self.series
-        share = self._percent(series.errors.get(state.n_bands, float("inf")))
-        texts = [f"{state.n_bands} band{'' if state.n_bands == 1 else 's'}: {share}", share]
-        self._beside("present", found.points.get(state.n_bands), texts, INK, sheet.ring + sheet.gap + 1)
-        changes = ", ".join(filter(None, (describe_window(state), describe_muted(state))))
+        share = self._percent(series.errors.get(state.recipe.n_bands, float("inf")))
+        texts = [f"{state.recipe.n_bands} band{'' if state.recipe.n_bands == 1 else 's'}: {share}", share]
+        self._beside("present", found.points.get(state.recipe.n_bands), texts, INK, sheet.ring + sheet.gap + 1)
+        changes = ", ".join(filter(None, (describe_window(state.recipe), describe_muted(state.recipe))))
         if changes:
             share = self._percent(self.picture.figures.relative_l2)
             texts = [f"{changes}: {share}", f"as shown: {share}", share]

@@ -77,7 +77,7 @@ class _Drawing:
         self.sheet, self.picture = sheet, picture
         self.known = {found.sampling: found for found in known}
         box, unit = sheet.box, sheet.unit
-        n_bands = picture.state.n_bands
+        n_bands = picture.state.recipe.n_bands
         least = picture.figures.floor  # a smaller error is rounding, and has no place on a log axis
         self.errors = {key: max(float(found.errors[n_bands - 1]), least) for key, found in self.known.items()}
         finite = [error for error in self.errors.values() if math.isfinite(error)]
@@ -99,16 +99,18 @@ class _Drawing:
         }
         keys = list(places)
         best = pareto_front([(self.times[key], self.errors[key]) for key in keys])
-        present = way_of(picture.state)
+        present = way_of(picture.state.recipe)
         front = [keys[i] for i in best]
         self.plane = Plane(box, milliseconds, error, floor, present, places, front, sheet.boxes)
 
     def axes(self) -> None:
         """Title, captions, and a light grid with round values."""
         sheet, area, unit, state = self.sheet, self.area, self.sheet.unit, self.picture.state
-        title = f"time against error, {state.n_bands} band{'' if state.n_bands == 1 else 's'}"
+        title = f"time against error, {state.recipe.n_bands} band{'' if state.recipe.n_bands == 1 else 's'}"
         apart = [
-            words for words, so in (("none muted", state.muted_shown), ("no window", state.window != "none")) if so
+            words
+            for words, so in (("none muted", state.recipe.muted_shown), ("no window", state.recipe.window != "none"))
+            if so
         ]
         self.caption = sheet.title([", ".join([title, *apart]), title], "relative L2 error")
         words = f"ms to project {self.picture.projection.n_bands} bands"
@@ -163,7 +165,7 @@ class _Drawing:
                 sheet.label("present", spot, text, INK, reach, area, away=True, over_lines=True) for text in texts
             )
         below = plane.error.at(plane.floor) + sheet.radius + sheet.gap
-        n_bands, share = self.picture.state.n_bands, self._percent(plane.floor)
+        n_bands, share = self.picture.state.recipe.n_bands, self._percent(plane.floor)
         left_out = f"{n_bands} band{' leaves' if n_bands == 1 else 's leave'} out {share}"
         for text in (f"no samples get below: {left_out}", left_out, share):
             if sheet.put("floor", text, GREY, sheet.row(text, below, area), area):

@@ -25,7 +25,7 @@ from shviewer.viewer.overlay.plots.log_axis import Axis
 from shviewer.viewer.overlay.plots.markers import LOOKS
 from shviewer.viewer.overlay.plots.sheet import place
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import changed, state_of
 from shviewer.words import percent, round_percent, short_count
 
 SIZES = [
@@ -38,7 +38,7 @@ GREEN = {2: 0.783, 3: 0.693, 4: 0.512, 5: 0.283, 6: 0.159, 8: 0.121, 10: 0.083, 
 
 
 def shown(**changes: object) -> Picture:
-    return prepare(ViewState(**{"sheet": "convergence", **changes}))  # type: ignore[arg-type]
+    return prepare(state_of(**{"sheet": "convergence", **changes}))  # type: ignore[arg-type]
 
 
 def smooth(directions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -58,11 +58,11 @@ PICTURES = Lazily(
             muted=frozenset({0, 2, 4, 6, 8}), window="lanczos", window_width=12.0, n_bands=16
         ),
         "irradiance": lambda: shown(quantity="irradiance", n_bands=4),
-        "image": lambda: shown(lights=("venice_sunset",), n_bands=9, window="hann"),
-        "band-limited": lambda: shown(lights=(FunctionLight(smooth, "smooth"),), n_bands=3),
-        "black": lambda: shown(lights=(FunctionLight(lambda d: 0 * d[:, 0], "black"),), n_bands=3),
+        "image": lambda: shown(light="venice_sunset", n_bands=9, window="hann"),
+        "band-limited": lambda: shown(light=FunctionLight(smooth, "smooth"), n_bands=3),
+        "black": lambda: shown(light=FunctionLight(lambda d: 0 * d[:, 0], "black"), n_bands=3),
         "black samples": lambda: shown(
-            lights=(FunctionLight(lambda d: 0 * d[:, 0], "black"),), method="jittered", samples=100
+            light=FunctionLight(lambda d: 0 * d[:, 0], "black"), method="jittered", samples=100
         ),
         "loose": lambda: shown(tolerance=0.9, n_bands=10),
         "zoomed": lambda: shown(zoom=3.0, message="saved"),
@@ -201,7 +201,7 @@ def test_the_written_error_is_that_of_the_figures_unless_bands_are_changed(
     picture = PICTURES[name]
     texts, figures = captured(monkeypatch, picture), picture.figures
     altered = "shown" in texts
-    assert altered == bool(picture.state.muted_shown or picture.state.window != "none")
+    assert altered == bool(picture.state.recipe.muted_shown or picture.state.recipe.window != "none")
     said = percent(figures.relative_l2, floor=figures.floor * (1 + 1e-9))
     assert texts["shown" if altered else "present"].endswith(said)
 
@@ -210,7 +210,7 @@ def test_the_written_error_is_that_of_the_figures_unless_bands_are_changed(
 def test_what_is_shown_with_bands_muted_or_windowed_is_marked_beside_the_curve(name: str) -> None:
     picture = PICTURES[name]
     drawn, found = plot_of(picture)
-    n = picture.state.n_bands
+    n = picture.state.recipe.n_bands
     assert found.shown is not None
     assert found.shown == pytest.approx((found.bands.at(n), found.error.at(picture.figures.relative_l2)))
     assert tuple(drawn.image[int(found.shown[1]), int(found.shown[0])]) == ACCENT
@@ -234,7 +234,7 @@ def test_the_bands_that_the_tolerance_needs_are_those_of_the_figures(
 ) -> None:
     picture = PICTURES[name]
     needs = picture.needs
-    needed = needs.irradiance if picture.state.quantity == "irradiance" else needs.radiance
+    needed = needs.irradiance if picture.state.recipe.quantity == "irradiance" else needs.radiance
     assert str(needed or f"over {needs.searched}") in text
     assert captured(monkeypatch, picture)["tolerance"] == text
     drawn, found = plot_of(picture)
@@ -254,7 +254,7 @@ def test_errors_below_the_floor_are_not_drawn_as_numbers(monkeypatch: pytest.Mon
         picture = PICTURES[name]
         _, found = plot_of(picture)
         floor = picture.figures.floor
-        assert found.points[picture.state.n_bands][1] == pytest.approx(found.error.at(floor))
+        assert found.points[picture.state.recipe.n_bands][1] == pytest.approx(found.error.at(floor))
         texts = captured(monkeypatch, picture)
         assert texts["present"].endswith(f"< {round_percent(floor)}")
         assert (texts.get("floor") == "less cannot be measured") == (
@@ -295,7 +295,7 @@ def test_each_bar_is_as_high_as_the_power_of_its_band(name: str) -> None:
             inside = drawn.image[
                 round(bar.bottom) - 1 - (bar.bottom - bar.top > 4) * 2, round(bar.left + bar.right) // 2
             ]
-            used, muted = band < picture.state.n_bands, band in picture.state.muted
+            used, muted = band < picture.state.recipe.n_bands, band in picture.state.recipe.muted
             assert (tuple(inside) == ACCENT) == (used and not muted)
             assert (tuple(inside) == LEFT_OUT) == (not used)
 
@@ -374,7 +374,7 @@ def triptych(width: int, height: int, tall: bool = False) -> Composition:
 @pytest.mark.parametrize("content_scale", [1.0, 2.0])
 def test_no_text_in_it_is_cut_or_covered(size: tuple[int, int], content_scale: float) -> None:
     for name, picture in PICTURES.items():
-        composition = compose(*size, picture.state.zoom, content_scale)
+        composition = compose(*size, picture.state.view.zoom, content_scale)
         drawn = draw_overlay(picture, composition, timing=True)
         for (one, box), (two, other) in itertools.combinations(drawn.boxes.items(), 2):
             assert not overlap(box, other), (name, one, two)
@@ -434,7 +434,7 @@ def test_one_sheet_is_shown_at_a_time_and_none_over_the_help() -> None:
 def test_what_is_outside_the_sheet_is_as_it_is_without_it() -> None:
     picture = PICTURES["128 bands"]
     drawn, found = plot_of(picture)
-    without = draw_overlay(replace(picture, state=replace(picture.state, sheet="")), compose(1280, 640))
+    without = draw_overlay(replace(picture, state=changed(picture.state, sheet="")), compose(1280, 640))
     differs = np.argwhere((drawn.image != without.image).any(axis=-1))
     assert found.box.top <= differs[:, 0].min() < differs[:, 0].max() < found.box.bottom
     assert found.box.left <= differs[:, 1].min() < differs[:, 1].max() < found.box.right

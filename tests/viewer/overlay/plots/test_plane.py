@@ -12,6 +12,7 @@ from helpers import centre, overlap
 from shviewer.analysis import projections
 from shviewer.analysis.cache import MEMORY, MOST_LIGHTS
 from shviewer.analysis.projections import BEST, Measurement, measurements, project
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.find import find_light
@@ -27,7 +28,7 @@ from shviewer.viewer.overlay.plots.log_axis import Axis
 from shviewer.viewer.overlay.plots.markers import LOOKS
 from shviewer.viewer.overlay.plots.plane import Plane, measured
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import ViewState
+from shviewer.viewer.state import changed, state_of
 
 SIZES = [
     (320, 160), (400, 300), (640, 320), (700, 400), (800, 800), (1280, 640), (1920, 1080), (2560, 1280), (900, 1200),
@@ -54,7 +55,7 @@ def steady(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def shown(**changes: object) -> Picture:
-    return prepare(ViewState(**{"n_bands": 15, "sheet": "plane", **changes}))  # type: ignore[arg-type]
+    return prepare(state_of(**{"n_bands": 15, "sheet": "plane", **changes}))  # type: ignore[arg-type]
 
 
 def session(counts: tuple[int, ...] = COUNTS, **changes: object) -> Picture:
@@ -153,11 +154,11 @@ def test_measurements_go_with_their_light() -> None:
     first = shown(method="jittered", samples=500)
     assert measured(first)
     for number in range(MOST_LIGHTS):
-        load_light(ViewState(lights=(FunctionLight(lambda d: d[:, 2], str(number)),)))
+        load_light(Recipe(FunctionLight(lambda d: d[:, 2], str(number))))
         MEMORY.results(FunctionLight(lambda d: d[:, 2], str(number)), "anything")
     assert measured(first) == ()
     assert draw_overlay(first, compose(1280, 640)).plane is None
-    assert first.light not in MEMORY  # looking it up brings nothing back
+    assert first.recipe.light not in MEMORY  # looking it up brings nothing back
 
 
 # --- axes
@@ -296,7 +297,7 @@ def test_no_text_in_it_is_cut_or_covered(size: tuple[int, int]) -> None:
     }
     for (name, changes), content_scale in itertools.product(states.items(), (1.0, 2.0)):
         picture = shown(**changes)
-        composition = compose(*size, picture.state.zoom, content_scale)
+        composition = compose(*size, picture.state.view.zoom, content_scale)
         drawn = draw_overlay(picture, composition, timing=True)
         for (one, box), (two, other) in itertools.combinations(drawn.boxes.items(), 2):
             assert not overlap(box, other), (name, one, two)
@@ -325,7 +326,7 @@ def test_at_the_usual_sizes_axes_legend_floor_and_most_points_are_labelled(size:
 def test_what_is_outside_the_sheet_is_as_it_is_without_it() -> None:
     picture = session()
     drawn, found = plane_of(picture)
-    without = draw_overlay(replace(picture, state=replace(picture.state, sheet="")), compose(1280, 640))
+    without = draw_overlay(replace(picture, state=changed(picture.state, sheet="")), compose(1280, 640))
     assert without.plane is None
     differs = np.argwhere((drawn.image != without.image).any(axis=-1))
     assert found.box.top <= differs[:, 0].min()

@@ -1,0 +1,190 @@
+"""What an option is: its kind, the rule for its values, and one line of help, told once beside the field that holds it.
+
+Command line, Python, limits and the tables of the guide are made of these. Nothing here loads numpy, so that --help does not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, fields
+from operator import index
+from typing import Any, NamedTuple, Protocol, TypeVar
+
+from shviewer.errors import UsageError
+
+T = TypeVar("T")
+
+
+class Kind(Protocol):
+    """The values that an option may have."""
+
+    def taken(self, name: str, value: Any) -> Any:
+        """A caller's value as the field holds it. UsageError, with name, value and rule, for one of another type."""
+
+    def check(self, name: str, value: Any) -> None:
+        """UsageError, with name, value and rule, for a value out of range."""
+
+
+class Option(NamedTuple):
+    """One row of the table."""
+
+    name: str
+    kind: Kind
+    help: str
+    default: Any
+
+
+def option(default: T, kind: Kind, help: str) -> T:
+    """A field of a dataclass that is an option."""
+    held: T = field(default=default, metadata={"option": (kind, help)})
+    return held
+
+
+def options_of(*holders: type) -> dict[str, Option]:
+    """The options of dataclasses by their names, in the order of their fields."""
+    return {
+        part.name: Option(part.name, part.metadata["option"][0], part.metadata["option"][1], part.default)
+        for holder in holders
+        for part in fields(holder)
+        if "option" in part.metadata
+    }
+
+
+def check_options(held: object) -> None:
+    """UsageError unless every option of a dataclass is within its range."""
+    for name, row in options_of(type(held)).items():
+        row.kind.check(name, getattr(held, name))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words."""
+
+    choices: tuple[str, ...]
+
+    def taken(self, name: str, value: Any) -> Any:
+        if not isinstance(value, str):
+            raise UsageError(f"{_said(name)} {value!r}: it must be a text")
+        return value
+
+    def check(self, name: str, value: Any) -> None:
+        if value not in self.choices:
+            empty = ", or empty" if "" in self.choices else ""
+            raise UsageError(
+                f"{_said(name)} {value!r}: it must be one of {', '.join(filter(None, self.choices))}{empty}"
+            )
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number within bounds; `says` puts it into words, `rule` says which."""
+
+    least: int
+    most: float
+    says: str
+    rule: str
+
+    def taken(self, name: str, value: Any) -> Any:
+        return whole(value, name)
+
+    def check(self, name: str, value: Any) -> None:
+        if not self.least <= value <= self.most:
+            raise UsageError(f"{self.says.format(value)}: {self.rule}")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A finite number within bounds, which belong to it if `closed`; None where it is not set, if the default is."""
+
+    least: float
+    most: float
+    rule: str
+    closed: bool = True
+    optional: bool = False
+    called: str = ""
+    """In messages, where it is not the field's name."""
+
+    def taken(self, name: str, value: Any) -> Any:
+        if value is None and self.optional:
+            return None
+        if not is_number(value):
+            raise UsageError(f"{name} {value!r}: it must be a finite number")
+        return value
+
+    def check(self, name: str, value: Any) -> None:
+        if value is None and self.optional:
+            return
+        inside = self.least <= value <= self.most if self.closed else self.least < value < self.most
+        if not inside:
+            raise UsageError(f"{self.called or _said(name)} {value:g}: {self.rule}")
+
+
+@dataclass(frozen=True)
+class Flag:
+    """True or False."""
+
+    def taken(self, name: str, value: Any) -> Any:
+        return value
+
+    def check(self, name: str, value: Any) -> None:
+        """Both are within its range."""
+
+
+@dataclass(frozen=True)
+class Bands:
+    """Several bands, each counted from 0."""
+
+    most: int
+
+    def taken(self, name: str, value: Any) -> Any:
+        if not isinstance(value, Iterable) or isinstance(value, str):
+            raise UsageError(f"{name} {value!r}: it must be several bands, such as [1, 3]")
+        return frozenset(whole(band, f"{name} band") for band in value)
+
+    def check(self, name: str, value: Any) -> None:
+        for band in sorted(value):
+            if not 0 <= band < self.most:
+                raise UsageError(f"{name} band {band}: bands are counted from 0 to {self.most - 1}")
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two numbers, `what` with an example; whole ones if the field holds whole ones."""
+
+    what: str
+    whole: bool = False
+    optional: bool = False
+
+    def taken(self, name: str, value: Any) -> Any:
+        if value is None and self.optional:
+            return None
+        if not (isinstance(value, Sequence) and len(value) == 2 and all(map(is_number, value))):
+            raise UsageError(f"{name} {value!r}: it must be {self.what}")
+        return tuple(whole(part, name) for part in value) if self.whole else tuple(map(float, value))
+
+    def check(self, name: str, value: Any) -> None:
+        """Any two numbers are within its range."""
+
+
+def whole(value: object, name: str) -> int:
+    """UsageError unless it is a whole number of some integer type."""
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        return index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise UsageError(f"{name} {value!r}: it must be a whole number, such as 5") from None
+
+
+def is_number(value: object) -> bool:
+    """Whether it is a finite number, of Python's or numpy's types."""
+    try:
+        return not isinstance(value, str | bytes) and math.isfinite(value)  # type: ignore[arg-type]
+    except TypeError:
+        return False
+
+
+def _said(name: str) -> str:
+    """A field's name in words."""
+    return name.replace("_", " ")

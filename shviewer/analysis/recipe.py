@@ -1,0 +1,93 @@
+"""Which numbers: everything that coefficients and their figures follow from, and nothing of how they are seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from shviewer.analysis.options import Bands, Choice, Flag, Number, Whole, check_options, option
+from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
+
+if TYPE_CHECKING:
+    from shviewer.lights.coefficient_light import CoefficientLight
+    from shviewer.lights.light import Light
+
+METHODS = ("best", "jittered", "gauss-legendre")
+QUANTITIES = ("radiance", "irradiance")
+WINDOWS = ("none", "hann", "lanczos", "gauss", "dering")
+
+
+class Shown(NamedTuple):
+    """What of a projection is shown: the bands in use, those of them that are muted, the window and its width."""
+
+    n_bands: int
+    muted: tuple[int, ...] = ()
+    window: str = "none"
+    window_width: float | None = None
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """Equal recipes give equal numbers."""
+
+    light: str | Light = "green"
+    """A text that `find_light` takes, or a light."""
+    reading: Reading = DEFAULT_READING
+    n_bands: int = option(
+        5,
+        Whole(1, MAX_BANDS, "{} bands", f"the viewer shows 1 to {MAX_BANDS}"),
+        f"number of bands, 1 to {MAX_BANDS} (default 5)",
+    )
+    tolerance: float = option(
+        0.05,
+        Number(0, 1, "it must be between 0 and 1, such as 0.05 or 5%", closed=False),
+        "as many bands as keep the relative L2 error within T, such as 5% or 0.05, instead of --bands",
+    )
+    quantity: str = option(
+        "radiance",
+        Choice(QUANTITIES),
+        "radiance (default), or irradiance: what a white Lambertian surface receives",
+    )
+    split_sun: bool = option(False, Flag(), "take suns out of the light as discs of their own and project the rest")
+    window: str = option("none", Choice(WINDOWS), "none, hann, lanczos, gauss (WIDTH in bands, default N) or dering")
+    window_width: float | None = option(
+        None,
+        Number(0, float("inf"), "it must be positive and finite, in bands", closed=False, optional=True),
+        "of the window, in bands; as many as are shown unless given",
+    )
+    muted: frozenset[int] = option(frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3")
+    method: str = option("best", Choice(METHODS), "best (of this light), jittered (the paper's) or gauss-legendre")
+    samples: int = option(
+        10_000,
+        Whole(1, MAX_SAMPLES, "{} samples", f"there must be 1 to {MAX_SAMPLES}"),
+        "of the sampled methods (default 10000)",
+    )
+    seed: int = option(
+        0, Whole(0, float("inf"), "seed {}", "it must not be negative"), "of the jittered samples (default 0)"
+    )
+    compare: CoefficientLight | None = None
+    """Given coefficients, shown instead of the light's own; no more bands than they have are shown."""
+
+    @property
+    def muted_shown(self) -> tuple[int, ...]:
+        """The muted bands among those in use."""
+        return tuple(sorted(band for band in self.muted if band < self.n_bands))
+
+    @property
+    def shown(self) -> Shown:
+        return Shown(self.n_bands, self.muted_shown, self.window, self.window_width)
+
+    @property
+    def projected_bands(self) -> int:
+        """How many bands are projected, so that a few more or fewer cost nothing."""
+        return MAX_DIRECT_BANDS if self.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
+
+    def check(self) -> None:
+        """UsageError unless every option is within its range."""
+        check_options(self)
+
+
+def light_name(light: str | Light) -> str:
+    """What a light is called where there is little room: the last part of its path."""
+    return light.replace("\\", "/").rpartition("/")[2] if isinstance(light, str) else light.name

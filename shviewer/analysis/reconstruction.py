@@ -1,0 +1,33 @@
+"""What a recipe gives: the coefficients and their figures, made by one call for whoever writes, says or draws them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from shviewer.analysis.figures import Figures, error_grid, grid_rows, reconstruct
+from shviewer.analysis.projections import Projection, project, sampling_of
+from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.subjects import Subject, subject
+from shviewer.harmonics.basis import Array
+from shviewer.limits import check_radiance
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """The coefficients (n_bands**2, 3) of a light as they are shown: muted bands are zero and the window is applied."""
+
+    recipe: Recipe
+    subject: Subject
+    """The light, what of it is projected, and the suns that were split off."""
+    projection: Projection
+    coefficients: Array
+    figures: Figures
+
+
+def reconstruction_of(recipe: Recipe) -> Reconstruction:
+    """LightError for a light that cannot be read or shown, UsageError for a recipe out of range."""
+    recipe.check()
+    found = subject(recipe)
+    projection = project(found.light, *sampling_of(recipe), recipe.projected_bands)
+    check_radiance(error_grid(found.whole, grid_rows(1)).peak, found.light.name)
+    return Reconstruction(recipe, found, projection, *reconstruct(found.light, projection, recipe.shown))

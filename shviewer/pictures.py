@@ -1,0 +1,69 @@
+"""The functions of `import shviewer` that draw: the picture of the window, and the window itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.analysis.options import whole
+from shviewer.analysis.recipe import Recipe
+from shviewer.api import LightLike, recipe_of, taken, with_options
+from shviewer.errors import UsageError
+from shviewer.viewer.composition import compose
+from shviewer.viewer.picture import prepare
+from shviewer.viewer.screenshot import headless_renderer, render_rgb
+from shviewer.viewer.state import State
+from shviewer.viewer.view import View
+
+
+@with_options(Recipe, View)
+def screenshot(
+    light: LightLike,
+    bands: int | None = None,
+    *,
+    size: tuple[int, int] = (1280, 640),
+    overlay: bool = True,
+    **options: Any,
+) -> NDArray[np.uint8]:
+    """The picture of the window: (height, width, 3) uint8, sRGB, top row first. size: width and height in pixels.
+
+    overlay: with captions and figures. GraphicsError where there is no OpenGL 3.3.
+
+    """
+    state = _state(light, bands, options, size)
+    picture = prepare(state)
+    with headless_renderer() as renderer:
+        return render_rgb(
+            renderer, picture, compose(*size, state.view.zoom, n_spheres=state.view.n_spheres), overlay=overlay
+        )
+
+
+@with_options(Recipe, View)
+def view(
+    light: LightLike = "green", bands: int | None = None, *, size: tuple[int, int] = (1280, 640), **options: Any
+) -> None:
+    """Open the window and stay until it is closed. size: width and height in screen coordinates.
+
+    NoDisplayError without a display, GraphicsError without OpenGL 3.3.
+
+    """
+    from shviewer.viewer.desktop import window
+
+    state = _state(light, bands, options, size)
+    window.run(state, size)
+
+
+def _state(light: LightLike, bands: int | None, options: dict[str, Any], size: Any) -> State:
+    """The state of the window with these options. UsageError for one that is unknown or out of range."""
+    if not (isinstance(size, Sequence) and len(size) == 2):
+        raise UsageError(f"size {size!r}: it must be width and height, such as (1280, 640)")
+    width, height = whole(size[0], "width"), whole(size[1], "height")
+    view = View(**taken(options, View))
+    view.check()
+    recipe = recipe_of(light, bands, options, View)
+    state = State(recipe, view, (recipe.light,))
+    state.check((width, height))
+    return state

@@ -1,0 +1,96 @@
+"""How the numbers of a recipe are seen: the camera, what is drawn over and beside the spheres, and the light's colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from shviewer.analysis.options import Choice, Flag, Number, Pair, check_options, option
+from shviewer.limits import BRIGHTEST, DIMMEST
+
+if TYPE_CHECKING:
+    from shviewer.viewer.camera import Quaternion
+
+TONES = ("none", "reinhard", "aces", "log")
+ERRORS = ("off", "signed", "absolute", "relative")
+"""What the third sphere shows, if there is one."""
+
+SHEETS = ("", "plane", "convergence")
+EVALUATIONS = ("auto", "direct", "map")
+CAMERA_HOME = (78.0, 22.0)
+"""Azimuth and elevation of the camera, degrees: both lobes of Green's light are in sight."""
+
+MAX_EXPOSURE = 64.0
+ZOOM_RANGE = (0.25, 16.0)
+
+
+@dataclass(frozen=True)
+class View:
+    """Equal recipes seen in equal views of equal size give equal pixels."""
+
+    exposure_stops: float | None = option(
+        None,
+        Number(
+            -MAX_EXPOSURE,
+            MAX_EXPOSURE,
+            f"it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops",
+            optional=True,
+            called="exposure",
+        ),
+        "fixed, instead of chosen from the light",
+    )
+    exposure_offset: float = 0.0
+    """Stops added to the exposure, which is `exposure_stops` or, where that is None, chosen from the light."""
+    tone: str = option("none", Choice(TONES), "curve after exposure: none, reinhard, aces or log")
+    error: str = option(
+        "off",
+        Choice(ERRORS),
+        "a third sphere, reconstruction minus original: off (default), signed, absolute or relative",
+    )
+    error_range: float | None = option(
+        None,
+        Number(DIMMEST, BRIGHTEST, f"it must be {DIMMEST:g} to {BRIGHTEST:g}", optional=True),
+        "where its colours end: a radiance, or for the relative error such as 20%; chosen from the light unless given",
+    )
+    marks: bool = option(True, Flag(), "mark the minimum of the reconstruction and the largest error")
+    lobe_view: bool = option(False, Flag(), "surfaces in place of spheres: radius is magnitude, colour is sign")
+    basis: tuple[int, int] | None = option(
+        None,
+        Pair("l and m, such as (2, -1)", whole=True, optional=True),
+        "the surface of one basis function Y(l, m) on the right",
+    )
+    sheet: str = option("", Choice(SHEETS), "convergence: the error against the number of bands")
+    """ "plane" is time against error so far, which no two runs agree on."""
+    evaluate: str = option(
+        "auto",
+        Choice(EVALUATIONS),
+        "sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes",
+    )
+    camera: tuple[float, float] = option(
+        CAMERA_HOME,
+        Pair("azimuth and elevation in degrees, such as (30, 10)"),
+        "where the camera stands, degrees",
+    )
+    light_rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    zoom: float = option(
+        1.0,
+        Number(*ZOOM_RANGE, f"it must be {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g}"),
+        f"size of the spheres, {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g} (default 1)",
+    )
+    cursor: int = 0
+    cursor_visible: bool = False
+    sweep_to: int | None = None
+    """While a sweep plays, the number of bands at which it ends."""
+    help_visible: bool = False
+    message: str = ""
+    layout_tried: str = field(default="", compare=False)
+    """The layout asked for last, from which the next follows even if the image could not have it; "" for the reading's."""
+
+    @property
+    def n_spheres(self) -> int:
+        """Original, reconstruction and perhaps their difference."""
+        return 2 if self.error == "off" else 3
+
+    def check(self) -> None:
+        """UsageError unless every option is within its range."""
+        check_options(self)
