@@ -9,6 +9,7 @@ from typing import NoReturn, TypeVar
 
 import pytest
 
+from shviewer.lights.light import Light
 from shviewer.viewer.composition import Box, Composition, compose
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import state_of
@@ -35,9 +36,9 @@ def hear_signals() -> None:
             signal.signal(number, lambda *_: None)
 
 
-def picture_of(light: object = "green", **changes: object) -> Picture:
+def picture_of(light: str | Light = "green", **changes: object) -> Picture:
     """The picture of a light, an object or a name, with these changes to the state at the start."""
-    return prepare(state_of(light, **changes))  # type: ignore[arg-type]
+    return prepare(state_of(light, **changes))
 
 
 def frame_of(picture: Picture, width: int = 1280, height: int = 640, content_scale: float = 1.0) -> Composition:

@@ -17,11 +17,15 @@ from PIL import Image
 from places import ROOT
 
 import shviewer
+from shviewer.analysis.options import options_of
+from shviewer.analysis.recipe import Recipe
+from shviewer.api import NAMED_ELSEWHERE
 from shviewer.errors import ShviewerError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.view import View
 
 
 def test_importing_loads_neither_numpy_nor_opengl() -> None:
@@ -91,7 +95,7 @@ def test_a_light_may_be_a_text_a_path_a_function_an_array_or_a_light(tmp_path: P
         ("green", {"window_width": "wide"}, "window_width 'wide': it must be a finite number"),
         ("green", {"window": 3}, "window 3: it must be a text"),
         ("green", {"muted": 1}, "muted 1: it must be several bands"),
-        ("green", {"camera": (1,)}, "azimuth and elevation"),
+        ("green", {"camera": (1, 2)}, "option 'camera': there is quantity, "),
         ("green", {"compare": "studio"}, "studio is a built-in light; compare= takes coefficients"),
         ("green", {"compare": lambda directions: directions}, "it must be coefficients"),
     ],
@@ -180,6 +184,21 @@ def test_reconstruct_and_evaluate_basis_say_what_is_wrong() -> None:
             shviewer.evaluate_basis([0, 0, 1], n_bands)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"camera": (1,)}, "azimuth and elevation"),
+        ({"basis": (1.5, 0)}, "basis 1.5: it must be a whole number"),
+        ({"zoom": 99}, "zoom 99: it must be 0.25 to 16"),
+        ({"colour": 1}, "option 'colour': there is .*samples.*zoom"),
+        ({"tone": "filmic", "bands": 0}, "tone 'filmic'"),
+    ],
+)
+def test_a_view_that_cannot_be_had_is_one_line(options: dict[str, Any], says: str) -> None:
+    with pytest.raises(ShviewerError, match=says):
+        shviewer.screenshot("green", **options)
+
+
 @pytest.mark.parametrize("size", [(320,), (320.5, 160), 3])
 def test_a_size_is_two_whole_numbers(size: Any) -> None:
     with pytest.raises(ShviewerError, match=r"width"):
@@ -187,11 +206,16 @@ def test_a_size_is_two_whole_numbers(size: Any) -> None:
 
 
 def test_help_lists_the_options_where_they_are_taken() -> None:
-    from shviewer.api import OPTIONS
-
-    for function in (shviewer.project, shviewer.screenshot, shviewer.view):
-        assert all(name in str(function.__doc__) for name in OPTIONS)
-        assert "see above" not in str(function.__doc__)
+    recipe, view = (options_of(holder).keys() - set(NAMED_ELSEWHERE) for holder in (Recipe, View))
+    assert len(recipe) > 7
+    assert len(view) > 8
+    for function, names in (
+        (shviewer.project, recipe),
+        (shviewer.screenshot, recipe | view),
+        (shviewer.view, recipe | view),
+    ):
+        listed = str(function.__doc__).partition("options:")[2]
+        assert {line.split()[0] for line in listed.splitlines() if line.strip()} == names | {"compare"}
 
 
 def test_coefficients_from_elsewhere_take_the_place_of_the_lights_own(tmp_path: Path) -> None:

@@ -242,7 +242,7 @@ def test_the_stamp_is_that_of_the_file_before_it_was_read(image: Path, monkeypat
 
 def test_a_light_without_a_file_is_what_it_is() -> None:
     light = find_light("green")
-    recipe = recipe_of(light)
+    recipe = Recipe(light)
     assert read_again(recipe) is light
     keep_light(recipe, light)
     assert version_read(recipe) is None

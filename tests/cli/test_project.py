@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from places import ASSETS
 
+from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main
 from shviewer.cli.project import project_lights
 from shviewer.coefficients.programs import CONVENTIONS
@@ -18,7 +19,6 @@ from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.irradiance import IrradianceLight
-from shviewer.viewer.state import State
 
 Capture = pytest.CaptureFixture[str]
 
@@ -220,12 +220,12 @@ def test_a_light_cannot_break_out_of_a_comment(tmp_path: Path) -> None:
 def test_progress_goes_through_the_lights_and_is_cleared(tmp_path: Path, capsys: Capture) -> None:
     shown: list[str] = []
 
-    def state_of(light: str) -> State:
-        return state_of(light, n_bands=2)
+    def recipe_of(light: str) -> Recipe:
+        return Recipe(light, n_bands=2)
 
     assert (
         project_lights(
-            ["green", "no such light", "cosine"], str(tmp_path), "csv", CONVENTIONS["three"], state_of, shown.append
+            ["green", "no such light", "cosine"], str(tmp_path), "csv", CONVENTIONS["three"], recipe_of, shown.append
         )
         == 1
     )

@@ -39,12 +39,12 @@ def state(light, **changes):
 def test_u_splits_and_joins_again():
     first = press(state_of(), "U")
     assert first.recipe.split_sun
-    assert not press(first, "U").split_sun
+    assert not press(first, "U").recipe.split_sun
 
 
 def test_a_noon_sky_becomes_a_few_bands_and_a_sun():
     light = noon()
-    before, after = needs(Recipe(light)), needs(state(light))
+    before, after = needs(Recipe(light)), needs(state(light).recipe)
     assert before.radiance is None
     assert after.radiance is not None
     assert after.radiance <= 9
@@ -120,7 +120,7 @@ def test_info_names_the_sun_and_what_the_rest_needs():
 
 def test_the_irradiance_of_a_split_light_is_that_of_the_rest():
     light = noon()
-    found = subject(state(light, quantity="irradiance"))
-    rest = subject(state(light)).light
+    found = subject(state(light, quantity="irradiance").recipe)
+    rest = subject(state(light).recipe).light
     assert found.light.source is rest
     assert found.whole.source is light

@@ -5,35 +5,29 @@ The key walks of test_state.py never draw, and so they did not see that surfaces
 
 from __future__ import annotations
 
-import json
-from dataclasses import replace
 from pathlib import Path
 from random import Random
 
 import numpy as np
 import pytest
 
-from shviewer.analysis.figures import needs
-from shviewer.analysis.subjects import read_again
-from shviewer.errors import ShviewerError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer import actions, derived, drawn
 from shviewer.viewer import picture as picture_module
-from shviewer.viewer.actions import open_light, orbit, rotate_light, step_sweep, toggle_band, with_bands, zoom
-from shviewer.viewer.camera import facing
+from shviewer.viewer.actions import Command, orbit, rotate_light, step_sweep, toggle_band, with_bands, zoom
 from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.keys import ACTIONS, press
-from shviewer.viewer.overlay.marks import marks_of
+from shviewer.viewer.keys import ACTIONS
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.picture_files import metadata, write_exr
+from shviewer.viewer.picture_files import write_exr
 from shviewer.viewer.screenshot import render_linear, render_rgb
-from shviewer.viewer.state import State, state_of
+from shviewer.viewer.state import state_of
 
 WALKS, STEPS = 12, 170
 """2040 states in all."""
@@ -45,88 +39,70 @@ KEYS = sorted(ACTIONS)
 
 
 class Walk:
-    """One seeded walk. It does for keys that ask for something what the window does, and no more."""
+    """One seeded walk of a session, drawn without a window."""
 
     def __init__(self, seed: int, lights: tuple[str | Light, ...], drops: tuple[str, ...], renderer: Renderer) -> None:
         self.random = Random(seed)
         self.renderer = renderer
         self.drops = drops
         compare = CoefficientLight(np.random.default_rng(seed).normal(size=(36, 3)), "given") if seed % 4 == 3 else None
-        self.state = state_of(lights=lights, light_index=seed % len(lights), compare=compare)
+        n_bands = 5 if compare else (33, 5, MAX_BANDS)[seed % 3]
+        self.session = Session(state_of(*lights, light=lights[seed % len(lights)], n_bands=n_bands, compare=compare))
         self.size = SIZES[0]
         self.trail: list[str] = []
-        self.picture = prepare(self.state)
         self.drawn: set[type[Drawn]] = set()
-        self.bands: set[int] = set()
-        self.refusals: list[str] = []
 
     def step(self) -> None:
         """Do one thing, and draw what comes of it."""
-        last = self.state
-        words, self.state = self._something()
-        self.trail.append(words)
-        try:
-            self._grant(last)
-            self.picture = prepare(self.state, by_map=self.random.random() < 0.2)
-        except ShviewerError as error:  # as the window does: the picture stays, and says why
-            self.refusals.append(str(error))
-            self.state = replace(self.picture.state, message=str(error), sweep_to=None)
-            self.picture = replace(self.picture, state=self.state)
+        self._do_something()
+        self.session.prepare(by_map=self.random.random() < 0.2)
         self._draw()
 
     def composition(self) -> Composition:
-        return compose(*self.size, self.state.zoom, n_spheres=self.state.n_spheres)
+        view = self.session.state.view
+        return compose(*self.size, view.zoom, n_spheres=view.n_spheres)
 
-    def _something(self) -> tuple[str, State]:
-        state, random = self.state, self.random
+    def _do_something(self) -> None:
+        session, state, random = self.session, self.session.state, self.random
         turn = random.uniform(-1, 1), random.uniform(-1, 1)
         choice = random.random()
         if choice < 0.7:
             key = random.choice(KEYS)
-            return key, press(state, key)
-        if choice < 0.76:
-            return f"drag {turn}", orbit(state, *turn)
-        if choice < 0.8:
-            return f"Shift+drag {turn}", rotate_light(state, *turn)
-        if choice < 0.84:
-            return f"scroll {turn[0]}", zoom(state, 12 * turn[0])
-        if choice < 0.88:
+            self.trail.append(key)
+            if session.press(key) is Command.SAVE:
+                session.save(self.renderer, self.composition())
+        elif choice < 0.76:
+            self.trail.append(f"drag {turn}")
+            session.state = orbit(state, *turn)
+        elif choice < 0.8:
+            self.trail.append(f"Shift+drag {turn}")
+            session.state = rotate_light(state, *turn)
+        elif choice < 0.84:
+            self.trail.append(f"scroll {turn[0]}")
+            session.state = zoom(state, 12 * turn[0])
+        elif choice < 0.88:
             self.size = random.choice(SIZES)
-            return f"resize {self.size}", state
-        if choice < 0.92:
+            self.trail.append(f"resize {self.size}")
+        elif choice < 0.92:
             path = random.choice(self.drops)
-            return f"drop {Path(path).name}", replace(open_light(state, path), reloads=state.reloads + 1)
-        if choice < 0.95:
+            self.trail.append(f"drop {Path(path).name}")
+            session.drop(path)
+        elif choice < 0.95:
             n_bands = random.choice((1, 2, 31, 32, 33, 34, 64, MAX_BANDS))
-            return f"{n_bands} bands", with_bands(state, n_bands)
-        if choice < 0.97:
-            band = random.randrange(state.n_bands)
-            return f"click on band {band}", toggle_band(state, band)
-        return "beat", step_sweep(state)
-
-    def _grant(self, last: State) -> None:
-        """What a state asks for beyond being drawn."""
-        state = self.state
-        if state.reloads != last.reloads:
-            read_again(state.recipe)
-        if state.fits != last.fits:
-            found = needs(state.recipe)
-            wanted = found.irradiance if state.quantity == "irradiance" else found.radiance
-            self.state = with_bands(state, wanted or found.best_bands)
-        marks = marks_of(self.picture) if state.looks != last.looks else ()
-        if marks:
-            direction = self.picture.light_from_world.T @ marks[state.looks % len(marks)].direction
-            self.state = replace(state, camera=facing(direction))
-        if state.screenshots != last.screenshots:
-            said = json.loads(metadata(self.picture, self.composition(), self.renderer.version))
-            assert said["bands"] == self.picture.state.n_bands
-        self.state = replace(self.state, closing=False, fullscreen=False)
+            self.trail.append(f"{n_bands} bands")
+            session.state = with_bands(state, n_bands)
+        elif choice < 0.97:
+            band = random.randrange(state.recipe.n_bands)
+            self.trail.append(f"click on band {band}")
+            session.state = toggle_band(state, band)
+        else:
+            self.trail.append("beat")
+            session.state = step_sweep(state)
 
     def _draw(self) -> None:
-        picture, composition = self.picture, self.composition()
-        assert picture.state == self.state
+        picture, composition = self.session.picture, self.composition()
+        assert picture.state == self.session.state
         self.drawn.add(type(picture.drawn))
-        self.bands.add(self.state.n_bands)
         pixels = render_rgb(self.renderer, picture, composition, timing=True)
         assert pixels.shape == (composition.height, composition.width, 3)
         assert pixels.any()
@@ -195,12 +171,13 @@ def all_kinds(tmp_path_factory: pytest.TempPathFactory) -> tuple[tuple[str | Lig
 
 
 @pytest.fixture
-def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+def coarse(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Surfaces and maps for small frames: a walk makes hundreds of them."""
     monkeypatch.setattr(derived, "SURFACE_RADIUS", 2.0)
     monkeypatch.setattr(derived, "LIGHT_ROWS", 129)
     monkeypatch.setattr(drawn, "MAP_COLUMNS", (256, 512))
     monkeypatch.setattr(actions, "MAX_KEY_SAMPLES", 10_000)
+    monkeypatch.chdir(tmp_path)  # where pictures are saved
 
 
 @pytest.mark.usefixtures("coarse")
@@ -213,11 +190,11 @@ def test_every_state_that_a_walk_reaches_is_drawn(
         try:
             walk.step()
         except Exception as error:
-            raise AssertionError(f"seed {seed}, step {number}, after {walk.trail[-40:]}: {walk.state}") from error
+            raise AssertionError(
+                f"seed {seed}, step {number}, after {walk.trail[-40:]}: {walk.session.state}"
+            ) from error
     assert walk.drawn == {DirectSum, SplineMap, Surfaces}
-    assert walk.state.compare or any(n_bands > 32 for n_bands in walk.bands)
-    assert all(walk.refusals)
-    again = [render_rgb(renderer, prepare(walk.state), walk.composition()) for _ in range(2)]
+    again = [render_rgb(renderer, prepare(walk.session.state), walk.composition()) for _ in range(2)]
     np.testing.assert_array_equal(*again)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,25 +29,25 @@ def test_a_band_sweep_changes_nothing_but_the_bands_and_ends_as_the_screenshot_o
         6,
         None,
     ]  # the bars of 6 bands are there all along
-    assert animation.states[-1] == animation.portrait == replace(START, n_bands=6)
+    assert animation.states[-1] == animation.portrait == changed(START, n_bands=6)
 
 
 def test_a_band_sweep_is_what_space_plays() -> None:
-    played = [press(replace(START, n_bands=7), "Space")]
-    while played[-1].sweep_to is not None:
+    played = [press(changed(START, n_bands=7), "Space")]
+    while played[-1].view.sweep_to is not None:
         played.append(step_sweep(played[-1]))
     assert band_sweep(START, 1, 7).states == tuple(played)
 
 
 def test_a_basis_function_and_a_cursor_above_the_bands_of_a_frame_are_left() -> None:
-    states = band_sweep(replace(START, n_bands=8, basis=(4, -3), cursor=6), 2, 8).states
+    states = band_sweep(changed(START, n_bands=8, basis=(4, -3), cursor=6), 2, 8).states
     assert [state.view.cursor for state in states] == [1] * 7
     assert {state.view.basis for state in states} == {None}
 
 
 def test_a_sweep_of_one_band_count_is_one_frame() -> None:
     animation = band_sweep(START, 3, 3, 0.5)
-    assert animation.states == (replace(START, n_bands=3),)
+    assert animation.states == (changed(START, n_bands=3),)
     assert animation.milliseconds == (1500,)
 
 

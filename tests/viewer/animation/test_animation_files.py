@@ -10,7 +10,6 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -28,7 +27,7 @@ from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import state_of
+from shviewer.viewer.state import changed, state_of
 
 SMALL = compose(480, 300)
 STATE = state_of("green", muted=frozenset({1}))
@@ -95,7 +94,7 @@ def screenshots(renderer: Renderer, made: Animation, composition: Composition = 
 def test_every_frame_of_a_webp_sweep_is_the_screenshot_of_its_state_to_the_bit(
     save: Save, renderer: Renderer, light: str
 ) -> None:
-    made = band_sweep(replace(STATE, light=light), 1, 12, 0.3)
+    made = band_sweep(changed(STATE, light=light), 1, 12, 0.3)
     pixels, durations = frames_of(save(made, "a.webp"))
     assert durations == [300] * 11 + [300 * HOLD]
     for shown, wanted in zip(pixels, screenshots(renderer, made), strict=True):
@@ -117,7 +116,7 @@ def test_a_turntable_in_webp_begins_with_the_screenshot_and_every_frame_is_one(s
 def test_every_frame_of_a_gif_is_the_screenshot_within_the_error_of_the_palette(
     save: Save, renderer: Renderer, light: str, kind: str
 ) -> None:
-    state = replace(STATE, light=light)
+    state = changed(STATE, light=light)
     made = band_sweep(state, 1, 8) if kind == "bands" else turntable(state, 8)
     pixels, durations = frames_of(save(made, "a.gif"))
     assert durations == list(made.milliseconds)
@@ -138,7 +137,7 @@ def test_a_gif_has_one_palette_and_keeps_the_blue_of_negative_radiance(save: Sav
 
 
 def test_the_files_tell_what_made_them(save: Save) -> None:
-    sweep, turn = band_sweep(replace(STATE, method="jittered"), 2, 5), turntable(replace(STATE, n_bands=3), 4)
+    sweep, turn = band_sweep(changed(STATE, method="jittered"), 2, 5), turntable(changed(STATE, n_bands=3), 4)
     for name, made, kind in (
         ("a", sweep, {"kind": "bands", "from": 2, "to": 5, "frames": 4, "milliseconds": [700, 700, 700, 2100]}),
         ("b", turn, {"kind": "turntable", "frames": 4, "milliseconds": [80] * 4}),

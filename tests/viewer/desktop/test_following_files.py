@@ -244,7 +244,7 @@ with window.open_window((640, 320)) as handle:
         path.write_bytes(content.read_bytes())
         shown._on_drop(handle, [str(path)])
         shown.frame()
-        print(shown.state.view.message.split(":")[0], shown.picture.light.coefficients(1)[0, 0], sep="|")
+        print(shown.session.state.view.message.split(":")[0], shown.session.picture.light.coefficients(1)[0, 0], sep="|")
     shown._on_drop(handle, ["film_studio"])
     shown.frame()
 print(isolated)

@@ -27,11 +27,11 @@ with window.open_window((640, 320)) as handle:
         if step.startswith("drop "):
             shown._on_drop(handle, [step.removeprefix("drop ")])
         elif step:
-            shown.change(press(shown.state, step))
+            shown.press(step)
         shown.frame()
-        light, reading = shown.picture.light, shown.state.recipe.reading
+        light, reading = shown.session.picture.light, shown.session.state.recipe.reading
         layout = light.layout.name if hasattr(light, "layout") else ""
-        print(json.dumps([light.name, layout, reading.layout, reading.sanitize, shown.state.view.message]))
+        print(json.dumps([light.name, layout, reading.layout, reading.sanitize, shown.session.state.view.message]))
 """
 
 Step = tuple[str, str, str, bool, str]

@@ -93,17 +93,17 @@ with window.open_window((800, 400)) as handle:
     shown = window.Window(handle, state_of(evaluate=sys.argv[1], n_bands=int(sys.argv[2])), False)
     for _ in range(4):
         shown.frame()
-    said["evaluated"] = type(shown.picture.drawn).__name__
-    before, count = [*vars(shown.picture.drawn).values()], len(drawn)
+    said["evaluated"] = type(shown.session.picture.drawn).__name__
+    before, count = [*vars(shown.session.picture.drawn).values()], len(drawn)
     for _ in range(5):
-        shown.change(orbit(shown.state, 0.1, 0.05))
+        shown.change(orbit(shown.session.state, 0.1, 0.05))
         shown.frame()
-        shown.change(rotate_light(shown.state, 0.1, 0.05))
+        shown.change(rotate_light(shown.session.state, 0.1, 0.05))
         shown.frame()
     shown._on_cursor(handle, 200.0, 150.0)
     shown.frame()
     said["redrawn by turning and pointing"] = len(drawn) - count
-    said["same map"] = all(map(operator.is_, vars(shown.picture.drawn).values(), before))
+    said["same map"] = all(map(operator.is_, vars(shown.session.picture.drawn).values(), before))
     composition = shown.composition()
     assert shown.hovering
     said["layers of the probe"] = len(shown.canvas.layers(composition, shown.mouse)) - len(shown.canvas.layers(composition))
@@ -111,7 +111,7 @@ with window.open_window((800, 400)) as handle:
     assert not shown.hovering
     said["error"] = shown.canvas.renderer.context.error
     count = len(drawn)
-    shown.change(press(shown.state, "X"))
+    shown.press("X")
     shown.frame()
     said["redrawn by a key"] = len(drawn) - count
 print(json.dumps(said))

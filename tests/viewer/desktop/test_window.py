@@ -173,7 +173,7 @@ with window.open_window((640, 320)) as handle:
     for path in sys.argv[1:]:
         shown._on_drop(handle, [path])
         shown.frame()
-        print(shown.picture.light.name, "|", shown.state.view.message)
+        print(shown.session.picture.light.name, "|", shown.session.state.view.message)
 """
 
 
@@ -205,9 +205,9 @@ from shviewer.viewer.state import State, changed, state_of
 with window.open_window((640, 320)) as handle:
     shown = window.Window(handle, state_of(n_bands=32, window="dering", sweep_to=40), False)
     shown.frame()
-    shown.change(step_sweep(shown.state))
+    shown.change(step_sweep(shown.session.state))
     shown.frame()
-    print(shown.state.recipe.n_bands, shown.state.view.sweep_to, shown.state.view.message)
+    print(shown.session.state.recipe.n_bands, shown.session.state.view.sweep_to, shown.session.state.view.message)
 """
 
 

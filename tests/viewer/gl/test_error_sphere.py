@@ -250,4 +250,4 @@ def test_pixels_and_positions_agree(renderer: Renderer) -> None:
     found = sphere.position(300.5, 70.5)
     assert found == pytest.approx(tuple(place[70, 300]))
     assert sphere.position(10.0, 10.0) is None
-    assert state_of(error="signed").n_spheres == 3
+    assert state_of(error="signed").view.n_spheres == 3

@@ -45,9 +45,9 @@ from shviewer.viewer.gl.shared import (
     pack_coefficients,
     pack_lobes,
 )
-from shviewer.viewer.picture import Picture
+from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import render_linear, render_rgb
-from shviewer.viewer.state import State, state_of
+from shviewer.viewer.state import changed, state_of
 
 ORIGINAL, RECONSTRUCTION = 0, 1
 VIEWS = {
@@ -461,15 +461,10 @@ def test_equal_states_give_equal_bytes_whatever_was_shown_before(renderer: Rende
     order = np.random.default_rng(0).integers(len(states), size=40)
     first: dict[int, bytes] = {}
     for number in order:
-        picture = picture_of(states[number].light, **changes(states[number]))
+        picture = prepare(changed(states[number]))  # another object, and equal
         shown = render_rgb(renderer, picture, frame).tobytes() + linear(renderer, picture, frame).tobytes()
         assert first.setdefault(int(number), shown) == shown
     assert len(set(first.values())) == len(states)
-
-
-def changes(state: State) -> dict[str, object]:
-    names = ("n_bands", "muted", "camera", "help_visible", "exposure_stops", "message")
-    return {name: getattr(state, name) for name in names}
 
 
 def test_a_renderer_frees_what_it_made_and_a_second_one_draws_the_same(renderer: Renderer) -> None:

@@ -70,7 +70,7 @@ def test_marks_name_their_values_with_a_sign() -> None:
 
 @pytest.mark.parametrize(
     "changes",
-    [{"marks": False}, {"lobe_view": True}, {"help_visible": True}, {"lights": ("constant",)}],
+    [{"marks": False}, {"lobe_view": True}, {"help_visible": True}, {"light": "constant"}],
     ids=["X", "surfaces", "help", "nothing negative"],
 )
 def test_there_are_no_marks_where_none_are_wanted(changes: dict[str, object]) -> None:

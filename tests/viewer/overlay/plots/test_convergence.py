@@ -427,7 +427,7 @@ def test_a_window_without_room_says_so() -> None:
 def test_one_sheet_is_shown_at_a_time_and_none_over_the_help() -> None:
     drawn = draw_overlay(PICTURES["green"], compose(1280, 640))
     assert drawn.plane is None
-    helped = replace(PICTURES["green"], state=replace(PICTURES["green"].state, help_visible=True))
+    helped = replace(PICTURES["green"], state=changed(PICTURES["green"].state, help_visible=True))
     assert draw_overlay(helped, compose(1280, 640)).convergence is None
 
 

@@ -158,7 +158,7 @@ def test_measurements_go_with_their_light() -> None:
         MEMORY.results(FunctionLight(lambda d: d[:, 2], str(number)), "anything")
     assert measured(first) == ()
     assert draw_overlay(first, compose(1280, 640)).plane is None
-    assert first.recipe.light not in MEMORY  # looking it up brings nothing back
+    assert first.light not in MEMORY  # looking it up brings nothing back
 
 
 # --- axes
