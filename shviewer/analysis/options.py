@@ -30,21 +30,28 @@ class Option(NamedTuple):
     """One row of the table."""
 
     name: str
+    default: Any
     kind: Kind
     help: str
-    default: Any
+    flag: str = ""
+    """On the command line; "" for what is told with another option."""
+    metavar: str | tuple[str, ...] = ""
+    const: Any = None
+    """What a flag without a value means; None for one that has a value."""
 
 
-def option(default: T, kind: Kind, help: str) -> T:
+def option(
+    default: T, kind: Kind, help: str, flag: str = "", metavar: str | tuple[str, ...] = "", const: T | None = None
+) -> T:
     """A field of a dataclass that is an option."""
-    held: T = field(default=default, metadata={"option": (kind, help)})
+    held: T = field(default=default, metadata={"option": (kind, help, flag, metavar, const)})
     return held
 
 
 def options_of(*holders: type) -> dict[str, Option]:
     """The options of dataclasses by their names, in the order of their fields."""
     return {
-        part.name: Option(part.name, part.metadata["option"][0], part.metadata["option"][1], part.default)
+        part.name: Option(part.name, part.default, *part.metadata["option"])
         for holder in holders
         for part in fields(holder)
         if "option" in part.metadata
@@ -118,6 +125,11 @@ class Number:
         inside = self.least <= value <= self.most if self.closed else self.least < value < self.most
         if not inside:
             raise UsageError(f"{self.called or _said(name)} {value:g}: {self.rule}")
+
+
+@dataclass(frozen=True)
+class Share(Number):
+    """A number that may be told in percent."""
 
 
 @dataclass(frozen=True)

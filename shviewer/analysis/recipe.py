@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from shviewer.analysis.options import Bands, Choice, Flag, Number, Whole, check_options, option
+from shviewer.analysis.options import Bands, Choice, Flag, Number, Share, Whole, check_options, option
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
 
@@ -38,33 +38,59 @@ class Recipe:
         5,
         Whole(1, MAX_BANDS, "{} bands", f"the viewer shows 1 to {MAX_BANDS}"),
         f"number of bands, 1 to {MAX_BANDS} (default 5)",
+        "--bands",
+        "N",
     )
     tolerance: float = option(
         0.05,
-        Number(0, 1, "it must be between 0 and 1, such as 0.05 or 5%", closed=False),
+        Share(0, 1, "it must be between 0 and 1, such as 0.05 or 5%", closed=False),
         "as many bands as keep the relative L2 error within T, such as 5% or 0.05, instead of --bands",
+        "--tolerance",
+        "T",
     )
     quantity: str = option(
         "radiance",
         Choice(QUANTITIES),
         "radiance (default), or irradiance: what a white Lambertian surface receives",
+        "--for",
+        "WHAT",
     )
-    split_sun: bool = option(False, Flag(), "take suns out of the light as discs of their own and project the rest")
-    window: str = option("none", Choice(WINDOWS), "none, hann, lanczos, gauss (WIDTH in bands, default N) or dering")
+    split_sun: bool = option(
+        False,
+        Flag(),
+        "take suns out of the light as discs of their own and project the rest",
+        "--split-sun",
+        const=True,
+    )
+    window: str = option(
+        "none",
+        Choice(WINDOWS),
+        "none, hann, lanczos, gauss (WIDTH in bands, default N) or dering",
+        "--window",
+        "W[:WIDTH]",
+    )
     window_width: float | None = option(
         None,
         Number(0, float("inf"), "it must be positive and finite, in bands", closed=False, optional=True),
         "of the window, in bands; as many as are shown unless given",
     )
-    muted: frozenset[int] = option(frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3")
-    method: str = option("best", Choice(METHODS), "best (of this light), jittered (the paper's) or gauss-legendre")
+    muted: frozenset[int] = option(frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3", "--mute", "L,L")
+    method: str = option(
+        "best", Choice(METHODS), "best (of this light), jittered (the paper's) or gauss-legendre", "--method", "M"
+    )
     samples: int = option(
         10_000,
         Whole(1, MAX_SAMPLES, "{} samples", f"there must be 1 to {MAX_SAMPLES}"),
         "of the sampled methods (default 10000)",
+        "--samples",
+        "K",
     )
     seed: int = option(
-        0, Whole(0, float("inf"), "seed {}", "it must not be negative"), "of the jittered samples (default 0)"
+        0,
+        Whole(0, float("inf"), "seed {}", "it must not be negative"),
+        "of the jittered samples (default 0)",
+        "--seed",
+        "S",
     )
     compare: CoefficientLight | None = None
     """Given coefficients, shown instead of the light's own; no more bands than they have are shown."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
 from shviewer.errors import UsageError
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
     from shviewer.viewer.state import State
 
 
+def chosen_of(options: argparse.Namespace, holder: type) -> dict[str, Any]:
+    """The options of a dataclass that are given, by the names of its fields."""
+    given = vars(options)
+    return {name: given[name] for name in options_of(holder) if given.get(name) is not None}
+
+
 def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
     """The recipe that the options ask for, of LIGHT, and what there is to say of it; "" if nothing.
 
@@ -23,23 +30,12 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
     """
     from shviewer.lights.find import COEFFICIENT_SUFFIXES, split_light
 
-    window, separator, width = options.window.partition(":")
+    chosen = chosen_of(options, Recipe)
+    window, separator, width = chosen.get("window", "none").partition(":")
     if separator and window in ("none", "dering"):
         raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
-    recipe = Recipe(
-        light=light,
-        reading=reading_from(options),
-        n_bands=Recipe.n_bands if options.bands is None else options.bands,
-        muted=options.mute,
-        quantity=options.quantity or Recipe.quantity,
-        split_sun=options.split_sun,
-        window=window,
-        window_width=_finite_width(width) if separator else None,
-        method=options.method,
-        samples=options.samples,
-        seed=options.seed,
-        tolerance=Recipe.tolerance if options.tolerance is None else options.tolerance,
-    )
+    chosen |= {"window": window, "window_width": _finite_width(width) if separator else None}
+    recipe = Recipe(light, reading_from(options), **chosen)
     recipe.check()
     compared, said = vars(options).get("compare"), ""
     if compared:
@@ -51,7 +47,7 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
     if compared or split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
         from shviewer.analysis.comparison import as_the_file_holds
 
-        any_bands = options.bands is None and options.tolerance is None
+        any_bands = options.n_bands is None and options.tolerance is None
         recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
     return (recipe if options.tolerance is None else _fitted(recipe, options)), said
 
@@ -60,26 +56,21 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     """The state that the options ask for. UsageError for one out of range."""
     from shviewer.lights.find import built_in_lights
     from shviewer.viewer.actions import open_light
-    from shviewer.viewer.camera import IDENTITY, towards
+    from shviewer.viewer.camera import towards
     from shviewer.viewer.state import State, changed
     from shviewer.viewer.view import View
 
     elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
     if any(abs(elevation) > 90 for elevation in elevations):
         raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
-    view = View(
-        exposure_stops=options.exposure,
-        error=options.error,
-        error_range=_error_range(options),
-        tone=options.tone,
-        marks=not options.no_marks,
-        lobe_view=options.lobes or options.basis is not None,
-        evaluate=options.evaluate,
-        sheet="convergence" if options.convergence else "",
-        camera=(options.camera[0] % 360, options.camera[1]) if options.camera else View.camera,
-        light_rotation=towards(*options.rotate_light) if options.rotate_light else IDENTITY,
-        zoom=options.zoom,
-    )
+    chosen = chosen_of(options, View) | {"error_range": _error_range(options)}
+    if options.camera:
+        chosen["camera"] = options.camera[0] % 360, options.camera[1]
+    if options.basis:
+        chosen |= {"basis": None, "lobe_view": True}  # as soon as its bands are known
+    if options.rotate_light:
+        chosen["light_rotation"] = towards(*options.rotate_light)
+    view = View(**chosen)
     State(Recipe(), view).check(tuple(options.size))
     recipe, said = recipe_from(options, options.light)
     lights = tuple(built_in_lights()) if all_lights else (options.light,)
@@ -107,8 +98,8 @@ def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
     """As many bands as the tolerance needs, said on stderr; where none are enough, the best there is."""
     from shviewer.analysis.figures import estimate_from_samples, needs
 
-    if options.bands is not None:
-        raise UsageError(f"--bands {options.bands} and --tolerance {options.tolerance:g}: give one of them")
+    if options.n_bands is not None:
+        raise UsageError(f"--bands {options.n_bands} and --tolerance {options.tolerance:g}: give one of them")
     found = needs(recipe)
     counts = {"radiance": found.radiance, "irradiance": found.irradiance}
     says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())

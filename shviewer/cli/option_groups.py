@@ -7,12 +7,24 @@ from __future__ import annotations
 
 import argparse
 import math
-from typing import NoReturn
+from collections.abc import Callable, Container
+from typing import Any, NoReturn
+
+from shviewer.analysis.options import Bands, Number, Option, Pair, Share, Whole, options_of
+from shviewer.analysis.recipe import Recipe
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
     "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl)"
 )
+
+
+TEXTS = ("window", "error_range")
+"""A window with its width, and a radiance or a share in percent."""
+
+
+LARGE = ("samples",)
+"""Counts that may be told as 1e6."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -25,94 +37,47 @@ class OneLineParser(argparse.ArgumentParser):
 def add_view_options(parser: OneLineParser) -> None:
     """LIGHT, and everything that a picture of it depends on."""
     parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
-    add_projection_options(parser)
+    add_table(parser, Recipe)
     add_picture_options(parser)
     add_reading_options(parser)
 
 
-def add_projection_options(parser: OneLineParser) -> None:
-    """How a light is projected, and what is kept of it."""
-    parser.add_argument("--bands", metavar="N", type=int, help="number of bands, 1 to 128 (default 5)")
-    parser.add_argument(
-        "--tolerance",
-        metavar="T",
-        type=_tolerance,
-        help="as many bands as keep the relative L2 error within T, such as 5%% or 0.05, instead of --bands",
-    )
-    parser.add_argument(
-        "--for",
-        metavar="WHAT",
-        dest="quantity",
-        help="radiance (default), or irradiance: what a white Lambertian surface receives",
-    )
-    parser.add_argument(
-        "--split-sun", action="store_true", help="take suns out of the light as discs of their own and project the rest"
-    )
-    parser.add_argument(
-        "--window",
-        metavar="W[:WIDTH]",
-        default="none",
-        help="none, hann, lanczos, gauss (WIDTH in bands, default N) or dering",
-    )
-    parser.add_argument(
-        "--mute", metavar="L,L", type=_band_list, default=frozenset(), help="bands to leave out, such as 1,3"
-    )
-    parser.add_argument(
-        "--method", metavar="M", default="best", help="best (of this light), jittered (the paper's) or gauss-legendre"
-    )
-    parser.add_argument(
-        "--samples", metavar="K", type=_count, default=10_000, help="of the sampled methods (default 10000)"
-    )
-    parser.add_argument("--seed", metavar="S", type=int, default=0, help="of the jittered samples (default 0)")
+def add_table(parser: OneLineParser, holder: type, names: Container[str] = ()) -> None:
+    """The options that a dataclass holds, or those of these names. What is not given is None."""
+    for row in options_of(holder).values():
+        if row.flag and (not names or row.name in names):
+            takes = {"action": "store_const", "const": row.const} if row.const is not None else _values(row)
+            parser.add_argument(row.flag, dest=row.name, help=row.help.replace("%", "%%"), **takes)
+
+
+def _values(row: Option) -> dict[str, Any]:
+    """What argparse has to know of the values. Two options are texts that are taken apart later."""
+    if row.name in TEXTS:
+        return {"metavar": row.metavar}
+    readers: dict[type, Callable[[str], object]] = {Whole: int, Share: _tolerance, Number: finite, Bands: _band_list}
+    reader = _count if row.name in LARGE else readers.get(type(row.kind), str)
+    if isinstance(row.kind, Pair):
+        return {"metavar": row.metavar, "nargs": 2, "type": int if row.kind.whole else finite}
+    return {"metavar": row.metavar, "type": reader}
 
 
 def add_picture_options(parser: OneLineParser) -> None:
-    """What is drawn of it, and how."""
+    """What is drawn of a light beside what is in the table: coefficients to compare, a turn of the light, a size."""
+    from shviewer.viewer.view import View  # what draws nothing loads nothing of the viewer
+
     parser.add_argument(
         "--compare",
         metavar="FILE",
         help="show the coefficients in FILE instead of the light's own, and say how well they agree, or by which usual "
         "mistake they are off; finds out the convention of a bare list, if none is named",
     )
-    parser.add_argument("--exposure", metavar="STOPS", type=finite, help="fixed, instead of chosen from the light")
-    parser.add_argument("--tone", metavar="T", default="none", help="curve after exposure: none, reinhard, aces or log")
-    parser.add_argument(
-        "--error",
-        metavar="E",
-        default="off",
-        help="a third sphere, reconstruction minus original: off (default), signed, absolute or relative",
-    )
-    parser.add_argument(
-        "--error-range",
-        metavar="R",
-        help="where its colours end: a radiance, or for the relative error such as 20%%; chosen from the light unless given",
-    )
-    parser.add_argument("--no-marks", action="store_true", help="do not mark the minimum and the largest error")
-    parser.add_argument(
-        "--lobes", action="store_true", help="surfaces in place of spheres: radius is magnitude, colour is sign"
-    )
-    parser.add_argument(
-        "--basis", metavar=("L", "M"), nargs=2, type=int, help="the surface of one basis function Y(l, m) on the right"
-    )
-    parser.add_argument("--convergence", action="store_true", help="plot the error against the number of bands")
-    parser.add_argument(
-        "--evaluate",
-        metavar="E",
-        default="auto",
-        help="sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes",
-    )
-    parser.add_argument(
-        "--camera", metavar=("AZIMUTH", "ELEVATION"), nargs=2, type=finite, help="where the camera stands, degrees"
-    )
+    add_table(parser, View)
     parser.add_argument(
         "--rotate-light",
         metavar=("AZIMUTH", "ELEVATION"),
         nargs=2,
         type=finite,
         help="turn the light so that its +x axis points there, degrees",
-    )
-    parser.add_argument(
-        "--zoom", metavar="Z", type=finite, default=1.0, help="size of the spheres, 0.25 to 16 (default 1)"
     )
     parser.add_argument(
         "--size", metavar=("W", "H"), nargs=2, type=int, default=(1280, 640), help="pixels (default 1280 640)"

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import (
     LIGHT_HELP,
     OneLineParser,
-    add_projection_options,
     add_reading_options,
+    add_table,
     add_view_options,
     finite,
     share,
@@ -161,7 +162,7 @@ def project_parser() -> OneLineParser:
         help="y-up or z-up (right-handed), y-up-left or z-up-left, or which of our axes x, y and z are, such as +x+z-y",
     )
     parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
-    add_projection_options(parser)
+    add_table(parser, Recipe)
     add_reading_options(parser, convention="--input-convention")
     return parser
 

@@ -52,8 +52,8 @@ def run(options: argparse.Namespace) -> int:
     convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
     if convention.quantity:
         options.quantity = convention.quantity.removesuffix("-over-pi")
-    if options.bands is None and options.tolerance is None and convention.most_bands:
-        options.bands = min(Recipe.n_bands, convention.most_bands)
+    if options.n_bands is None and options.tolerance is None and convention.most_bands:
+        options.n_bands = min(Recipe.n_bands, convention.most_bands)
 
     def recipe_of(light: str) -> Recipe:
         recipe, _ = recipe_from(options, light)

@@ -60,8 +60,8 @@ def _check_sweep(options: argparse.Namespace) -> None:
         )
     if options.frames is not None:
         raise UsageError(f"--frames {options.frames}: a sweep has one for each band count; give --from and --to")
-    if options.bands is not None:
-        raise UsageError(f"--bands {options.bands}: a sweep goes through them; give --from and --to, or --turntable")
+    if options.n_bands is not None:
+        raise UsageError(f"--bands {options.n_bands}: a sweep goes through them; give --from and --to, or --turntable")
     if options.tolerance is not None:
         raise UsageError(
             f"--tolerance {options.tolerance:g}: a sweep goes through all bands; give --from and --to, or --turntable"

@@ -38,44 +38,62 @@ class View:
             called="exposure",
         ),
         "fixed, instead of chosen from the light",
+        "--exposure",
+        "STOPS",
     )
     exposure_offset: float = 0.0
     """Stops added to the exposure, which is `exposure_stops` or, where that is None, chosen from the light."""
-    tone: str = option("none", Choice(TONES), "curve after exposure: none, reinhard, aces or log")
+    tone: str = option("none", Choice(TONES), "curve after exposure: none, reinhard, aces or log", "--tone", "T")
     error: str = option(
         "off",
         Choice(ERRORS),
         "a third sphere, reconstruction minus original: off (default), signed, absolute or relative",
+        "--error",
+        "E",
     )
     error_range: float | None = option(
         None,
         Number(DIMMEST, BRIGHTEST, f"it must be {DIMMEST:g} to {BRIGHTEST:g}", optional=True),
         "where its colours end: a radiance, or for the relative error such as 20%; chosen from the light unless given",
+        "--error-range",
+        "R",
     )
-    marks: bool = option(True, Flag(), "mark the minimum of the reconstruction and the largest error")
-    lobe_view: bool = option(False, Flag(), "surfaces in place of spheres: radius is magnitude, colour is sign")
+    marks: bool = option(True, Flag(), "do not mark the minimum and the largest error", "--no-marks", const=False)
+    lobe_view: bool = option(
+        False, Flag(), "surfaces in place of spheres: radius is magnitude, colour is sign", "--lobes", const=True
+    )
     basis: tuple[int, int] | None = option(
         None,
         Pair("l and m, such as (2, -1)", whole=True, optional=True),
         "the surface of one basis function Y(l, m) on the right",
+        "--basis",
+        ("L", "M"),
     )
-    sheet: str = option("", Choice(SHEETS), "convergence: the error against the number of bands")
+    sheet: str = option(
+        "", Choice(SHEETS), "plot the error against the number of bands", "--convergence", const="convergence"
+    )
     """ "plane" is time against error so far, which no two runs agree on."""
     evaluate: str = option(
         "auto",
         Choice(EVALUATIONS),
         "sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes",
+        "--evaluate",
+        "E",
     )
     camera: tuple[float, float] = option(
         CAMERA_HOME,
         Pair("azimuth and elevation in degrees, such as (30, 10)"),
         "where the camera stands, degrees",
+        "--camera",
+        ("AZIMUTH", "ELEVATION"),
     )
     light_rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
     zoom: float = option(
         1.0,
         Number(*ZOOM_RANGE, f"it must be {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g}"),
         f"size of the spheres, {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g} (default 1)",
+        "--zoom",
+        "Z",
     )
     cursor: int = 0
     cursor_visible: bool = False
