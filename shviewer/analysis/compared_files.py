@@ -49,7 +49,7 @@ def _found(state: ViewState, numbers: NDArray[Any]) -> Found:
     """By the radiance of what is projected."""
     light = load_light(replace(state, quantity="radiance"))
     most = min(MAX_BANDS, max(1, ceil(sqrt(numbers.size))))  # of a grey list; others have fewer
-    return find_convention(numbers / light.unit, project(light, *BEST, most).coefficients / light.unit)
+    return find_convention(numbers, project(light, *BEST, most).coefficients)
 
 
 def _said(name: str, found: Found) -> str:

@@ -66,8 +66,8 @@ def caption(state: ViewState) -> str:
 @remember(most=4)
 def verdict(light: Light, given: CoefficientLight) -> str:
     """One line on given coefficients: how well they agree with the light's own, or by which usual mistake they would."""
-    exact = project(light, *BEST, given.n_bands).coefficients / light.unit
-    shown = project(light, given, 0, 0, given.n_bands).coefficients / light.unit
+    exact = project(light, *BEST, given.n_bands).coefficients
+    shown = project(light, given, 0, 0, given.n_bands).coefficients
     norm, off = float(np.linalg.norm(exact)), float(np.linalg.norm(exact - shown))
     if off <= BAD * norm:
         over = f"its {given.n_bands} bands" if given.n_bands > 1 else "its one band"
@@ -129,5 +129,5 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
             words = (*layout, *(() if same else (f"in the convention of {convention.name}",)))
             with suppress(ValueError):  # complex numbers of no real function
                 radiance = CoefficientLight.of_numbers(table, convention).given
-                found[words] = radiance * per_coefficient(cosine) / light.unit
+                found[words] = radiance * per_coefficient(cosine)
     return found

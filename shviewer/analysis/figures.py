@@ -104,8 +104,8 @@ def estimate_from_samples(state: ViewState) -> SampleEstimate:
     """
     light = load_light(state)
     halves = [jittered(max(state.samples // 2, 1), seed) for seed in (state.seed, state.seed + HALF_SEED)]
-    first, second = (project_samples(light.integrand, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
-    squares = np.concatenate([((light.integrand(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
+    first, second = (project_samples(light.integrand, half, MAX_DIRECT_BANDS) for half in halves)
+    squares = np.concatenate([(light.integrand(half.directions) ** 2).sum(axis=1) for half in halves])
     deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
     if len(squares) < MIN_ESTIMATE:
         return SampleEstimate(None, 1, None)
@@ -118,7 +118,7 @@ def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: 
     exact = project(light, *BEST, MAX_BANDS).coefficients
     n_bands = MAX_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
     shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
-    return errors_by_band_count(light.products(), exact[: n_bands**2] / light.unit, shown / light.unit)
+    return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 
 
 @remember(most=64)
@@ -128,21 +128,17 @@ def reconstruct(
     """What is shown of a projection, (n_bands**2, 3), and how good it is."""
     exact = project(light, *BEST, projection.n_bands).coefficients
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
-    factors = _window_factors(shown / light.unit, window_name, width)
+    factors = _window_factors(shown, window_name, width)
     shown = shown * per_coefficient(factors)
     total = float(np.trace(light.products()))
-    power = band_power(exact / light.unit).sum(axis=1)
+    power = band_power(exact).sum(axis=1)
     extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
     irradiance = light if isinstance(light, IrradianceLight) else irradiance_of(light)
     cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
-    shaded = squared_error(
-        irradiance.products().diagonal(), cosine * exact[: n_bands**2] / light.unit, cosine * shown / light.unit
-    )
+    shaded = squared_error(irradiance.products().diagonal(), cosine * exact[: n_bands**2], cosine * shown)
     figures = Figures(
         irradiance_relative_l2=relative(sum(shaded), irradiance.products().diagonal()),
-        channels=channel_figures(
-            light.products(), exact[: n_bands**2] / light.unit, shown / light.unit, extremes.peak / light.unit
-        ),
+        channels=channel_figures(light.products(), exact[: n_bands**2], shown, extremes.peak),
         floor=max(PARSEVAL_FLOOR, light.accuracy()),
         extremes=extremes,
         energy_share=tuple(float(p) / total if total else 0.0 for p in power),

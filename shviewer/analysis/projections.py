@@ -115,7 +115,7 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
     """Add to what is known of the cost of this way to project."""
     n_bands, shown = projection.n_bands, projection.coefficients
     exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
-    errors = errors_by_band_count(light.products(), exact / light.unit, shown / light.unit)
+    errors = errors_by_band_count(light.products(), exact, shown)
     known = _known(light, n_bands)
     if isinstance(light, IrradianceLight) and sampling != BEST:  # the only time spent was that on the light itself
         known[sampling] = replace(_known(light.source, n_bands)[sampling], errors=errors)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, count_bands, safe_unit
+from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 
@@ -122,12 +122,12 @@ class ErrorGrid:
 
     def _negative_energy(self, values: Array, shown: Array) -> float:
         """The negative part is measured on the grid, the whole is the sum of squared coefficients (Parseval)."""
-        if values.min() >= 0:
+        whole = float((shown**2).sum())
+        if values.min() >= 0 or whole == 0:  # squares of less than 1e-160 may be 0
             return 0.0
-        unit = safe_unit(float(np.abs(shown).max()))
-        negative = np.minimum(values, 0).reshape(len(self.theta), -1) / unit
+        negative = np.minimum(values, 0).reshape(len(self.theta), -1)
         squares = np.einsum("rx,rx->r", negative, negative) @ self.row_share
-        return min(1.0, 4 * np.pi * float(squares) / float(((shown / unit) ** 2).sum()))
+        return min(1.0, 4 * np.pi * float(squares) / whole)
 
 
 def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -248,7 +248,7 @@ def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tupl
 
 def _vertex(values: Array) -> tuple[Array, Array]:
     """Where in the patch (units of PATCH) the paraboloids fitted to values (k, 25) are highest; 0, 0 where they are not."""
-    _, slope_a, slope_b, bend_a, across, bend_b = PARABOLOID @ (values / safe_unit(float(np.abs(values).max()))).T
+    _, slope_a, slope_b, bend_a, across, bend_b = PARABOLOID @ values.T
     determinant = bend_a * bend_b - across**2
     peaked = (bend_a < 0) & (determinant > 0)
     determinant = np.where(peaked, determinant, 1.0)

@@ -17,7 +17,7 @@ from shviewer.coefficients.convention import RADIANCE, Convention, recovered_rad
 from shviewer.coefficients.programs import CONVENTIONS, OURS, convention_text
 from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
-from shviewer.harmonics.basis import Array, count_bands, safe_unit
+from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
@@ -128,13 +128,8 @@ class CoefficientLight:
         found[:kept] = self.given[:kept]
         return found
 
-    @cached_property
-    def unit(self) -> float:
-        return safe_unit(float(np.abs(self.given).max()))
-
     def products(self) -> Array:
-        scaled = self.given / self.unit
-        return np.asarray(scaled.T @ scaled)
+        return np.asarray(self.given.T @ self.given)
 
     def accuracy(self) -> float:
         return 0.0

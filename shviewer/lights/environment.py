@@ -42,8 +42,6 @@ class EnvironmentLight:
     """The file's format in words; None for an image that was not read."""
 
     best_method: ClassVar[str] = "exact texel integrals"
-    unit: ClassVar[float] = 1.0
-    """Squares of float32 texels are far inside float64."""
 
     def __init__(
         self,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.errors import LightError
-from shviewer.harmonics.basis import Array, safe_unit
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
@@ -113,28 +113,19 @@ class FunctionLight:
     def products(self) -> Array:
         return self._sampling.products
 
-    @cached_property
-    def unit(self) -> float:
-        few = gauss_legendre(2 * FIRST_ROWS).direction_set().directions
-        return safe_unit(float(np.abs(self.radiance(few)).max()))
-
     def accuracy(self) -> float:
         return self._sampling.movement
 
     @cached_property
     def _sampling(self) -> _Sampling:
         """As many points as the function's sharpness asks for, up to a limit."""
-
-        def scaled(directions: Array) -> Array:
-            return self.radiance(directions) / self.unit
-
         rows, last = FIRST_ROWS, None
         while True:
-            coefficients, products = project_product(scaled, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
+            coefficients, products = project_product(self.radiance, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
             errors = errors_by_band_count(products, coefficients, coefficients)
             movement = float("inf") if last is None else float(np.abs(errors - last).max())
             if movement <= MOVEMENT or 2 * rows > LAST_ROWS:
-                return _Sampling(rows, coefficients * self.unit, products, movement)
+                return _Sampling(rows, coefficients, products, movement)
             rows, last = 2 * rows, errors
 
     def landmarks(self) -> Array:

@@ -55,15 +55,11 @@ class IrradianceLight:
     def best_method(self) -> str:
         return self.source.best_method
 
-    @property
-    def unit(self) -> float:
-        return self.source.unit
-
     def accuracy(self) -> float:
         """That of the source, and for images and functions what its bands beyond MAP_BANDS could still hold."""
         if isinstance(self.source, LobeLight):
             return 0.0
-        kept = self.source.coefficients(MAP_BANDS) / self.unit
+        kept = self.source.coefficients(MAP_BANDS)
         beyond = max(float(np.trace(self.source.products()) - (kept**2).sum()), 0.0)
         total = float(np.trace(self.products()))
         tail = float(irradiance_factors(MAP_BANDS + 2)[-2:].__abs__().max())
@@ -81,8 +77,8 @@ class IrradianceLight:
     @cached_property
     def _products(self) -> Array:
         if isinstance(self.source, LobeLight):
-            return _lobe_products(self.source.lobes, self.unit)
-        coefficients = self.coefficients(MAP_BANDS) / self.unit
+            return _lobe_products(self.source.lobes)
+        coefficients = self.coefficients(MAP_BANDS)
         return np.asarray(coefficients.T @ coefficients)
 
     def landmarks(self) -> Array:
@@ -125,7 +121,7 @@ class IrradianceLight:
         return LatLongMap(np.ascontiguousarray(values, dtype=np.float32), rows_on_poles=True)
 
 
-def _lobe_products(lobes: tuple[Lobe, ...], unit: float) -> Array:
+def _lobe_products(lobes: tuple[Lobe, ...]) -> Array:
     """Sum over bands and pairs of lobes, by the addition theorem: (2l+1)/4pi A^2 lambda lambda' P(l)(cos of the angle)."""
     strength = irradiance_factors(SERIES_BANDS) ** 2 * (2 * np.arange(SERIES_BANDS) + 1) / (4 * np.pi)
     zonal = [lobe.profile.zonal(SERIES_BANDS) for lobe in lobes]
@@ -134,9 +130,7 @@ def _lobe_products(lobes: tuple[Lobe, ...], unit: float) -> Array:
         for j, second in enumerate(lobes[: i + 1]):
             angle = angle_between(first, second)
             legendre = gegenbauer_ratios(np.cos(angle), 2 * np.sin(angle / 2) ** 2, 0, SERIES_BANDS)
-            pair = float((strength * zonal[i] * zonal[j] * legendre).sum()) * np.outer(
-                first.radiance / unit, second.radiance / unit
-            )
+            pair = float((strength * zonal[i] * zonal[j] * legendre).sum()) * np.outer(first.radiance, second.radiance)
             products += pair if i == j else pair + pair.T
     return products
 

@@ -36,12 +36,8 @@ class Light(Protocol):
     def coefficients(self, n_bands: int) -> Array:
         """(n_bands**2, 3) by the best way this light knows."""
 
-    @property
-    def unit(self) -> float:
-        """What is squared is divided by this first: 1, or a power of two where squares would leave float64."""
-
     def products(self) -> Array:
-        """Integrals of f_i f_j / unit^2 over the channels, (3, 3), by the same quadrature as `coefficients`."""
+        """Integrals of f_i f_j over the channels, (3, 3), by the same quadrature as `coefficients`."""
 
     def accuracy(self) -> float:
         """How far a relative L2 error of this light may be off for want of quadrature points; 0 where it is exact."""

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, normalise, safe_unit
+from shviewer.harmonics.basis import Array, normalise
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Profile, orient
 from shviewer.limits import check_brightness
@@ -87,16 +87,12 @@ class LobeLight:
         return self._products
 
     @cached_property
-    def unit(self) -> float:
-        return safe_unit(max(float(np.abs(lobe.radiance).max()) for lobe in self.lobes))
-
-    @cached_property
     def _products(self) -> Array:
         total = np.zeros((3, 3))
         for i, first in enumerate(self.lobes):
             for j, second in enumerate(self.lobes[: i + 1]):
                 product = inner_product(first.profile, second.profile, angle_between(first, second))
-                overlap = product * np.outer(first.radiance / self.unit, second.radiance / self.unit)
+                overlap = product * np.outer(first.radiance, second.radiance)
                 total += overlap if i == j else overlap + overlap.T
         return total
 

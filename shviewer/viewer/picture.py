@@ -84,8 +84,8 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     shown = subject(state)
     light, whole = shown.light, shown.whole
     projected = MAX_DIRECT_BANDS if state.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
-    projection = project(light, *sampling_of(state), projected)
     check_radiance(error_grid(whole, grid_rows(1)).peak, light.name)
+    projection = project(light, *sampling_of(state), projected)
     shape = state.n_bands, state.muted_shown, state.window, state.window_width
     coefficients, figures = reconstruct(light, projection, *shape)
     scale = None if state.error == "off" else error_scale(light, projection, shape, state.error)

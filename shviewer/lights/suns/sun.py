@@ -122,9 +122,9 @@ def _split_lobes(light: LobeLight) -> tuple[list[Sun], LobeLight, str]:
 
 def _disc_refusal(disc: Lobe, light: LobeLight) -> str:
     """Why one of a light's discs is no sun; "" if it is. As everywhere, of the mean of the channels."""
-    radiance, solid_angle = float(disc.radiance.mean()) / light.unit, float(disc.profile.zonal(1)[0])
-    behind = _without(light, disc).radiance(disc.axis[None]).mean() / light.unit
-    fluxes = [abs(lobe.profile.zonal(1)[0] * lobe.radiance.mean() / light.unit) for lobe in light.lobes]
+    radiance, solid_angle = float(disc.radiance.mean()), float(disc.profile.zonal(1)[0])
+    behind = _without(light, disc).radiance(disc.axis[None]).mean()
+    fluxes = [abs(lobe.profile.zonal(1)[0] * lobe.radiance.mean()) for lobe in light.lobes]
     contrast = 1 + radiance / behind if behind > 0 else np.inf
     norm_squared = light.products().sum() / 9
     return refusal(
