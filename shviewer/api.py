@@ -194,7 +194,6 @@ def _array_light(array: NDArray[np.generic]) -> Light:
 def _state(light: LightLike, bands: int | None, options: dict[str, Any]) -> ViewState:
     """The state of the window with these options. UsageError for an unknown one."""
     from shviewer.analysis.comparison import as_the_file_holds
-    from shviewer.lights.coefficient_light import CoefficientLight
     from shviewer.viewer.state import ViewState
     from shviewer.viewer.view_limits import check
 
@@ -206,7 +205,7 @@ def _state(light: LightLike, bands: int | None, options: dict[str, Any]) -> View
     count = None if bands is None else _whole(bands, "bands")
     found = find_light(light)
     if count is None:
-        count = found.n_bands if isinstance(found, CoefficientLight) else ViewState.n_bands
+        count = found.about.n_bands or ViewState.n_bands
     state = ViewState(lights=(found,), n_bands=count, **checked)
     check(state)
     if (given := options.get("compare")) is not None:

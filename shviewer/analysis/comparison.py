@@ -15,9 +15,7 @@ from shviewer.coefficients.finding import FITS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.suspects import usual_suspects
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.state import ViewState
@@ -46,13 +44,14 @@ def as_the_file_holds(state: ViewState, *, quantity: bool, bands: bool) -> ViewS
     is bad.
     """
     file = state.compare or subject(replace(state, quantity="radiance", split_sun=False)).whole
-    if not isinstance(file, CoefficientLight):
+    held = file.about
+    if held.n_bands is None or held.quantity is None:
         return state
     if bands:
-        state = replace(state, n_bands=min(file.n_bands, MAX_BANDS))
-    elif state.compare and state.n_bands > file.n_bands:
-        state = replace(state, n_bands=file.n_bands, message=file.extent)
-    return replace(state, quantity=file.quantity) if quantity else state
+        state = replace(state, n_bands=min(held.n_bands, MAX_BANDS))
+    elif state.compare and state.n_bands > held.n_bands:
+        state = replace(state, n_bands=held.n_bands, message=state.compare.extent)
+    return replace(state, quantity=held.quantity) if quantity else state
 
 
 def caption(state: ViewState) -> str:
@@ -115,7 +114,6 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
     if given.n_bands > 1:
         layouts[("listed channel by channel",)] = numbers.reshape(3, -1).T
         layouts[("listed row by row",)] = numbers.T.reshape(-1, 3)
-    cosine = irradiance_factors(given.n_bands) if isinstance(light, IrradianceLight) else np.ones(given.n_bands)
     found: dict[tuple[str, ...], Array] = {}
     for convention in CONVENTIONS.values() if given.file else (OURS,):
         if (convention.most_bands or MAX_BANDS) < given.n_bands or np.iscomplexobj(numbers) != convention.complex:
@@ -129,5 +127,5 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
             words = (*layout, *(() if same else (f"in the convention of {convention.name}",)))
             with suppress(ValueError):  # complex numbers of no real function
                 radiance = CoefficientLight.of_numbers(table, convention).given
-                found[words] = radiance * per_coefficient(cosine)
+                found[words] = light.from_source(radiance)
     return found

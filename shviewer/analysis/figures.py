@@ -33,7 +33,6 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.state import QUANTITIES, ViewState
@@ -133,7 +132,7 @@ def reconstruct(
     total = float(np.trace(light.products()))
     power = band_power(exact).sum(axis=1)
     extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
-    irradiance = light if isinstance(light, IrradianceLight) else irradiance_of(light)
+    irradiance = irradiance_of(light)
     cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
     shaded = squared_error(irradiance.products().diagonal(), cosine * exact[: n_bands**2], cosine * shown)
     figures = Figures(
@@ -170,4 +169,4 @@ def grid_rows(n_bands: int) -> int:
 @remember(most=8)
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
-    return ErrorGrid(light.radiance, light.landmarks(), rows, getattr(light, "on_rows", None))
+    return ErrorGrid(light.radiance, light.landmarks(), rows, light.rows)

@@ -8,12 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import (
+    angles_from_directions,
+    column_azimuths,
+    directions_from_angles,
+    evaluate_rows,
+)
 from shviewer.harmonics.synthesis import Synthesis
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -58,8 +64,8 @@ class Extremes:
 class ErrorGrid:
     """A light seen on a lat-long grid and at its landmarks, ready to be compared with any reconstruction.
 
-    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions where a grid would miss something. on_rows: the
-    radiance on rows at theta (rows,), with so many columns, (rows, 3, columns), where there is a faster way to all of them.
+    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions where a grid would miss something. rows: the radiance
+    on rows at theta (rows,), with so many columns, (rows, 3, columns), where there is a faster way to all of them.
     """
 
     def __init__(
@@ -67,17 +73,12 @@ class ErrorGrid:
         radiance: Callable[[Array], Array],
         landmarks: Array,
         n_rows: int,
-        on_rows: Callable[[Array, int], Array] | None = None,
+        rows: Callable[[Array, int], Array] | None = None,
     ) -> None:
         self.radiance = radiance
         self.theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
         self.phi = column_azimuths(2 * n_rows)
-        if on_rows:
-            self.original = on_rows(self.theta, len(self.phi))
-        else:
-            directions = directions_from_angles(self.theta[:, None], self.phi)
-            grid = radiance(directions.reshape(-1, 3)).reshape(n_rows, 2 * n_rows, 3)
-            self.original = np.ascontiguousarray(grid.transpose(0, 2, 1))
+        self.original = (rows or partial(evaluate_rows, radiance))(self.theta, len(self.phi))
         self.landmarks = landmarks
         self.landmark_radiance = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
         self.peak = float(max(np.abs(self.original).max(), np.abs(self.landmark_radiance).max(initial=0)))

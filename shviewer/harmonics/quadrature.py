@@ -168,6 +168,12 @@ def angles_from_directions(directions: Array) -> tuple[Array, Array]:
     return np.arctan2(np.hypot(x, y), z), np.arctan2(y, x)
 
 
+def evaluate_rows(radiance: Radiance, theta: Array, n_columns: int) -> Array:
+    """A function on rows of a lat-long grid at angles theta (rows,) from +z: (rows, 3, n_columns)."""
+    directions = directions_from_angles(theta[:, None], column_azimuths(n_columns)).reshape(-1, 3)
+    return np.ascontiguousarray(radiance(directions).reshape(len(theta), n_columns, 3).transpose(0, 2, 1))
+
+
 def directions_from_angles(theta: Array, phi: Array) -> Array:
     """Unit vectors (..., 3) from the angle to +z and the azimuth from +x towards +y, both broadcast, in radians."""
     sine = np.sin(theta)

@@ -20,7 +20,10 @@ from shviewer.coefficients.stamp import SUNS_KEY
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
+from shviewer.lights.irradiance import BandLimitedIrradiance
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.light import About, Light
+from shviewer.lights.radiance import RadianceLight
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import check_brightness
 from shviewer.words import counted
@@ -29,7 +32,7 @@ MAP_SIZE = (1025, 2048)
 
 
 @dataclass(frozen=True, eq=False)
-class CoefficientLight:
+class CoefficientLight(RadianceLight):
     """`given`: radiance in our convention, (n**2, 3), float64."""
 
     given: Array
@@ -38,6 +41,7 @@ class CoefficientLight:
     """What was read, with its own numbers."""
 
     best_method = "coefficients as given"
+    lobes = ()
 
     def __post_init__(self) -> None:
         """LightError for more radiance than can be shown: the largest is at least the root of the mean square."""
@@ -86,6 +90,10 @@ class CoefficientLight:
         return convention_text(replace(held, quantity=CONVENTIONS[held.name].quantity))
 
     @property
+    def about(self) -> About:
+        return About(n_bands=self.n_bands, quantity=self.quantity, convention=self.convention, file=self.file)
+
+    @property
     def description(self) -> str:
         origin = self.file.stamp.get("light") if self.file else None
         return f"{counted(self.n_bands, 'band')}, {self.convention.split(',')[0]}{f', of {origin}' if origin else ''}"
@@ -111,11 +119,8 @@ class CoefficientLight:
     def radiance(self, directions: Array) -> Array:
         return self._synthesis.at(*angles_from_directions(directions))
 
-    def integrand(self, directions: Array) -> Array:
-        return self.radiance(directions)
-
-    def on_rows(self, theta: Array, n_columns: int) -> Array:
-        """The radiance on rows of a lat-long image, (rows, 3, n_columns), for a fraction of what as many directions cost."""
+    def rows(self, theta: Array, n_columns: int) -> Array:
+        """For a fraction of what as many directions cost."""
         return self._synthesis.on_rows(theta, n_columns)
 
     @cached_property
@@ -131,15 +136,9 @@ class CoefficientLight:
     def products(self) -> Array:
         return np.asarray(self.given.T @ self.given)
 
-    def accuracy(self) -> float:
-        return 0.0
-
-    def landmarks(self) -> Array:
-        return np.zeros((0, 3))
-
-    def radiance_map(self) -> LatLongMap:
-        return self._map
+    def irradiance(self) -> Light:
+        return BandLimitedIrradiance(self, self.n_bands)
 
     @cached_property
-    def _map(self) -> LatLongMap:
+    def map(self) -> LatLongMap:
         return LatLongMap(self._synthesis.pole_to_pole(*MAP_SIZE), rows_on_poles=True)

@@ -14,7 +14,8 @@ from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, check_radiance
 from shviewer.viewer import camera
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
@@ -103,8 +104,8 @@ def prepare(state: ViewState, *, by_map: bool = False) -> Picture:
     return Picture(
         state=state,
         subject=shown,
-        original=_source(whole),
-        compared=_source(light),
+        original=Source(whole.lobes, whole.map),
+        compared=Source(light.lobes, light.map),
         suns=_sun_lobes(shown, state.quantity),
         coefficients=coefficients,
         drawn=drawn,
@@ -126,10 +127,6 @@ def _height(figures: Figures, scale: ErrorScale | None, exposure: float) -> floa
     if scale is None:
         return largest * exposure
     return largest * max(exposure, 1 / (scale.end * (scale.floor if scale.kind == "relative" else 1.0)))
-
-
-def _source(light: Light) -> Source:
-    return Source(light.lobes if isinstance(light, LobeLight) else (), light.radiance_map())
 
 
 def _sun_lobes(shown: Subject, quantity: str) -> tuple[Lobe, ...]:

@@ -18,7 +18,8 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, orient
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 
 GREEN = LobeLight(
     (

@@ -19,7 +19,8 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.find import find_light
 from shviewer.lights.function import LAST_ROWS, MOVEMENT, FunctionLight
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 
 
 def band_errors(name: str) -> np.ndarray:

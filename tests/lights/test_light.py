@@ -212,7 +212,7 @@ def test_the_coefficients_hold_no_more_energy_than_the_light(light):
 
 
 def test_the_map_of_a_light_shows_its_radiance(light):
-    image = light.radiance_map()
+    image = light.map
     d = random_directions(300, seed=3)
     if image is None:
         assert isinstance(light, LobeLight)

@@ -18,7 +18,8 @@ from shviewer.harmonics.zonal import Disc
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.limits import BRIGHTEST, DIMMEST
 
 

@@ -17,14 +17,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, normalise
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.suns.caps import Caps, Texels, chord, chord_of
+from shviewer.lights.suns.sun import Sun
 
 CAP = np.radians(3.0)
 RIM = np.radians(4.0)
@@ -50,17 +51,6 @@ RULE = (
 )
 
 
-class Found(NamedTuple):
-    """A disc in place of what was taken."""
-
-    axis: Array
-    """Unit, (3,)."""
-    half_angle: float
-    """Radians."""
-    radiance: Array
-    """(3,)"""
-
-
 def refusal(half_angle: float, contrast: float, flux: float, energy: float) -> str:
     """Why the brightest spot is not compact, in words; "" if it is. Flux and energy are shares of the whole."""
     if not contrast >= CONTRAST:
@@ -72,6 +62,13 @@ def refusal(half_angle: float, contrast: float, flux: float, energy: float) -> s
     if not flux >= FLUX:
         return f"its brightest spot holds only {100 * flux:.2g} % of the flux"
     return ""
+
+
+def suns_or_refusal(name: str, suns: list[Sun], why: str) -> tuple[Sun, ...]:
+    """The suns of the light `name`, the greatest flux first. LightError if there are none; why: what was found instead."""
+    if not suns:
+        raise LightError(f"{name} has no sun: {why}; {RULE}; show it unsplit")
+    return tuple(sorted(suns, key=lambda sun: -sun.flux.sum()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,16 +121,16 @@ class CompactSources:
         self._mean *= self._solid_angles > 0
         self._caps = Caps(layout, *self.pixels.shape[:2])
 
-    def take_all(self) -> tuple[list[Found], str]:
+    def take_all(self) -> tuple[list[Sun], str]:
         """(the sources taken out, why there are no more)."""
-        sources: list[Found] = []
+        sources: list[Sun] = []
         while True:
             found, why = self._take_brightest(MOST - len(sources))
             sources += found
             if not found or len(sources) == MOST:
                 return sources, why
 
-    def _take_brightest(self, most: int) -> tuple[list[Found], str]:
+    def _take_brightest(self, most: int) -> tuple[list[Sun], str]:
         """Up to `most` sources that are compact in the present image, and what is wrong with the first spot that is not.
 
         A source has a texel of at least sqrt(ENERGY ||f||^2 / solid angle of the cap), which few texels reach.
@@ -144,7 +141,7 @@ class CompactSources:
         flux, squares = self._flux_and_squares(peak)
         dimmest = np.sqrt(ENERGY * squares / np.pi) / chord_of(CAP)
         waiting = self._brighter_than(dimmest * peak)
-        found: list[Found] = []
+        found: list[Sun] = []
         why = ""
         for _ in range(TRIES):
             if not len(waiting) or len(found) == most:
@@ -202,7 +199,7 @@ class CompactSources:
         rim = self._mean[ring.rows, ring.columns][chord(ring.directions, axis) <= chord_of(RIM)]
         return _Excess(cap, before, after, level.astype(np.float64), float(rim.max(initial=-np.inf)))
 
-    def _disc(self, excess: _Excess) -> Found:
+    def _disc(self, excess: _Excess) -> Sun:
         """The disc whose bands 0 and 1 are those of what is taken, by the layout's exact integrals over its texels."""
         rows, columns = excess.texels.rows, excess.texels.columns
         scale = np.abs(excess.taken).max()
@@ -213,7 +210,7 @@ class CompactSources:
         length = float(np.linalg.norm(vector))
         smallest = float(excess.texels.solid_angles[excess.mean.argmax()]) / (4 * np.pi)
         half_angle = float(2 * np.arcsin(np.sqrt(min(1.0, max(1 - length / bands[0], smallest)))))
-        return Found(vector / length, half_angle, excess.flux / (4 * np.pi * np.sin(half_angle / 2) ** 2))
+        return Sun(vector / length, half_angle, excess.flux / (4 * np.pi * np.sin(half_angle / 2) ** 2))
 
     def _remove(self, excess: _Excess) -> None:
         rows, columns = excess.texels.rows, excess.texels.columns
