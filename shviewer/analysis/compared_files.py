@@ -13,10 +13,12 @@ from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.finding import FITS, Found, find_convention
 from shviewer.coefficients.reading import interpreted, read_numbers
+from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.errors import LightError
 from shviewer.files import naming
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.find import COEFFICIENT_SUFFIXES, IMAGE_SUFFIXES, built_in_lights
+from shviewer.lights.find import built_in_lights
+from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.state import ViewState
 from shviewer.words import brief_percent

@@ -17,7 +17,8 @@ from shviewer.analysis.subjects import load_light, subject
 from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes import LUMINANCE, SEARCH_ROUNDS, climb
-from shviewer.lights.find import IMAGE_SUFFIXES, file_version, split_light
+from shviewer.lights.find import file_version, split_light
+from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
 from shviewer.lights.suns.sun import Sun

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 def state_from(options: argparse.Namespace, *, all_lights: bool) -> ViewState:
     """The state that the options ask for. UsageError for one out of range; nothing is loaded yet."""
-    from shviewer.lights.find import COEFFICIENT_SUFFIXES, built_in_lights, split_light
+    from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+    from shviewer.lights.find import built_in_lights, split_light
     from shviewer.viewer.actions import open_light
     from shviewer.viewer.camera import IDENTITY, towards
     from shviewer.viewer.state import ViewState
@@ -152,7 +153,8 @@ def _input_convention(options: argparse.Namespace) -> str:
 
 def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
     """UsageError for a convention that nothing is read in."""
-    from shviewer.lights.find import COEFFICIENT_SUFFIXES, split_light
+    from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+    from shviewer.lights.find import split_light
 
     given = vars(options)
     lights: list[str] = given.get("lights") or [given.get("light", "green")]

@@ -22,7 +22,6 @@ from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.light import About, Split
 from shviewer.lights.radiance import RadianceLight
 from shviewer.lights.reading import DEFAULT_READING, Reading
-from shviewer.lights.suns.compact_sources import CompactSources, suns_or_refusal
 from shviewer.limits import check_brightness
 
 MAX_RASTER_WIDTH = 8192
@@ -157,6 +156,8 @@ class EnvironmentLight(RadianceLight):
             yield self.pixels[top : top + rows][shown].astype(np.float64), areas[top : top + rows][shown]
 
     def split_suns(self) -> Split:
+        from shviewer.lights.suns.compact_sources import CompactSources, suns_or_refusal
+
         sources = CompactSources(self.pixels, self.layout)
         suns = suns_or_refusal(self.name, *sources.take_all())
         return Split(replace(self, pixels=sources.pixels), suns)

@@ -13,11 +13,11 @@ from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import evaluate_rows
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.suns.sun import Sun
 
-if TYPE_CHECKING:  # few lights come from such a file
+if TYPE_CHECKING:  # what few lights have is loaded with those
     from shviewer.coefficients.reading import CoefficientFile
+    from shviewer.lights.lobe import Lobe
+    from shviewer.lights.suns.sun import Sun
 
 
 class Light(Protocol):

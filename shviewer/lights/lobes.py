@@ -14,8 +14,6 @@ from shviewer.lights.irradiance import LobeIrradiance
 from shviewer.lights.light import Light, Split
 from shviewer.lights.lobe import Lobe, angle_between
 from shviewer.lights.radiance import RadianceLight
-from shviewer.lights.suns.compact_sources import MOST, refusal, suns_or_refusal
-from shviewer.lights.suns.sun import Sun
 from shviewer.limits import check_brightness
 
 EDGE = 1e-9
@@ -88,6 +86,9 @@ class LobeLight(RadianceLight):
 
     def split_suns(self) -> Split:
         """The discs to which the rule for images applies; they leave exactly."""
+        from shviewer.lights.suns.compact_sources import MOST, suns_or_refusal
+        from shviewer.lights.suns.sun import Sun
+
         suns: list[Sun] = []
         rest, why = self, ""
         while len(suns) < MOST:
@@ -104,6 +105,8 @@ class LobeLight(RadianceLight):
 
     def _disc_refusal(self, disc: Lobe) -> str:
         """Why one of the discs is no sun; "" if it is. As everywhere, of the mean of the channels."""
+        from shviewer.lights.suns.compact_sources import refusal
+
         radiance, solid_angle = float(disc.radiance.mean()), float(disc.profile.zonal(1)[0])
         behind = self._without(disc).radiance(disc.axis[None]).mean()
         fluxes = [abs(lobe.profile.zonal(1)[0] * lobe.radiance.mean()) for lobe in self.lobes]

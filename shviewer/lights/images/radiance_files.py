@@ -16,16 +16,12 @@ from numpy.typing import NDArray
 from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
 from shviewer.lights.images.decoded import Decoded
-from shviewer.lights.images.display_referred import decode_jpeg, decode_png
-from shviewer.lights.images.isolated import decode_isolated
-from shviewer.lights.images.openexr import decode_openexr
-from shviewer.lights.images.rgbe import decode_rgbe
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import Limits
 from shviewer.words import counted
 
 _Decoder = Callable[[bytes, Limits, str], Decoded]
-"""Of a file's bytes, the limits and the layer asked for ("" for none)."""
+"""A file's bytes, the limits and the layer asked for ("" for none) -> what is in it."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +32,41 @@ class _Kind:
     decode: _Decoder
 
 
+def _rgbe(data: bytes, limits: Limits, layer: str) -> Decoded:
+    from shviewer.lights.images.rgbe import decode_rgbe  # each where it is needed: most lights need none
+
+    return decode_rgbe(data, limits)
+
+
+def _openexr(data: bytes, limits: Limits, layer: str) -> Decoded:
+    from shviewer.lights.images.openexr import decode_openexr
+
+    return decode_openexr(data, limits, layer)
+
+
+def _isolated(data: bytes, limits: Limits, layer: str) -> Decoded:
+    from shviewer.lights.images.isolated import decode_isolated
+
+    return decode_isolated(data, limits, layer)
+
+
+def _png(data: bytes, limits: Limits, layer: str) -> Decoded:
+    from shviewer.lights.images.display_referred import decode_png
+
+    return decode_png(data, limits)
+
+
+def _jpeg(data: bytes, limits: Limits, layer: str) -> Decoded:
+    from shviewer.lights.images.display_referred import decode_jpeg
+
+    return decode_jpeg(data, limits)
+
+
 _KINDS = (
-    _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), lambda data, limits, layer: decode_rgbe(data, limits)),
-    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), decode_openexr),
-    _Kind("PNG", b"\x89PNG", (".png",), lambda data, limits, layer: decode_png(data, limits)),
-    _Kind("JPEG", b"\xff\xd8\xff", (".jpg", ".jpeg"), lambda data, limits, layer: decode_jpeg(data, limits)),
+    _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), _rgbe),
+    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), _openexr),
+    _Kind("PNG", b"\x89PNG", (".png",), _png),
+    _Kind("JPEG", b"\xff\xd8\xff", (".jpg", ".jpeg"), _jpeg),
 )
 
 IMAGE_SUFFIXES = tuple(suffix for kind in _KINDS for suffix in kind.suffixes)
@@ -79,8 +105,8 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
     """`read_radiance_image` of a file that is in memory already; `name` is the path it has or might have."""
     with naming(name):
         decode = _decoder(data, Path(name).suffix.lower())
-        if reading.isolated and decode is decode_openexr:
-            decode = decode_isolated
+        if reading.isolated and decode is _openexr:
+            decode = _isolated
         decoded = decode(data, reading.limits, layer)
         notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
     return replace(decoded, notes=decoded.notes + notes)
