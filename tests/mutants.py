@@ -140,8 +140,8 @@ MUTANTS = (
     Mutant(
         "axes the other way",
         "shviewer/coefficients/axes.py",
-        "(directions @ matrix).T",
-        "matrix @ directions.T",
+        "rotate(turned, matrix)",
+        "rotate(turned, matrix.T)",
     ),
     Mutant(
         "1/pi forgotten",

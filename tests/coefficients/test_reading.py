@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 from shviewer.coefficients.programs import CONVENTIONS
-from shviewer.coefficients.reading import COEFFICIENT_SUFFIXES, MAX_FILE_BYTES
+from shviewer.coefficients.reading import MAX_FILE_BYTES
 from shviewer.coefficients.stamp import stamp_of
 from shviewer.errors import LightError
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.find import COEFFICIENT_SUFFIXES as KNOWN_SUFFIXES
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
 from shviewer.limits import Limits
@@ -52,10 +51,6 @@ def npz(**arrays: Any) -> bytes:
 def stamped(**changes: Any) -> str:
     stamp = {**stamp_of(CONVENTIONS["three"], "radiance", 3), **changes, "coefficients": ROWS.tolist()}
     return json.dumps({key: value for key, value in stamp.items() if value is not None})
-
-
-def test_the_suffixes_are_known_without_loading_the_readers() -> None:
-    assert KNOWN_SUFFIXES == COEFFICIENT_SUFFIXES
 
 
 @pytest.mark.parametrize(
