@@ -56,7 +56,7 @@ class CoefficientFile:
 
     @property
     def quantity(self) -> str:
-        """Of our coefficients: "radiance" or "irradiance"."""
+        """What our coefficients are of: "radiance" or "irradiance"."""
         held = self.convention.quantity or RADIANCE
         return "irradiance" if held == OVER_PI else held
 

@@ -32,7 +32,7 @@ PARABOLOID = np.linalg.pinv(
 """Values on a patch -> value, slopes and curvatures of the best paraboloid, (6, 25)."""
 
 ON_RIM = np.append(np.abs(PATCH).max(axis=1) == 2, True)
-"""Of the points of a patch, the vertex of the last one behind them, those that ask for another one as wide."""
+"""Whether a point of a patch, if it is the best, asks for another patch as wide, (26,); the last one is a vertex."""
 
 DISPLAY_ROUNDS = 3
 """Patches for a figure that is shown: to an eighth of the grid's cell, and to the vertices of paraboloids."""
@@ -140,13 +140,6 @@ def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int
     best = np.argsort(blocks.max(axis=1))[-BLOCKS:]
     inside = blocks[best].argmax(axis=1)
     return best // (columns // 8) * 8 + inside // 8, best % (columns // 8) * 8 + inside % 8
-
-
-def smallest_value(coefficients: Array) -> tuple[float, Triple]:
-    """The minimum of a reconstruction over all channels, and its direction: (n**2, 3) -> value, (x, y, z)."""
-    values, directions, _ = valleys(coefficients)
-    lowest = int(values.argmin())
-    return float(values[lowest]), _triple(directions[lowest])
 
 
 def valleys(

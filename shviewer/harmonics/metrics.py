@@ -68,7 +68,7 @@ def relative(squared: float, norm_squared: Array) -> float:
 
 @dataclass(frozen=True)
 class ChannelFigures:
-    """Of one channel, or of all: relative L2 errors and PSNR in decibels."""
+    """Relative L2 errors and PSNR, in decibels, of one channel or of all together."""
 
     relative_l2: float
     left_out: float

@@ -94,7 +94,7 @@ class ProductRule:
         return directions_from_angles(self.theta[rows, None], self.phi).reshape(-1, 3)
 
     def direction_set(self, rows: slice = slice(None)) -> DirectionSet:
-        """The same with their weights."""
+        """The points of some rows with their weights."""
         weights = np.repeat(self.row_weights[rows] * (2 * np.pi / self.n_columns), self.n_columns)
         return DirectionSet(self.directions(rows), weights)
 

@@ -54,7 +54,7 @@ class CoefficientLight(RadianceLight):
 
     @classmethod
     def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
-        """Of a file that has been read."""
+        """The light whose coefficients, or whose irradiance's, a file holds that has been read."""
         held = file.coefficients
         return cls(held if file.quantity == RADIANCE else recovered_radiance(held)[0], name, file)
 
@@ -62,7 +62,7 @@ class CoefficientLight(RadianceLight):
     def of_numbers(
         cls, numbers: NDArray[np.generic], convention: Convention, name: str = "coefficients"
     ) -> CoefficientLight:
-        """Of a program's own numbers (n**2, 3). ValueError for more bands than it has."""
+        """The light of a program's own numbers (n**2, 3). ValueError for more bands than the program has."""
         held = convention.quantity or RADIANCE
         coefficients = convention.to_ours(numbers)
         return cls(coefficients if held == RADIANCE else recovered_radiance(coefficients)[0], name)
@@ -78,12 +78,12 @@ class CoefficientLight(RadianceLight):
 
     @property
     def quantity(self) -> str:
-        """Of the file's numbers: "radiance" or "irradiance"."""
+        """What the file's numbers are of: "radiance" or "irradiance"."""
         return self.file.quantity if self.file else RADIANCE
 
     @property
     def convention(self) -> str:
-        """Of its file, as a text without the quantity."""
+        """The convention of the file, a text without the quantity."""
         if self.file is None:
             return OURS.name
         held = self.file.convention

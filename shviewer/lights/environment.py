@@ -25,7 +25,7 @@ from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import check_brightness
 
 MAX_RASTER_WIDTH = 8192
-"""Of the lat-long raster that an image is drawn from which is no texture itself."""
+"""Columns at most of the lat-long raster from which an image is drawn that is no texture itself."""
 
 BLOCK_TEXELS = 2**20
 """Texels given out together, which bounds the memory."""

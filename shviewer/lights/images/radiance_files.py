@@ -1,6 +1,6 @@
 """Radiance from a file: which kind it is, whether it may be read, and what to do about bad values.
 
-The decoders are in decoders/, one per format. A *value* is one channel of one texel; counts in messages and notes are of
+The decoders are beside this file, one per format. A *value* is one channel of one texel; counts in messages and notes are of
 values.
 """
 

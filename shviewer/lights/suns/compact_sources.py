@@ -78,9 +78,9 @@ class _Excess:
     texels: Texels
     before: NDArray[np.float32]
     after: NDArray[np.float32]
-    """Of the texels, (k, 3)."""
+    """Values of the texels, (k, 3), now and if it were taken."""
     level: Array
-    """Of the ring beyond, (3,)."""
+    """What LEVEL of the ring beyond stays below, (3,)."""
     rim: float
     """The brightest between CAP and RIM, of the channels' mean."""
 
@@ -91,7 +91,7 @@ class _Excess:
 
     @cached_property
     def mean(self) -> Array:
-        """Of the three channels of `taken`, (k,)."""
+        """The mean of the three channels of `taken`, (k,)."""
         return np.asarray(self.taken.mean(axis=1))
 
     @property
@@ -180,7 +180,7 @@ class CompactSources:
         return bright.directions[np.argsort(-self._mean[bright.rows, bright.columns], kind="stable")]
 
     def _middle(self, peak: Array) -> Array:
-        """Of what is at least half as bright within CAP of `peak`, which may lie at its edge."""
+        """The unit vector to the middle of what is at least half as bright within CAP of `peak`, which may lie at its edge."""
         near = self._caps.cap(peak, CAP)
         mean = self._mean[near.rows, near.columns]
         return normalise((near.solid_angles * (mean >= mean.max() / 2)) @ near.directions)

@@ -48,7 +48,7 @@ class Sun:
 
     @property
     def irradiance(self) -> Array:
-        """Of a surface that faces it, (3,): pi sin(a)^2 times the radiance."""
+        """What a surface that faces it receives, (3,): pi sin(a)^2 times the radiance."""
         return np.asarray(self.radiance * (np.pi * np.sin(self.half_angle) ** 2))
 
     @property
