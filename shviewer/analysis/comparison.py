@@ -43,8 +43,7 @@ def as_the_file_holds(state: ViewState, *, quantity: bool, bands: bool) -> ViewS
     quantity, bands: whether to follow the file; more bands than a compared file has are never shown. LightError if the light
     is bad.
     """
-    file = state.compare or subject(replace(state, quantity="radiance", split_sun=False)).whole
-    held = file.about
+    held = (state.compare or subject(replace(state, quantity="radiance", split_sun=False)).whole).about
     if held.n_bands is None or held.quantity is None:
         return state
     if bands:

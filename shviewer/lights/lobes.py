@@ -114,7 +114,7 @@ class LobeLight(RadianceLight):
             disc.profile.half_angle,
             1 + radiance / behind if behind > 0 else np.inf,
             radiance * solid_angle / sum(fluxes),
-            radiance**2 * solid_angle / (self.products().sum() / 9),
+            radiance**2 * solid_angle / (self.products().sum() / 9 or 1.0),  # squares of less than 1e-160 may be 0
         )
 
     def _without(self, lobe: Lobe) -> LobeLight:

@@ -390,6 +390,10 @@ def test_scenes_without_a_small_disc_have_no_sun(name):
     assert "has no sun" in refused(find_light(name))
 
 
+def test_a_disc_whose_squares_are_0_is_refused_in_words():
+    assert "holds only 0 % of the squared norm" in refused(LobeLight((Lobe(Disc(0.01), [0, 1, 0], 1e-200 * WHITE),)))
+
+
 def test_the_irradiance_of_a_light_cannot_be_split():
     assert "only images and sums of lobes" in refused(find_light("sun-sky").irradiance())
 
