@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-HOLDS = {
-    ".json": "json",
-    ".csv": "csv",
-    ".txt": "text",
-    ".h": "text",
-    ".glsl": "text",
-    ".npz": "arrays",
-    ".npy": "arrays",
-}
+_TEXT, _ARRAYS = (".txt", ".h", ".glsl"), (".npz", ".npy")
+
+HOLDS = {".json": "json", ".csv": "csv", **dict.fromkeys(_TEXT, "text"), **dict.fromkeys(_ARRAYS, "arrays")}
 
 COEFFICIENT_SUFFIXES = tuple(HOLDS)

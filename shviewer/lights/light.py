@@ -120,15 +120,12 @@ class About:
     """What they were read from."""
 
 
-NOTHING = About()
-
-
 class LightBase(ABC):
     """What a light answers unless it knows better."""
 
     @property
     def about(self) -> About:
-        return NOTHING
+        return About()
 
     @abstractmethod
     def radiance(self, directions: Array) -> Array: ...
