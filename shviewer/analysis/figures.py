@@ -1,6 +1,6 @@
 """What is known of a light and its reconstruction: figures, and the band counts that a tolerance needs.
 
-What is expensive is remembered (memory.py): a light is sampled once for its error figures.
+What is expensive is remembered (cache.py): a light is sampled once for its error figures.
 """
 
 from __future__ import annotations

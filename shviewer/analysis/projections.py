@@ -14,9 +14,7 @@ import numpy as np
 
 from shviewer.analysis.cache import MEMORY, remember
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.metrics import (
-    errors_by_band_count,
-)
+from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
