@@ -140,8 +140,8 @@ MUTANTS = (
     Mutant(
         "axes the other way",
         "shviewer/coefficients/axes.py",
-        "(directions @ matrix).T",
-        "matrix @ directions.T",
+        "angles_from_directions(directions @ matrix)",
+        "angles_from_directions(directions @ matrix.T)",
     ),
     Mutant(
         "1/pi forgotten",

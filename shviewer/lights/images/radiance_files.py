@@ -21,7 +21,7 @@ from shviewer.lights.images.isolated import decode_isolated
 from shviewer.lights.images.openexr import decode_openexr
 from shviewer.lights.images.rgbe import decode_rgbe
 from shviewer.lights.reading import DEFAULT_READING, Reading
-from shviewer.limits import Limits
+from shviewer.limits import Limits, check_brightness
 from shviewer.words import counted
 
 _Decoder = Callable[[bytes, Limits, str], Decoded]
@@ -83,6 +83,7 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
             decode = decode_isolated
         decoded = decode(data, reading.limits, layer)
         notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
+    check_brightness(max(float(decoded.pixels.max()), -float(decoded.pixels.min())), name)
     return replace(decoded, notes=decoded.notes + notes)
 
 
