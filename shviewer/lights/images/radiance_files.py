@@ -16,7 +16,7 @@ from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.reading import DEFAULT_READING, Reading
-from shviewer.limits import Limits
+from shviewer.limits import Limits, check_brightness
 from shviewer.words import counted
 
 
@@ -71,6 +71,7 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
         kind = _kind(data, Path(name).suffix.lower())
         decoded = _decoded(kind, data, reading.limits, layer, reading.isolated)
         notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
+    check_brightness(max(float(decoded.pixels.max()), -float(decoded.pixels.min())), name)
     return replace(decoded, notes=decoded.notes + notes)
 
 

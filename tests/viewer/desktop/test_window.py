@@ -225,7 +225,7 @@ def test_a_sweep_to_a_state_that_cannot_be_shown_ends_there_and_says_why(display
 
 
 def test_an_idle_window_costs_under_one_percent_of_a_core(start: Start) -> None:
-    start().rest(seconds=2)
+    start().rest()
 
 
 def test_ctrl_c_in_the_terminal_ends_it_at_once(start: Start) -> None:
