@@ -123,7 +123,6 @@ def _array_light(array: NDArray[np.generic]) -> Light:
 def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *others: type) -> Recipe:
     """The recipe with these options; those of `others` are somebody else's. UsageError for one that nobody knows."""
     from shviewer.analysis.comparison import as_the_file_holds
-    from shviewer.lights.coefficient_light import CoefficientLight
 
     known = [name for name in options_of(Recipe, *others) if name not in NAMED_ELSEWHERE] + ["compare"]
     if unknown := sorted(set(options) - set(known)):
@@ -131,7 +130,7 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
     count = None if bands is None else whole(bands, "bands")
     found = find_light(light)
     if count is None:
-        count = found.n_bands if isinstance(found, CoefficientLight) else Recipe.n_bands
+        count = found.about.n_bands or Recipe.n_bands
     recipe = Recipe(found, n_bands=count, **taken(options, Recipe))
     recipe.check()
     if (given := options.get("compare")) is not None:

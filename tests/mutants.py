@@ -140,8 +140,8 @@ MUTANTS = (
     Mutant(
         "axes the other way",
         "shviewer/coefficients/axes.py",
-        "angles_from_directions(directions @ matrix)",
-        "angles_from_directions(directions @ matrix.T)",
+        "rotate(turned, matrix)",
+        "rotate(turned, matrix.T)",
     ),
     Mutant(
         "1/pi forgotten",

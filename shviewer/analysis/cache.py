@@ -12,7 +12,6 @@ from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
 
 import numpy as np
 
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 
 P = ParamSpec("P")
@@ -86,8 +85,7 @@ class Memory:
         self._wholes.clear()
 
     def _source(self, light: Light) -> Light:
-        light = light.source if isinstance(light, IrradianceLight) else light
-        return self._wholes.get(light, light)
+        return self._wholes.get(light.source, light.source)
 
     def _use(self, light: Light) -> dict[object, Results]:
         if light not in self._known:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, stamp_of
-from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.light import About
 from shviewer.words import counted
 
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
@@ -31,16 +31,15 @@ class CoefficientInformation:
     """Everything the file says; empty for a bare list."""
 
 
-def describe_coefficients(light: object) -> CoefficientInformation | None:
+def describe_coefficients(about: About) -> CoefficientInformation | None:
     """None for a light that is no coefficient file."""
-    if not isinstance(light, CoefficientLight) or light.file is None:
+    if (file := about.file) is None:
         return None
-    file = light.file
     words = {key: str(value) for key, value in stamp_of(file.convention, file.quantity, file.n_bands).items()}
     return CoefficientInformation(
         bands=file.n_bands,
         quantity=words["quantity"],
-        convention=light.convention,
+        convention=about.convention or "",
         program=words["program"],
         basis=words["basis"],
         phase=words["phase"],

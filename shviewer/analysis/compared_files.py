@@ -14,10 +14,12 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.finding import FITS, Found, find_convention
 from shviewer.coefficients.reading import interpreted, read_numbers
+from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.errors import LightError
 from shviewer.files import naming
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.find import COEFFICIENT_SUFFIXES, IMAGE_SUFFIXES, built_in_lights
+from shviewer.lights.find import built_in_lights
+from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.limits import MAX_BANDS
 from shviewer.words import brief_percent
 
@@ -49,7 +51,7 @@ def _found(recipe: Recipe, numbers: NDArray[Any]) -> Found:
     """By the radiance of what is projected."""
     light = load_light(replace(recipe, quantity="radiance"))
     most = min(MAX_BANDS, max(1, ceil(sqrt(numbers.size))))  # of a grey list; others have fewer
-    return find_convention(numbers / light.unit, project(light, *BEST, most).coefficients / light.unit)
+    return find_convention(numbers, project(light, *BEST, most).coefficients)
 
 
 def _said(name: str, found: Found) -> str:

@@ -16,9 +16,7 @@ from shviewer.coefficients.finding import FITS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.suspects import usual_suspects
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.words import brief_percent
@@ -45,15 +43,15 @@ def as_the_file_holds(recipe: Recipe, *, quantity: bool, bands: bool) -> tuple[R
     quantity, bands: whether to follow the file; more bands than a compared file has are never shown, which is then said.
     LightError if the light is bad.
     """
-    file = recipe.compare or subject(replace(recipe, quantity="radiance", split_sun=False)).whole
-    if not isinstance(file, CoefficientLight):
-        return recipe, ""
-    said = ""
+    compared, said = recipe.compare, ""
+    held = (compared or subject(replace(recipe, quantity="radiance", split_sun=False)).whole).about
+    if held.n_bands is None or held.quantity is None:
+        return recipe, said
     if bands:
-        recipe = replace(recipe, n_bands=min(file.n_bands, MAX_BANDS))
-    elif recipe.compare and recipe.n_bands > file.n_bands:
-        recipe, said = replace(recipe, n_bands=file.n_bands), file.extent
-    return replace(recipe, quantity=file.quantity) if quantity else recipe, said
+        recipe = replace(recipe, n_bands=min(held.n_bands, MAX_BANDS))
+    elif compared and recipe.n_bands > held.n_bands:
+        recipe, said = replace(recipe, n_bands=held.n_bands), compared.extent
+    return replace(recipe, quantity=held.quantity) if quantity else recipe, said
 
 
 def caption(recipe: Recipe) -> str:
@@ -67,8 +65,8 @@ def caption(recipe: Recipe) -> str:
 @remember(most=4)
 def verdict(light: Light, given: CoefficientLight) -> str:
     """One line on given coefficients: how well they agree with the light's own, or by which usual mistake they would."""
-    exact = project(light, *BEST, given.n_bands).coefficients / light.unit
-    shown = project(light, given, 0, 0, given.n_bands).coefficients / light.unit
+    exact = project(light, *BEST, given.n_bands).coefficients
+    shown = project(light, given, 0, 0, given.n_bands).coefficients
     norm, off = float(np.linalg.norm(exact)), float(np.linalg.norm(exact - shown))
     if off <= BAD * norm:
         over = f"its {given.n_bands} bands" if given.n_bands > 1 else "its one band"
@@ -116,7 +114,6 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
     if given.n_bands > 1:
         layouts[("listed channel by channel",)] = numbers.reshape(3, -1).T
         layouts[("listed row by row",)] = numbers.T.reshape(-1, 3)
-    cosine = irradiance_factors(given.n_bands) if isinstance(light, IrradianceLight) else np.ones(given.n_bands)
     found: dict[tuple[str, ...], Array] = {}
     for convention in CONVENTIONS.values() if given.file else (OURS,):
         if (convention.most_bands or MAX_BANDS) < given.n_bands or np.iscomplexobj(numbers) != convention.complex:
@@ -130,5 +127,5 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
             words = (*layout, *(() if same else (f"in the convention of {convention.name}",)))
             with suppress(ValueError):  # complex numbers of no real function
                 radiance = CoefficientLight.of_numbers(table, convention).given
-                found[words] = radiance * per_coefficient(cosine) / light.unit
+                found[words] = light.from_source(radiance)
     return found

@@ -1,6 +1,6 @@
 """What is known of a light and its reconstruction: figures, and the band counts that a tolerance needs.
 
-What is expensive is remembered (memory.py): a light is sampled once for its error figures.
+What is expensive is remembered (cache.py): a light is sampled once for its error figures.
 """
 
 from __future__ import annotations
@@ -34,7 +34,6 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 
@@ -104,8 +103,8 @@ def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
     """
     light = load_light(recipe)
     halves = [jittered(max(recipe.samples // 2, 1), seed) for seed in (recipe.seed, recipe.seed + HALF_SEED)]
-    first, second = (project_samples(light.integrand, half, MAX_DIRECT_BANDS) / light.unit for half in halves)
-    squares = np.concatenate([((light.integrand(half.directions) / light.unit) ** 2).sum(axis=1) for half in halves])
+    first, second = (project_samples(light.integrand, half, MAX_DIRECT_BANDS) for half in halves)
+    squares = np.concatenate([(light.integrand(half.directions) ** 2).sum(axis=1) for half in halves])
     deviation = 4 * np.pi * float(squares.std()) / np.sqrt(len(squares))
     if len(squares) < MIN_ESTIMATE:
         return SampleEstimate(None, 1, None)
@@ -118,7 +117,7 @@ def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: 
     exact = project(light, *BEST, MAX_BANDS).coefficients
     n_bands = MAX_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
     shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
-    return errors_by_band_count(light.products(), exact[: n_bands**2] / light.unit, shown / light.unit)
+    return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 
 
 @remember(most=64)
@@ -127,21 +126,17 @@ def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Arra
     n_bands, muted, window_name, width = what
     exact = project(light, *BEST, projection.n_bands).coefficients
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
-    factors = _window_factors(shown / light.unit, window_name, width)
+    factors = _window_factors(shown, window_name, width)
     shown = shown * per_coefficient(factors)
     total = float(np.trace(light.products()))
-    power = band_power(exact / light.unit).sum(axis=1)
+    power = band_power(exact).sum(axis=1)
     extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
-    irradiance = light if isinstance(light, IrradianceLight) else irradiance_of(light)
+    irradiance = irradiance_of(light)
     cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
-    shaded = squared_error(
-        irradiance.products().diagonal(), cosine * exact[: n_bands**2] / light.unit, cosine * shown / light.unit
-    )
+    shaded = squared_error(irradiance.products().diagonal(), cosine * exact[: n_bands**2], cosine * shown)
     figures = Figures(
         irradiance_relative_l2=relative(sum(shaded), irradiance.products().diagonal()),
-        channels=channel_figures(
-            light.products(), exact[: n_bands**2] / light.unit, shown / light.unit, extremes.peak / light.unit
-        ),
+        channels=channel_figures(light.products(), exact[: n_bands**2], shown, extremes.peak),
         floor=max(PARSEVAL_FLOOR, light.accuracy()),
         extremes=extremes,
         energy_share=tuple(float(p) / total if total else 0.0 for p in power),
@@ -173,4 +168,4 @@ def grid_rows(n_bands: int) -> int:
 @remember(most=8)
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
-    return ErrorGrid(light.radiance, light.landmarks(), rows, getattr(light, "on_rows", None))
+    return ErrorGrid(light.radiance, light.landmarks(), rows, light.rows)

@@ -19,8 +19,8 @@ from shviewer.analysis.subjects import load_light, subject
 from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes import LUMINANCE, SEARCH_ROUNDS, climb
-from shviewer.lights.environment import EnvironmentLight
-from shviewer.lights.find import IMAGE_SUFFIXES, file_version, split_light
+from shviewer.lights.find import file_version, split_light
+from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
 from shviewer.lights.suns.sun import Sun
@@ -34,9 +34,6 @@ DARK_PERCENTILE = 0.01
 BINS_PER_STOP = 32
 LOWEST_STOP, HIGHEST_STOP = -160, 140
 """More than float32 holds."""
-
-BLOCK = 2**20
-"""Texels looked at together, which bounds the memory."""
 
 Triple = tuple[float, float, float]
 
@@ -180,8 +177,10 @@ def _describe(text: str, reading: Reading) -> Information:
     recipe = Recipe(text, reading)
     found = reconstruction_of(recipe)
     light = found.subject.light
-    image = light if isinstance(light, EnvironmentLight) else None
-    values, peak = _image_values(image) if image is not None else _grid_values(light)
+    about = light.about
+    values, peak = (
+        _grid_values(light) if about.size is None else (_gather(light.texels(), "texels"), light.landmarks()[0])
+    )
     mean = found.projection.coefficients[0] / (2 * np.sqrt(np.pi))
     irradiance = load_light(replace(recipe, quantity="irradiance"))
     file = file_version(text)
@@ -193,9 +192,9 @@ def _describe(text: str, reading: Reading) -> Information:
         description=light.description,
         file=str(split_light(text)[0]),
         file_bytes=file.size if file is not None else 0,
-        encoding=image.encoding if image is not None else None,
-        size=(image.pixels.shape[1], image.pixels.shape[0]) if image is not None else None,
-        layout=image.layout.name if image is not None else None,
+        encoding=about.encoding,
+        size=about.size,
+        layout=about.layout,
         refused=None,
         notes=light.notes,
         values=values,
@@ -210,7 +209,7 @@ def _describe(text: str, reading: Reading) -> Information:
         bands_needed=_needed(recipe),
         suns=tuple(_sun(sun, total) for sun in split.suns),
         bands_needed_without_suns=_needed(replace(recipe, split_sun=True)) if split.suns else (),
-        coefficients=describe_coefficients(light),
+        coefficients=describe_coefficients(about),
     )
 
 
@@ -229,20 +228,6 @@ def _sun(sun: Sun, total: float) -> SunInformation:
         irradiance=_triple(sun.irradiance),
         share_of_flux=float(sun.flux.mean()) / total,
     )
-
-
-def _image_values(image: EnvironmentLight) -> tuple[Values, Array]:
-    """Those of the texels that show something, and the direction of the brightest, (3,)."""
-    height, width = image.pixels.shape[:2]
-    areas = np.broadcast_to(image.layout.solid_angles(), (height, width))
-    rows = max(1, BLOCK // width)
-
-    def blocks() -> Iterator[tuple[Array, Array]]:
-        for top in range(0, height, rows):
-            shown = areas[top : top + rows] > 0
-            yield image.pixels[top : top + rows][shown].astype(np.float64), areas[top : top + rows][shown]
-
-    return _gather(blocks(), "texels"), image.landmarks()[0]
 
 
 def _grid_values(light: Light) -> tuple[Values, Array]:

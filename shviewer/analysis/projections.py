@@ -15,15 +15,11 @@ import numpy as np
 from shviewer.analysis.cache import MEMORY, remember
 from shviewer.analysis.recipe import Recipe
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.filters import irradiance_factors, per_coefficient
-from shviewer.harmonics.metrics import (
-    errors_by_band_count,
-)
+from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 
 BEST = ("best", 0, 0)
@@ -92,7 +88,7 @@ def project(light: Light, method: str | CoefficientLight, samples: int, seed: in
 
     method: "best", "jittered" or "gauss-legendre"; or given coefficients, which are taken instead.
     """
-    if isinstance(method, CoefficientLight):
+    if not isinstance(method, str):
         return _given_projection(light, method, n_bands)
     found = _measured_projection(light, method, samples, seed, n_bands)
     _known(light, n_bands).move_to_end((method, samples, seed))
@@ -105,9 +101,7 @@ def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
 
 
 def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Measurement]:
-    known: OrderedDict[Any, Measurement] = MEMORY.results(
-        light, (Measurement, isinstance(light, IrradianceLight), n_bands)
-    )
+    known: OrderedDict[Any, Measurement] = MEMORY.results(light, (Measurement, light is light.source, n_bands))
     return known
 
 
@@ -115,9 +109,9 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
     """Add to what is known of the cost of this way to project."""
     n_bands, shown = projection.n_bands, projection.coefficients
     exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
-    errors = errors_by_band_count(light.products(), exact / light.unit, shown / light.unit)
+    errors = errors_by_band_count(light.products(), exact, shown)
     known = _known(light, n_bands)
-    if isinstance(light, IrradianceLight) and sampling != BEST:  # the only time spent was that on the light itself
+    if light is not light.source and sampling != BEST:  # the only time spent was that on the light itself
         known[sampling] = replace(_known(light.source, n_bands)[sampling], errors=errors)
     else:
         before = known.get(sampling)
@@ -130,9 +124,7 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
 
 @remember(most=8)
 def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Projection:
-    coefficients = given.coefficients(n_bands)
-    if isinstance(light, IrradianceLight):
-        coefficients = coefficients * per_coefficient(irradiance_factors(n_bands))
+    coefficients = light.from_source(given.coefficients(n_bands))
     return Projection(coefficients, f"read as {given.convention}", None, 0.0)
 
 
@@ -147,9 +139,9 @@ def _measured_projection(light: Light, method: str, samples: int, seed: int, n_b
 def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
     """A projection made and timed."""
     start = perf_counter()
-    if isinstance(light, IrradianceLight) and method != "best":
+    if light is not light.source and method != "best":
         source = project(light.source, method, samples, seed, n_bands)
-        return replace(source, coefficients=source.coefficients * per_coefficient(irradiance_factors(n_bands)))
+        return replace(source, coefficients=light.from_source(source.coefficients))
     evaluations = None
     if method == "jittered":
         directions = jittered(samples, seed)

@@ -10,9 +10,8 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.errors import LightError
 from shviewer.files import FileVersion
 from shviewer.lights.find import built_in_lights, file_version, find_light
-from shviewer.lights.irradiance import IrradianceLight
-from shviewer.lights.light import Light
-from shviewer.lights.suns.sun import Split, Sun, split_suns
+from shviewer.lights.light import Light, Split
+from shviewer.lights.suns.sun import Sun
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,13 +81,14 @@ def _name(recipe: Recipe) -> Hashable:
 def _split(light: Light) -> Split | str:
     """The light and its suns apart, or why it has none."""
     try:
-        split = split_suns(light)
+        split = light.split_suns()
     except LightError as error:
         return str(error)
     MEMORY.belongs(split.rest, light)
     return split
 
 
-@remember(most=2)
+@remember(most=4)
 def irradiance_of(light: Light) -> Light:
-    return IrradianceLight(light)
+    """Asked of the whole and of its rest, and of the irradiance of each, which is its own."""
+    return light.irradiance()

@@ -106,25 +106,19 @@ def _function_evaluations(light: FunctionLight, n_bands: int) -> int:
     return count
 
 
-def _in_its_unit(light: Light) -> Callable[[Array], Array]:
-    """What is projected, over `light.unit`: there, squares stay within float64."""
-    unit, integrand = light.unit, light.integrand
-    return integrand if unit == 1 else lambda directions: integrand(directions) / unit
-
-
 def _on_product(rule: Callable[[int], ProductRule]) -> Callable[[Light, int, int, int], Prepared]:
     def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
-        points, integrand, unit = rule(samples), _in_its_unit(light), light.unit
+        points, integrand = rule(samples), light.integrand
         count = len(points.theta) * points.n_columns
-        return Prepared(lambda: project_product(integrand, points, n_bands)[0] * unit, count)
+        return Prepared(lambda: project_product(integrand, points, n_bands)[0], count)
 
     return prepare
 
 
 def _on_samples(choose: Callable[[int, int], DirectionSet]) -> Callable[[Light, int, int, int], Prepared]:
     def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
-        chosen, integrand, unit = choose(samples, seed), _in_its_unit(light), light.unit
-        return Prepared(lambda: project_samples(integrand, chosen, n_bands) * unit, len(chosen.weights))
+        chosen, integrand = choose(samples, seed), light.integrand
+        return Prepared(lambda: project_samples(integrand, chosen, n_bands), len(chosen.weights))
 
     return prepare
 

@@ -240,9 +240,8 @@ class Errors:
 
 def errors_of(subject: Subject, coefficients: Array) -> Errors:
     """Coefficients (n_bands**2, 3) against the light's own, by the metrics of the window."""
-    unit, norm = subject.light.unit, subject.products.diagonal()
-    exact, shown = subject.exact[: len(coefficients)] / unit, coefficients / unit
-    left_out, added = squared_error(norm, exact, shown)
+    norm, exact = subject.products.diagonal(), subject.exact[: len(coefficients)]
+    left_out, added = squared_error(norm, exact, coefficients)
     return Errors(relative(added, (exact**2).sum(axis=0)), relative(left_out, norm), relative(left_out + added, norm))
 
 

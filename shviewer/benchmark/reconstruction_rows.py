@@ -128,7 +128,7 @@ class _Stage:
         self.direct = replace(picture, drawn=DirectSum(picture.coefficients), light_from_world=np.eye(3))
         self.synthesis = Synthesis(picture.coefficients)
         self.truncation = float(subject.truncation[n_bands - 1])
-        self.rms = float(np.sqrt(np.trace(light.products()) / (4 * np.pi))) * light.unit
+        self.rms = float(np.sqrt(np.trace(light.products()) / (4 * np.pi)))
         count = min(MOST_DIRECTIONS, MOST_VALUES // self.n_bands**2)
         vectors = np.random.default_rng(SEED).normal(size=(count, 3))
         self.directions = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

@@ -51,6 +51,6 @@ def find_subjects(
 
 def subject_of(light: Light, tolerances: Sequence[float] = TOLERANCES, name: str = "") -> Subject:
     exact, products = light.coefficients(MOST_BANDS), light.products()
-    truncation = errors_by_band_count(products, exact / light.unit, exact / light.unit)
+    truncation = errors_by_band_count(products, exact, exact)
     needs = {tolerance: smallest_band_count(truncation, tolerance) for tolerance in tolerances}
     return Subject(name or light.name, light, exact, products, truncation, needs)

@@ -28,7 +28,8 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
 
     UsageError for an option out of range, before the light is read if that does not depend on it.
     """
-    from shviewer.lights.find import COEFFICIENT_SUFFIXES, split_light
+    from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+    from shviewer.lights.find import split_light
 
     chosen = chosen_of(options, Recipe)
     window, separator, width = chosen.get("window", "none").partition(":")
@@ -154,7 +155,8 @@ def _input_convention(options: argparse.Namespace) -> str:
 
 def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
     """UsageError for a convention that nothing is read in."""
-    from shviewer.lights.find import COEFFICIENT_SUFFIXES, split_light
+    from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+    from shviewer.lights.find import split_light
 
     given = vars(options)
     lights: list[str] = given.get("lights") or [given.get("light", "green")]

@@ -17,7 +17,7 @@ from shviewer.errors import LightError
 
 
 def read_arrays(data: bytes) -> tuple[NDArray[Any], Stamp]:
-    """Of an .npz with `coefficients` and, if project wrote it, `stamp`; or of an .npy. LightError if it is bad."""
+    """The numbers and the stamp in an .npz with `coefficients` and, if project wrote it, `stamp`; or in an .npy. LightError."""
     most = 16 * MAX_NUMBERS + 2**16
     try:
         if not data.startswith(b"PK"):

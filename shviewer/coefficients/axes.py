@@ -2,8 +2,7 @@
 
 A direction with our components s has M s in the other program, M with one +1 or -1 in each row and column: 24 rotations and 24
 reflections. The function stays what it is, so that its coefficients there are those of g(s') = f(M^T s'). Turns about z and
-mirrors only change signs and swap m with -m, which is exact; axes that move z mix the orders of a degree and are as exact as
-one evaluation and one projection, 1e-14 of the largest coefficient.
+mirrors only change signs and swap m with -m, which is exact; axes that move z mix the orders of a degree (rotation.py).
 """
 
 from __future__ import annotations
@@ -17,9 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, degrees
-from shviewer.harmonics.projection import project_product
-from shviewer.harmonics.quadrature import angles_from_directions, gauss_legendre
-from shviewer.harmonics.synthesis import Synthesis
+from shviewer.harmonics.rotation import rotate
 
 NAMED_AXES = {"z-up": "+x+y+z", "y-up": "+x+z-y", "z-up-left": "+x-y+z", "y-up-left": "+x+z+y"}
 """z-up and y-up are right-handed, the others left-handed. Ours, +x, stays x in all of them."""
@@ -94,7 +91,7 @@ def turn(coefficients: Array, axes: Axes) -> Array:
     if not axes.right_handed:
         matrix, turned = -matrix, turned * alternating(degrees(n_bands))  # Y(l, m)(-s) = (-1)^l Y(l, m)(s)
     if matrix[2, 2] == 0:
-        return _evaluated_again(turned, matrix, n_bands)
+        return _without_noise(turned, rotate(turned, matrix))
     if matrix[2, 2] < 0:  # half a turn about x: z and y change sign
         matrix = matrix * np.array([1.0, -1.0, -1.0])
         turned = (
@@ -133,30 +130,8 @@ def _about_z(coefficients: Array, matrix: Array, n_bands: int) -> Array:
     )
 
 
-def _evaluated_again(coefficients: Array, matrix: Array, n_bands: int) -> Array:
-    """Evaluated in the turned directions of a product rule that is exact for these bands, and projected."""
-    turned = np.empty_like(coefficients)
-    rule = gauss_legendre(2 * n_bands**2)
-    for first in range(0, coefficients.shape[1], 3):
-        columns = np.zeros((n_bands**2, 3))
-        width = min(3, coefficients.shape[1] - first)
-        columns[:, :width] = coefficients[:, first : first + width]
-        synthesis = Synthesis(columns)
-
-        def before(directions: Array, synthesis: Synthesis = synthesis) -> Array:
-            return synthesis.at(*angles_from_directions(directions @ matrix))  # row vectors: M^T applied to each
-
-        turned[:, first : first + width] = project_product(before, rule, n_bands)[0][:, :width]
-    return _with_the_power_of(coefficients, turned)
-
-
-def _with_the_power_of(before: Array, after: Array) -> Array:
-    """`after` with what is rounding removed, and with the power that each degree had: turns keep it."""
+def _without_noise(before: Array, after: Array) -> Array:
+    """`after` with 0 where it holds the rounding of a zero."""
     starts = np.arange(count_bands(before)) ** 2
-    repeats = 2 * np.arange(len(starts)) + 1
     norm = np.sqrt(np.add.reduceat(before**2, starts, axis=0))
-    clean = np.where(np.abs(after) > NOISE * np.repeat(norm, repeats, axis=0), after, 0.0)
-    kept = np.sqrt(np.add.reduceat(clean**2, starts, axis=0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        factor = np.where(kept > 0, norm / kept, 1.0)
-    return np.asarray(clean * np.repeat(factor, repeats, axis=0))
+    return np.where(np.abs(after) > NOISE * np.repeat(norm, 2 * np.arange(len(starts)) + 1, axis=0), after, 0.0)

@@ -62,7 +62,7 @@ class Found:
 
 
 def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
-    """Of a bare list as it was read. exact: radiance of the light in our convention, of at least as many bands, over `unit`.
+    """The convention of a bare list as it was read. exact: the light's radiance in our convention, of at least as many bands.
 
     The programs' own conventions come first, then ours with modifiers. LightError if the numbers are no table in any of them.
     """

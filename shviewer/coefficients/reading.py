@@ -22,6 +22,7 @@ from shviewer.coefficients.convention import OVER_PI, RADIANCE, Convention
 from shviewer.coefficients.numbers import MAX_NUMBERS, as_table, plain_numbers
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp
+from shviewer.coefficients.suffixes import HOLDS
 from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
 from shviewer.harmonics.basis import Array, count_bands
@@ -55,7 +56,7 @@ class CoefficientFile:
 
     @property
     def quantity(self) -> str:
-        """Of our coefficients: "radiance" or "irradiance"."""
+        """What our coefficients are of: "radiance" or "irradiance"."""
         held = self.convention.quantity or RADIANCE
         return "irradiance" if held == OVER_PI else held
 
@@ -73,7 +74,7 @@ def read_numbers(path: Path, limits: Limits = DEFAULT_LIMITS) -> tuple[NDArray[A
     """The numbers in a file, in whichever shape, and what it says of them; nothing for a bare list. LightError."""
     limits = Limits(file_bytes=min(MAX_FILE_BYTES, limits.file_bytes))
     _check_size(path)
-    return _READERS[path.suffix.lower()](read_bytes(path, limits))
+    return _READERS[HOLDS[path.suffix.lower()]](read_bytes(path, limits))
 
 
 def _check_size(path: Path) -> None:
@@ -216,13 +217,8 @@ def _text(data: bytes) -> str:
 
 
 _READERS: dict[str, Callable[[bytes], tuple[NDArray[Any], Stamp]]] = {
-    ".json": _read_json,
-    ".csv": _read_csv,
-    ".txt": _read_text,
-    ".h": _read_text,
-    ".glsl": _read_text,
-    ".npz": read_arrays,
-    ".npy": read_arrays,
+    "json": _read_json,
+    "csv": _read_csv,
+    "text": _read_text,
+    "arrays": read_arrays,
 }
-
-COEFFICIENT_SUFFIXES = tuple(_READERS)

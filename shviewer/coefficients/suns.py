@@ -17,9 +17,9 @@ class DirectionalLight(NamedTuple):
 
     direction: Array
     irradiance: Array
-    """Of a surface that faces it."""
+    """What a surface that faces the sun receives, (3,)."""
     radiance: Array
-    """Of a disc of uniform radiance with that irradiance."""
+    """What a disc of uniform radiance has that gives this irradiance, (3,)."""
     width_degrees: float
     """The angle across this disc."""
 

@@ -84,13 +84,6 @@ def normalise(directions: ArrayLike) -> Array:
     return np.asarray(scaled / np.sqrt((scaled * scaled).sum(axis=-1, keepdims=True)))
 
 
-def safe_unit(largest: float) -> float:
-    """What to divide by before squaring: 1, or a power of two near `largest` if its square might leave float64."""
-    if largest == 0 or 1e-100 < largest < 1e100:
-        return 1.0
-    return float(np.ldexp(1.0, min(int(np.frexp(largest)[1]), 1023)))
-
-
 @lru_cache(maxsize=16)
 def normalisation(n_bands: int) -> Array:
     """The factor N(l, m) of Y in terms of the Gegenbauer ratio G, shape (n, n), zero for m > l.

@@ -8,12 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, count_bands, safe_unit
-from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.quadrature import (
+    angles_from_directions,
+    column_azimuths,
+    directions_from_angles,
+    evaluate_rows,
+)
 from shviewer.harmonics.synthesis import Synthesis
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -26,7 +32,7 @@ PARABOLOID = np.linalg.pinv(
 """Values on a patch -> value, slopes and curvatures of the best paraboloid, (6, 25)."""
 
 ON_RIM = np.append(np.abs(PATCH).max(axis=1) == 2, True)
-"""Of the points of a patch, the vertex of the last one behind them, those that ask for another one as wide."""
+"""Whether a point of a patch, if it is the best, asks for another patch as wide, (26,); the last one is a vertex."""
 
 DISPLAY_ROUNDS = 3
 """Patches for a figure that is shown: to an eighth of the grid's cell, and to the vertices of paraboloids."""
@@ -58,8 +64,8 @@ class Extremes:
 class ErrorGrid:
     """A light seen on a lat-long grid and at its landmarks, ready to be compared with any reconstruction.
 
-    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions where a grid would miss something. on_rows: the
-    radiance on rows at theta (rows,), with so many columns, (rows, 3, columns), where there is a faster way to all of them.
+    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions where a grid would miss something. rows: the radiance
+    on rows at theta (rows,), with so many columns, (rows, 3, columns), where there is a faster way to all of them.
     """
 
     def __init__(
@@ -67,17 +73,12 @@ class ErrorGrid:
         radiance: Callable[[Array], Array],
         landmarks: Array,
         n_rows: int,
-        on_rows: Callable[[Array, int], Array] | None = None,
+        rows: Callable[[Array, int], Array] | None = None,
     ) -> None:
         self.radiance = radiance
         self.theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
         self.phi = column_azimuths(2 * n_rows)
-        if on_rows:
-            self.original = on_rows(self.theta, len(self.phi))
-        else:
-            directions = directions_from_angles(self.theta[:, None], self.phi)
-            grid = radiance(directions.reshape(-1, 3)).reshape(n_rows, 2 * n_rows, 3)
-            self.original = np.ascontiguousarray(grid.transpose(0, 2, 1))
+        self.original = (rows or partial(evaluate_rows, radiance))(self.theta, len(self.phi))
         self.landmarks = landmarks
         self.landmark_radiance = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
         self.peak = float(max(np.abs(self.original).max(), np.abs(self.landmark_radiance).max(initial=0)))
@@ -122,12 +123,12 @@ class ErrorGrid:
 
     def _negative_energy(self, values: Array, shown: Array) -> float:
         """The negative part is measured on the grid, the whole is the sum of squared coefficients (Parseval)."""
-        if values.min() >= 0:
+        whole = float((shown**2).sum())
+        if values.min() >= 0 or whole == 0:  # squares of less than 1e-160 may be 0
             return 0.0
-        unit = safe_unit(float(np.abs(shown).max()))
-        negative = np.minimum(values, 0).reshape(len(self.theta), -1) / unit
+        negative = np.minimum(values, 0).reshape(len(self.theta), -1)
         squares = np.einsum("rx,rx->r", negative, negative) @ self.row_share
-        return min(1.0, 4 * np.pi * float(squares) / float(((shown / unit) ** 2).sum()))
+        return min(1.0, 4 * np.pi * float(squares) / whole)
 
 
 def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -139,13 +140,6 @@ def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int
     best = np.argsort(blocks.max(axis=1))[-BLOCKS:]
     inside = blocks[best].argmax(axis=1)
     return best // (columns // 8) * 8 + inside // 8, best % (columns // 8) * 8 + inside % 8
-
-
-def smallest_value(coefficients: Array) -> tuple[float, Triple]:
-    """The minimum of a reconstruction over all channels, and its direction: (n**2, 3) -> value, (x, y, z)."""
-    values, directions, _ = valleys(coefficients)
-    lowest = int(values.argmin())
-    return float(values[lowest]), _triple(directions[lowest])
 
 
 def valleys(
@@ -248,7 +242,7 @@ def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tupl
 
 def _vertex(values: Array) -> tuple[Array, Array]:
     """Where in the patch (units of PATCH) the paraboloids fitted to values (k, 25) are highest; 0, 0 where they are not."""
-    _, slope_a, slope_b, bend_a, across, bend_b = PARABOLOID @ (values / safe_unit(float(np.abs(values).max()))).T
+    _, slope_a, slope_b, bend_a, across, bend_b = PARABOLOID @ values.T
     determinant = bend_a * bend_b - across**2
     peaked = (bend_a < 0) & (determinant > 0)
     determinant = np.where(peaked, determinant, 1.0)

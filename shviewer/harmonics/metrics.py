@@ -7,8 +7,7 @@ The first bracket is what the bands left out hold (truncation); the last sum is 
 window h the latter is (1 - h)^2 c^2, so that the whole is ||f||^2 - sum of (2h - h^2) c^2.
 
 A light's *products* are the 3 x 3 integrals of f_i f_j over its channels. They give ||f||^2 of every linear combination of
-channels; the figures are made for R, G, B, their sum and Rec. 709 luminance. Where radiances are so large or small that their
-squares would leave float64, a light gives its products in a unit of its own, by which coefficients have to be divided.
+channels; the figures are made for R, G, B, their sum and Rec. 709 luminance.
 """
 
 from __future__ import annotations
@@ -23,6 +22,9 @@ from shviewer.harmonics.extremes import LUMINANCE
 
 ROUNDING = 1e-11
 """How far, relative to ||f||^2, a sum of squared coefficients may exceed it: rounding of up to 128**2 terms."""
+
+SMALLEST = 1e-300
+"""How far it may besides: squares that are smaller lose their digits where float64 ends."""
 
 PARSEVAL_FLOOR = 1e-7
 """A relative error below this cannot be told from rounding by a difference of squares in float64."""
@@ -51,7 +53,7 @@ def squared_error(
     quadratures and no error can be read off them.
     """
     missing = norm_squared - (exact**2).sum(axis=0)
-    if (missing < -ROUNDING * (norm_squared if magnitude is None else magnitude)).any():
+    if (missing < -SMALLEST - ROUNDING * (norm_squared if magnitude is None else magnitude)).any():
         raise ValueError(f"coefficients hold {-missing.min():.3g} more energy than the light: mixed quadratures")
     return float(missing.clip(min=0).sum()), float(((exact - shown) ** 2).sum())
 
@@ -66,7 +68,7 @@ def relative(squared: float, norm_squared: Array) -> float:
 
 @dataclass(frozen=True)
 class ChannelFigures:
-    """Of one channel, or of all: relative L2 errors and PSNR in decibels."""
+    """Relative L2 errors and PSNR, in decibels, of one channel or of all together."""
 
     relative_l2: float
     left_out: float
@@ -101,14 +103,14 @@ def channel_figures(products: Array, exact: Array, shown: Array, peak: float) ->
 def errors_by_band_count(products: Array, exact: Array, shown: Array) -> Array:
     """Relative L2 error over all channels with the first n bands of `shown`, for n = 1 ... N: (N,).
 
-    products: (3, 3); exact, shown: (N**2, 3), in the same unit. ValueError for mixed quadratures.
+    products: (3, 3); exact, shown: (N**2, 3). ValueError for mixed quadratures.
     """
     norm = float(np.trace(products))
     kept = np.cumsum(band_power(exact).sum(axis=1))
     added = np.cumsum(band_power(exact - shown).sum(axis=1))
     if norm == 0:
         return np.where(added > 0, np.inf, 0.0)
-    if kept[-1] > norm * (1 + ROUNDING):
+    if kept[-1] > norm * (1 + ROUNDING) + SMALLEST:
         raise ValueError(f"coefficients hold {kept[-1] / norm - 1:.3g} more energy than the light: mixed quadratures")
     return np.asarray(np.sqrt(((norm - kept).clip(min=0) + added) / norm))
 

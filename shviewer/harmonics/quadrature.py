@@ -92,7 +92,7 @@ class ProductRule:
         return directions_from_angles(self.theta[rows, None], self.phi).reshape(-1, 3)
 
     def direction_set(self, rows: slice = slice(None)) -> DirectionSet:
-        """The same with their weights."""
+        """The points of some rows with their weights."""
         weights = np.repeat(self.row_weights[rows] * (2 * np.pi / self.n_columns), self.n_columns)
         return DirectionSet(self.directions(rows), weights)
 
@@ -164,6 +164,12 @@ def angles_from_directions(directions: Array) -> tuple[Array, Array]:
     """The angle to +z and the azimuth from +x towards +y, each (...), radians, of vectors (..., 3) of any length."""
     x, y, z = np.moveaxis(directions, -1, 0)
     return np.arctan2(np.hypot(x, y), z), np.arctan2(y, x)
+
+
+def evaluate_rows(radiance: Radiance, theta: Array, n_columns: int) -> Array:
+    """A function on rows of a lat-long grid at angles theta (rows,) from +z: (rows, 3, n_columns)."""
+    directions = directions_from_angles(theta[:, None], column_azimuths(n_columns)).reshape(-1, 3)
+    return np.ascontiguousarray(radiance(directions).reshape(len(theta), n_columns, 3).transpose(0, 2, 1))
 
 
 def directions_from_angles(theta: Array, phi: Array) -> Array:

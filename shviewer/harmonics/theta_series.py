@@ -59,7 +59,7 @@ def series_by_parity(n_bands: int) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=8)
 def degrees_and_orders(n_bands: int) -> tuple[Indices, Indices, Indices]:
-    """Of each coefficient: degree l, |m|, and 1 for the sine, (n**2,) each."""
+    """Degree l and |m| of each coefficient, and 1 where it is that of a sine, (n**2,) each."""
     degree = np.repeat(np.arange(n_bands), 2 * np.arange(n_bands) + 1)
     order = np.arange(n_bands**2) - degree * (degree + 1)
     return degree, np.abs(order), (order < 0).astype(np.int64)

@@ -17,10 +17,13 @@ from shviewer.coefficients.convention import RADIANCE, Convention, recovered_rad
 from shviewer.coefficients.programs import CONVENTIONS, OURS, convention_text
 from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
-from shviewer.harmonics.basis import Array, count_bands, safe_unit
+from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
+from shviewer.lights.irradiance import BandLimitedIrradiance
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.light import About, Light
+from shviewer.lights.radiance import RadianceLight
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import check_brightness
 from shviewer.words import counted
@@ -29,7 +32,7 @@ MAP_SIZE = (1025, 2048)
 
 
 @dataclass(frozen=True, eq=False)
-class CoefficientLight:
+class CoefficientLight(RadianceLight):
     """`given`: radiance in our convention, (n**2, 3), float64."""
 
     given: Array
@@ -38,6 +41,7 @@ class CoefficientLight:
     """What was read, with its own numbers."""
 
     best_method = "coefficients as given"
+    lobes = ()
 
     def __post_init__(self) -> None:
         """LightError for more radiance than can be shown: the largest is at least the root of the mean square."""
@@ -50,7 +54,7 @@ class CoefficientLight:
 
     @classmethod
     def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
-        """Of a file that has been read."""
+        """The light whose coefficients, or whose irradiance's, a file holds that has been read."""
         held = file.coefficients
         return cls(held if file.quantity == RADIANCE else recovered_radiance(held)[0], name, file)
 
@@ -58,7 +62,7 @@ class CoefficientLight:
     def of_numbers(
         cls, numbers: NDArray[np.generic], convention: Convention, name: str = "coefficients"
     ) -> CoefficientLight:
-        """Of a program's own numbers (n**2, 3). ValueError for more bands than it has."""
+        """The light of a program's own numbers (n**2, 3). ValueError for more bands than the program has."""
         held = convention.quantity or RADIANCE
         coefficients = convention.to_ours(numbers)
         return cls(coefficients if held == RADIANCE else recovered_radiance(coefficients)[0], name)
@@ -74,16 +78,20 @@ class CoefficientLight:
 
     @property
     def quantity(self) -> str:
-        """Of the file's numbers: "radiance" or "irradiance"."""
+        """What the file's numbers are of: "radiance" or "irradiance"."""
         return self.file.quantity if self.file else RADIANCE
 
     @property
     def convention(self) -> str:
-        """Of its file, as a text without the quantity."""
+        """The convention of the file, a text without the quantity."""
         if self.file is None:
             return OURS.name
         held = self.file.convention
         return convention_text(replace(held, quantity=CONVENTIONS[held.name].quantity))
+
+    @property
+    def about(self) -> About:
+        return About(n_bands=self.n_bands, quantity=self.quantity, convention=self.convention, file=self.file)
 
     @property
     def description(self) -> str:
@@ -111,11 +119,8 @@ class CoefficientLight:
     def radiance(self, directions: Array) -> Array:
         return self._synthesis.at(*angles_from_directions(directions))
 
-    def integrand(self, directions: Array) -> Array:
-        return self.radiance(directions)
-
-    def on_rows(self, theta: Array, n_columns: int) -> Array:
-        """The radiance on rows of a lat-long image, (rows, 3, n_columns), for a fraction of what as many directions cost."""
+    def rows(self, theta: Array, n_columns: int) -> Array:
+        """For a fraction of what as many directions cost."""
         return self._synthesis.on_rows(theta, n_columns)
 
     @cached_property
@@ -128,23 +133,12 @@ class CoefficientLight:
         found[:kept] = self.given[:kept]
         return found
 
-    @cached_property
-    def unit(self) -> float:
-        return safe_unit(float(np.abs(self.given).max()))
-
     def products(self) -> Array:
-        scaled = self.given / self.unit
-        return np.asarray(scaled.T @ scaled)
+        return np.asarray(self.given.T @ self.given)
 
-    def accuracy(self) -> float:
-        return 0.0
-
-    def landmarks(self) -> Array:
-        return np.zeros((0, 3))
-
-    def radiance_map(self) -> LatLongMap:
-        return self._map
+    def irradiance(self) -> Light:
+        return BandLimitedIrradiance(self, self.n_bands)
 
     @cached_property
-    def _map(self) -> LatLongMap:
+    def map(self) -> LatLongMap:
         return LatLongMap(self._synthesis.pole_to_pole(*MAP_SIZE), rows_on_poles=True)

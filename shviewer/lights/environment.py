@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,18 +19,23 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Indices, Layout
 from shviewer.lights.layouts.recognise import recognise
+from shviewer.lights.light import About, Split
+from shviewer.lights.radiance import RadianceLight
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import check_brightness
 
 MAX_RASTER_WIDTH = 8192
-"""Of the lat-long raster that an image is drawn from which is no texture itself."""
+"""Columns at most of the lat-long raster from which an image is drawn that is no texture itself."""
+
+BLOCK_TEXELS = 2**20
+"""Texels given out together, which bounds the memory."""
 
 MAX_TEXTURE_SIDE = 16384
 """What every desktop GPU of the last ten years takes."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class EnvironmentLight:
+class EnvironmentLight(RadianceLight):
     """`radiance` interpolates between texel centres; coefficients and norm are those of the areas."""
 
     pixels: NDArray[np.float32]
@@ -41,9 +46,8 @@ class EnvironmentLight:
     encoding: str | None
     """The file's format in words; None for an image that was not read."""
 
-    best_method: ClassVar[str] = "exact texel integrals"
-    unit: ClassVar[float] = 1.0
-    """Squares of float32 texels are far inside float64."""
+    best_method = "exact texel integrals"
+    lobes = ()
 
     def __init__(
         self,
@@ -76,6 +80,11 @@ class EnvironmentLight:
     def description(self) -> str:
         shape = self.layout.size
         return f"environment map, {shape if self._is_lat_long else f'{self.layout.name}, {shape}'}"
+
+    @property
+    def about(self) -> About:
+        height, width = self.pixels.shape[:2]
+        return About(encoding=self.encoding, size=(width, height), layout=self.layout.name)
 
     @property
     def _is_lat_long(self) -> bool:
@@ -113,9 +122,6 @@ class EnvironmentLight:
     def _projected(self) -> list[Array]:
         return []
 
-    def accuracy(self) -> float:
-        return 0.0
-
     def products(self) -> Array:
         return self._products
 
@@ -141,8 +147,20 @@ class EnvironmentLight:
             row, column = _brightest(np.where(self.layout.solid_angles()[..., None] > 0, self.pixels, np.float32(0)))
         return self.layout.centres(row, column)
 
-    def radiance_map(self) -> LatLongMap:
-        return self.map
+    def texels(self) -> Iterator[tuple[Array, Array]]:
+        """Those that show something."""
+        areas = np.broadcast_to(self.layout.solid_angles(), self.pixels.shape[:2])
+        rows = max(1, BLOCK_TEXELS // self.pixels.shape[1])
+        for top in range(0, len(self.pixels), rows):
+            shown = areas[top : top + rows] > 0
+            yield self.pixels[top : top + rows][shown].astype(np.float64), areas[top : top + rows][shown]
+
+    def split_suns(self) -> Split:
+        from shviewer.lights.suns.compact_sources import CompactSources, suns_or_refusal
+
+        sources = CompactSources(self.pixels, self.layout)
+        suns = suns_or_refusal(self.name, *sources.take_all())
+        return Split(replace(self, pixels=sources.pixels), suns)
 
 
 def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:

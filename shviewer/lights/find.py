@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import difflib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.errors import LightError
 from shviewer.files import FileVersion, version_of
-from shviewer.lights.light import Light
+from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.resources import resource_folder
 
-IMAGE_SUFFIXES = (".hdr", ".pic", ".rgbe", ".exr", ".png", ".jpg", ".jpeg")
-COEFFICIENT_SUFFIXES = (".json", ".csv", ".txt", ".h", ".glsl", ".npz", ".npy")
+if TYPE_CHECKING:  # a kind of light is loaded where there is one
+    from shviewer.lights.light import Light
 
 
 def built_in_lights() -> dict[str, Path]:
@@ -45,20 +47,22 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
     `reading` says how an image is read, and which convention numbers have that do not say it.
     LightError if there is no such light or its file is bad.
     """
-    from shviewer.lights.environment import EnvironmentLight
-    from shviewer.lights.function import load_function
-    from shviewer.lights.scene import read_scene
-
     path, part = split_light(text)
     if path.suffix.lower() == ".toml":
+        from shviewer.lights.scene import read_scene
+
         return read_scene(path)
     if path.suffix.lower() in IMAGE_SUFFIXES:
+        from shviewer.lights.environment import EnvironmentLight
+
         return EnvironmentLight.read(path, reading, part)
     if path.suffix.lower() in COEFFICIENT_SUFFIXES:
         from shviewer.lights.coefficient_light import CoefficientLight
 
         return CoefficientLight.read(path, reading)
     if part:
+        from shviewer.lights.function import load_function
+
         return load_function(path, part)
     raise LightError(_unknown(text))
 

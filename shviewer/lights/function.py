@@ -11,14 +11,15 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from shviewer.errors import LightError
-from shviewer.harmonics.basis import Array, safe_unit
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
+from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.radiance import RadianceLight
 from shviewer.limits import check_brightness
 
 SAMPLED_BANDS = 128
@@ -29,9 +30,6 @@ FIRST_ROWS, LAST_ROWS = 160, 640
 
 MOVEMENT = 5e-4
 """The rows are doubled until no relative L2 error, whatever the number of bands, moves by more than this."""
-
-MAP_ROWS = 513
-"""Rows of the map that the GPU samples, from pole to pole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +47,7 @@ DirectionFunction = Callable[[Array], ArrayLike]
 
 
 @dataclass(frozen=True, eq=False)
-class FunctionLight:
+class FunctionLight(RadianceLight):
     """`function` is called on arrays of unit directions (k, 3) and returns radiance (k, 3), or (k,) for grey.
 
     LightError if it raises, or returns another shape, a value that is not finite, or more radiance than can be shown.
@@ -57,6 +55,8 @@ class FunctionLight:
 
     function: DirectionFunction
     name: str = "function"
+
+    lobes = ()
 
     @property
     def description(self) -> str:
@@ -101,9 +101,6 @@ class FunctionLight:
         check_brightness(float(np.abs(values).max(initial=0.0)), self.name)
         return values
 
-    def integrand(self, directions: Array) -> Array:
-        return self.radiance(directions)
-
     def coefficients(self, n_bands: int) -> Array:
         sampling = self._sampling
         if n_bands <= SAMPLED_BANDS:
@@ -113,43 +110,24 @@ class FunctionLight:
     def products(self) -> Array:
         return self._sampling.products
 
-    @cached_property
-    def unit(self) -> float:
-        few = gauss_legendre(2 * FIRST_ROWS).direction_set().directions
-        return safe_unit(float(np.abs(self.radiance(few)).max()))
-
     def accuracy(self) -> float:
         return self._sampling.movement
 
     @cached_property
     def _sampling(self) -> _Sampling:
         """As many points as the function's sharpness asks for, up to a limit."""
-
-        def scaled(directions: Array) -> Array:
-            return self.radiance(directions) / self.unit
-
         rows, last = FIRST_ROWS, None
         while True:
-            coefficients, products = project_product(scaled, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
+            coefficients, products = project_product(self.radiance, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
             errors = errors_by_band_count(products, coefficients, coefficients)
             movement = float("inf") if last is None else float(np.abs(errors - last).max())
             if movement <= MOVEMENT or 2 * rows > LAST_ROWS:
-                return _Sampling(rows, coefficients * self.unit, products, movement)
+                return _Sampling(rows, coefficients, products, movement)
             rows, last = 2 * rows, errors
 
-    def landmarks(self) -> Array:
-        return np.zeros((0, 3))
-
-    def radiance_map(self) -> LatLongMap:
-        return self._map
-
     @cached_property
-    def _map(self) -> LatLongMap:
-        width = 2 * (MAP_ROWS - 1)
-        theta = np.linspace(0, np.pi, MAP_ROWS)
-        directions = directions_from_angles(theta[:, None], column_azimuths(width))
-        texels: NDArray[np.float32] = self.radiance(directions.reshape(-1, 3)).astype(np.float32)
-        return LatLongMap(texels.reshape(MAP_ROWS, width, 3), rows_on_poles=True)
+    def map(self) -> LatLongMap:
+        return LatLongMap.pole_to_pole(self.rows)
 
 
 def load_function(path: Path, function: str) -> FunctionLight:

@@ -12,16 +12,15 @@ from functools import cached_property
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, gegenbauer_ratios
-from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight, angle_between
+from shviewer.lights.light import About, Light, LightBase
+from shviewer.lights.lobe import Lobe, angle_between
 
 SERIES_BANDS = 1024
 """Bands in the products of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of its norm."""
@@ -29,15 +28,17 @@ SERIES_BANDS = 1024
 MAP_BANDS = 128
 """Bands of an image or a function; a point light misses 6e-7 of its norm, any broader light far less."""
 
-MAP_ROWS = 513
 TABLE_NODES, EDGE_NODES = 2049, 513
 
 
 @dataclass(frozen=True, eq=False)
-class IrradianceLight:
-    """The irradiance of `source`."""
+class IrradianceLight(LightBase):
+    """The irradiance of `source`, whose first `bands` bands hold all of it that can be told."""
 
     source: Light
+    bands: int = MAP_BANDS
+
+    lobes = ()
 
     @property
     def name(self) -> str:
@@ -52,80 +53,91 @@ class IrradianceLight:
         return self.source.notes
 
     @property
+    def about(self) -> About:
+        return self.source.about
+
+    @property
     def best_method(self) -> str:
         return self.source.best_method
 
-    @property
-    def unit(self) -> float:
-        return self.source.unit
+    def irradiance(self) -> Light:
+        return self
 
-    def accuracy(self) -> float:
-        """That of the source, and for images and functions what its bands beyond MAP_BANDS could still hold."""
-        if isinstance(self.source, LobeLight):
-            return 0.0
-        kept = self.source.coefficients(MAP_BANDS) / self.unit
-        beyond = max(float(np.trace(self.source.products()) - (kept**2).sum()), 0.0)
-        total = float(np.trace(self.products()))
-        tail = float(irradiance_factors(MAP_BANDS + 2)[-2:].__abs__().max())
-        return max(self.source.accuracy(), tail * float(np.sqrt(beyond / total)) if total else 0.0)
-
-    def integrand(self, directions: Array) -> Array:
-        return self.radiance(directions)
+    def from_source(self, coefficients: Array) -> Array:
+        return coefficients * per_coefficient(irradiance_factors(count_bands(coefficients)))
 
     def coefficients(self, n_bands: int) -> Array:
-        return self.source.coefficients(n_bands) * per_coefficient(irradiance_factors(n_bands))
+        return self.from_source(self.source.coefficients(n_bands))
 
     def products(self) -> Array:
         return self._products
 
     @cached_property
     def _products(self) -> Array:
-        if isinstance(self.source, LobeLight):
-            return _lobe_products(self.source.lobes, self.unit)
-        coefficients = self.coefficients(MAP_BANDS) / self.unit
+        coefficients = self.coefficients(self.bands)
         return np.asarray(coefficients.T @ coefficients)
 
     def landmarks(self) -> Array:
         return self.source.landmarks()
 
+    @cached_property
+    def map(self) -> LatLongMap:
+        return LatLongMap.pole_to_pole(self.rows)
+
+
+class MappedIrradiance(IrradianceLight):
+    """The irradiance of an image or a function: its bands are summed in a map once, and read from that."""
+
+    def accuracy(self) -> float:
+        """That of the source, and what its further bands could still hold."""
+        kept = self.source.coefficients(self.bands)
+        beyond = max(float(np.trace(self.source.products()) - (kept**2).sum()), 0.0)
+        total = float(np.trace(self.products()))
+        tail = float(irradiance_factors(self.bands + 2)[-2:].__abs__().max())
+        return max(self.source.accuracy(), tail * float(np.sqrt(beyond / total)) if total else 0.0)
+
     def radiance(self, directions: Array) -> Array:
-        """Irradiance (k, 3) on surfaces that face `directions` (k, 3)."""
-        if isinstance(self.source, CoefficientLight):
-            return self._band_limited.radiance(directions)
-        if not isinstance(self.source, LobeLight):
-            return self.radiance_map().sample(directions)
+        return self.map.sample(directions)
+
+    @cached_property
+    def map(self) -> LatLongMap:
+        return LatLongMap.pole_to_pole(Synthesis(self.coefficients(self.bands)).on_rows)
+
+
+class BandLimitedIrradiance(IrradianceLight):
+    """The irradiance of coefficients: a finite sum, too."""
+
+    def radiance(self, directions: Array) -> Array:
+        return self._synthesis.at(*angles_from_directions(directions))
+
+    def rows(self, theta: Array, n_columns: int) -> Array:
+        return self._synthesis.on_rows(theta, n_columns)
+
+    @cached_property
+    def _synthesis(self) -> Synthesis:
+        return Synthesis(self.coefficients(self.bands))
+
+
+class LobeIrradiance(IrradianceLight):
+    """The irradiance of a sum of lobes, in closed form."""
+
+    def radiance(self, directions: Array) -> Array:
         total = np.zeros((len(directions), 3))
         for lobe, (angles, values) in zip(self.source.lobes, self._tables, strict=True):
             half_chord = np.linalg.norm(directions - lobe.axis, axis=1) / 2
             total += np.interp(2 * np.arcsin(np.minimum(half_chord, 1)), angles, values)[:, None] * lobe.radiance
         return total
 
-    def radiance_map(self) -> LatLongMap:
-        return self._map
-
-    @cached_property
-    def _band_limited(self) -> CoefficientLight:
-        """Of coefficients, the irradiance is a finite sum, too."""
-        assert isinstance(self.source, CoefficientLight)
-        return CoefficientLight(self.coefficients(self.source.n_bands))
-
     @cached_property
     def _tables(self) -> list[tuple[Array, Array]]:
-        return [_table(lobe) for lobe in self.source.lobes] if isinstance(self.source, LobeLight) else []
+        return [_table(lobe) for lobe in self.source.lobes]
 
     @cached_property
-    def _map(self) -> LatLongMap:
-        width = 2 * (MAP_ROWS - 1)
-        theta = np.linspace(0, np.pi, MAP_ROWS)
-        if isinstance(self.source, LobeLight):
-            directions = directions_from_angles(theta[:, None], column_azimuths(width)).reshape(-1, 3)
-            values = self.radiance(directions).reshape(MAP_ROWS, width, 3)
-        else:
-            values = Synthesis(self.coefficients(MAP_BANDS)).on_rows(theta, width).transpose(0, 2, 1)
-        return LatLongMap(np.ascontiguousarray(values, dtype=np.float32), rows_on_poles=True)
+    def _products(self) -> Array:
+        return _lobe_products(self.source.lobes)
 
 
-def _lobe_products(lobes: tuple[Lobe, ...], unit: float) -> Array:
+def _lobe_products(lobes: tuple[Lobe, ...]) -> Array:
     """Sum over bands and pairs of lobes, by the addition theorem: (2l+1)/4pi A^2 lambda lambda' P(l)(cos of the angle)."""
     strength = irradiance_factors(SERIES_BANDS) ** 2 * (2 * np.arange(SERIES_BANDS) + 1) / (4 * np.pi)
     zonal = [lobe.profile.zonal(SERIES_BANDS) for lobe in lobes]
@@ -134,9 +146,7 @@ def _lobe_products(lobes: tuple[Lobe, ...], unit: float) -> Array:
         for j, second in enumerate(lobes[: i + 1]):
             angle = angle_between(first, second)
             legendre = gegenbauer_ratios(np.cos(angle), 2 * np.sin(angle / 2) ** 2, 0, SERIES_BANDS)
-            pair = float((strength * zonal[i] * zonal[j] * legendre).sum()) * np.outer(
-                first.radiance / unit, second.radiance / unit
-            )
+            pair = float((strength * zonal[i] * zonal[j] * legendre).sum()) * np.outer(first.radiance, second.radiance)
             products += pair if i == j else pair + pair.T
     return products
 

@@ -6,6 +6,7 @@ v in [0, 1] is theta = pi v with +z on top. (OpenEXR's lat-long convention with 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,9 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import angles_from_directions
+
+MAP_ROWS = 513
+"""Rows of the map of a function, from pole to pole."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,19 +29,17 @@ class LatLongMap:
     texels: NDArray[np.float32]
     rows_on_poles: bool = False
 
+    @classmethod
+    def pole_to_pole(cls, rows: Callable[[Array, int], Array]) -> LatLongMap:
+        """MAP_ROWS rows of a smooth function: rows(theta (k,), n_columns) -> (k, 3, n_columns)."""
+        values = rows(np.linspace(0, np.pi, MAP_ROWS), 2 * (MAP_ROWS - 1)).transpose(0, 2, 1)
+        return cls(np.ascontiguousarray(values, dtype=np.float32), rows_on_poles=True)
+
     @property
     def row_scale_offset(self) -> tuple[float, float]:
         """(a, b) with row = a theta + b."""
         height = len(self.texels)
         return ((height - 1) / np.pi, 0.0) if self.rows_on_poles else (height / np.pi, -0.5)
-
-    def nearest(self, directions: Array) -> Array:
-        """The texel (k, 3) in whose area each unit direction (k, 3) lies; for rows at texel centres."""
-        height, width = self.texels.shape[:2]
-        theta, phi = angles_from_directions(directions)
-        row = (theta * (height / np.pi)).astype(np.int64)
-        column = np.floor((0.5 - phi / (2 * np.pi)) * width).astype(np.int64)
-        return np.asarray(self.texels[np.minimum(row, height - 1), column % width], dtype=np.float64)
 
     def sample(self, directions: Array) -> Array:
         """Bilinear radiance (k, 3) in unit directions (k, 3); continuous across the seam and the poles."""

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+import numpy as np
+
+from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.quadrature import evaluate_rows
 from shviewer.lights.lat_long import LatLongMap
+
+if TYPE_CHECKING:  # what few lights have is loaded with those
+    from shviewer.coefficients.reading import CoefficientFile
+    from shviewer.lights.lobe import Lobe
+    from shviewer.lights.suns.sun import Sun
 
 
 class Light(Protocol):
@@ -24,24 +36,38 @@ class Light(Protocol):
         """Warnings worth a line each, such as negative texels."""
 
     @property
+    def about(self) -> About:
+        """What is known of the image or the coefficients that it is made of."""
+
+    @property
     def best_method(self) -> str:
         """How `coefficients` computes, in words: "closed form", "exact texel integrals", ..."""
+
+    @property
+    def lobes(self) -> tuple[Lobe, ...]:
+        """What it is the sum of, for the shader to evaluate; empty for any other light."""
+
+    @property
+    def map(self) -> LatLongMap | None:
+        """What the GPU samples; None for a sum of lobes."""
 
     def radiance(self, directions: Array) -> Array:
         """Unit directions (k, 3) -> radiance (k, 3), float64."""
 
+    def rows(self, theta: Array, n_columns: int) -> Array:
+        """The radiance on rows of a lat-long grid at angles theta (rows,) from +z: (rows, 3, n_columns)."""
+
     def integrand(self, directions: Array) -> Array:
         """What `coefficients` are integrals of: the radiance, or for an image its texels as areas, not interpolated."""
+
+    def texels(self) -> Iterator[tuple[Array, Array]]:
+        """The areas of constant radiance that it is made of, in blocks: radiance (k, 3) and steradians (k,); mostly none."""
 
     def coefficients(self, n_bands: int) -> Array:
         """(n_bands**2, 3) by the best way this light knows."""
 
-    @property
-    def unit(self) -> float:
-        """What is squared is divided by this first: 1, or a power of two where squares would leave float64."""
-
     def products(self) -> Array:
-        """Integrals of f_i f_j / unit^2 over the channels, (3, 3), by the same quadrature as `coefficients`."""
+        """Integrals of f_i f_j over the channels, (3, 3), by the same quadrature as `coefficients`."""
 
     def accuracy(self) -> float:
         """How far a relative L2 error of this light may be off for want of quadrature points; 0 where it is exact."""
@@ -49,8 +75,75 @@ class Light(Protocol):
     def landmarks(self) -> Array:
         """Directions (j, 3) of features that a grid might step over, such as the axis of a sun."""
 
+    @property
+    def source(self) -> Light:
+        """The light that it is the irradiance of; itself, if it is radiance."""
+
+    def from_source(self, coefficients: Array) -> Array:
+        """Coefficients (n**2, 3) of the source -> those of this light."""
+
+    def irradiance(self) -> Light:
+        """The light that is its irradiance: one more at each call, or itself if it is irradiance."""
+
+    def split_suns(self) -> Split:
+        """What is left without its suns, and the suns. LightError, one line, if it has none."""
+
     def __hash__(self) -> int:
         """By identity: what is computed for a light is remembered."""
 
-    def radiance_map(self) -> LatLongMap | None:
-        """What the GPU samples; None for lobes, which the shader evaluates itself."""
+
+class Split(NamedTuple):
+    """A light = rest + suns."""
+
+    rest: Light
+    suns: tuple[Sun, ...]
+    """The greatest flux first."""
+
+
+@dataclass(frozen=True)
+class About:
+    """What there is to say of an image or of coefficients; None for what another light has not."""
+
+    encoding: str | None = None
+    """The format of an image's file, in words."""
+    size: tuple[int, int] | None = None
+    """Width and height of an image as it is stored, texels."""
+    layout: str | None = None
+    """The name of an image's layout."""
+    n_bands: int | None = None
+    """How many bands coefficients have."""
+    quantity: str | None = None
+    """What they are of, as they were given: "radiance" or "irradiance"."""
+    convention: str | None = None
+    """The convention they were given in, a text without the quantity."""
+    file: CoefficientFile | None = None
+    """What they were read from."""
+
+
+class LightBase(ABC):
+    """What a light answers unless it knows better."""
+
+    @property
+    def about(self) -> About:
+        return About()
+
+    @abstractmethod
+    def radiance(self, directions: Array) -> Array: ...
+
+    def rows(self, theta: Array, n_columns: int) -> Array:
+        return evaluate_rows(self.radiance, theta, n_columns)
+
+    def integrand(self, directions: Array) -> Array:
+        return self.radiance(directions)
+
+    def texels(self) -> Iterator[tuple[Array, Array]]:
+        return iter(())
+
+    def accuracy(self) -> float:
+        return 0.0
+
+    def landmarks(self) -> Array:
+        return np.zeros((0, 3))
+
+    def split_suns(self: Light) -> Split:
+        raise LightError(f"{self.name}: only images and sums of lobes can be split; show it with its sun")

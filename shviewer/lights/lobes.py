@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, normalise, safe_unit
+from shviewer.harmonics.basis import Array, normalise
 from shviewer.harmonics.overlap import inner_product
-from shviewer.harmonics.zonal import Profile, orient
+from shviewer.harmonics.zonal import Constant, Disc, orient
+from shviewer.lights.irradiance import LobeIrradiance
+from shviewer.lights.light import Light, Split
+from shviewer.lights.lobe import Lobe, angle_between
+from shviewer.lights.radiance import RadianceLight
 from shviewer.limits import check_brightness
 
 EDGE = 1e-9
@@ -17,25 +21,6 @@ EDGE = 1e-9
 
 MAX_LOBES = 64
 """As many as the uniform block of shaders/lobes.glsl holds."""
-
-
-@dataclass(frozen=True, eq=False)
-class Lobe:
-    """A profile about `axis` (3,), any length, times `radiance` (3,), linear RGB."""
-
-    profile: Profile
-    axis: Array
-    radiance: Array
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "axis", normalise(self.axis))
-        object.__setattr__(self, "radiance", np.broadcast_to(np.asarray(self.radiance, dtype=np.float64), (3,)))
-
-
-def angle_between(first: Lobe, second: Lobe) -> float:
-    """The angle between two axes, radians, with all its digits near 0 and near pi."""
-    apart, along = np.linalg.norm(first.axis - second.axis), np.linalg.norm(first.axis + second.axis)
-    return float(2 * np.arctan2(apart, along))
 
 
 def _edge(lobe: Lobe) -> Array:
@@ -50,7 +35,7 @@ def _edge(lobe: Lobe) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class LobeLight:
+class LobeLight(RadianceLight):
     """The sum of up to MAX_LOBES lobes. ValueError for none or more, LightError for more radiance than can be shown."""
 
     lobes: tuple[Lobe, ...]
@@ -58,6 +43,8 @@ class LobeLight:
     description: str = ""
     notes: tuple[str, ...] = ()
     best_method: str = "closed form"
+
+    map = None
 
     def __post_init__(self) -> None:
         if not 1 <= len(self.lobes) <= MAX_LOBES:
@@ -72,23 +59,13 @@ class LobeLight:
             total += lobe.profile.value((chord * chord).sum(axis=1))[:, None] * lobe.radiance
         return total
 
-    def integrand(self, directions: Array) -> Array:
-        return self.radiance(directions)
-
     def coefficients(self, n_bands: int) -> Array:
         zonal = np.stack([lobe.profile.zonal(n_bands) for lobe in self.lobes])
         oriented = orient(zonal, np.stack([lobe.axis for lobe in self.lobes]))
         return np.asarray(oriented.T @ np.stack([lobe.radiance for lobe in self.lobes]))
 
-    def accuracy(self) -> float:
-        return 0.0
-
     def products(self) -> Array:
         return self._products
-
-    @cached_property
-    def unit(self) -> float:
-        return safe_unit(max(float(np.abs(lobe.radiance).max()) for lobe in self.lobes))
 
     @cached_property
     def _products(self) -> Array:
@@ -96,7 +73,7 @@ class LobeLight:
         for i, first in enumerate(self.lobes):
             for j, second in enumerate(self.lobes[: i + 1]):
                 product = inner_product(first.profile, second.profile, angle_between(first, second))
-                overlap = product * np.outer(first.radiance / self.unit, second.radiance / self.unit)
+                overlap = product * np.outer(first.radiance, second.radiance)
                 total += overlap if i == j else overlap + overlap.T
         return total
 
@@ -104,5 +81,43 @@ class LobeLight:
         """The axes, and points just inside and outside the edge of every profile that has one."""
         return np.concatenate([_edge(lobe) for lobe in self.lobes])
 
-    def radiance_map(self) -> None:
-        return None
+    def irradiance(self) -> Light:
+        return LobeIrradiance(self)
+
+    def split_suns(self) -> Split:
+        """The discs to which the rule for images applies; they leave exactly."""
+        from shviewer.lights.suns.compact_sources import MOST, suns_or_refusal
+        from shviewer.lights.suns.sun import Sun
+
+        suns: list[Sun] = []
+        rest, why = self, ""
+        while len(suns) < MOST:
+            discs = [lobe for lobe in rest.lobes if isinstance(lobe.profile, Disc) and lobe.radiance.mean() > 0]
+            discs.sort(key=lambda lobe: -lobe.radiance.mean())
+            refusals = [rest._disc_refusal(disc) for disc in discs]
+            if "" not in refusals:
+                why = next(iter(refusals), "it has no disc")
+                break
+            sun = discs[refusals.index("")]
+            suns.append(Sun(sun.axis, sun.profile.half_angle, sun.radiance))
+            rest = rest._without(sun)
+        return Split(rest, suns_or_refusal(self.name, suns, why))
+
+    def _disc_refusal(self, disc: Lobe) -> str:
+        """Why one of the discs is no sun; "" if it is. As everywhere, of the mean of the channels."""
+        from shviewer.lights.suns.compact_sources import refusal
+
+        radiance, solid_angle = float(disc.radiance.mean()), float(disc.profile.zonal(1)[0])
+        behind = self._without(disc).radiance(disc.axis[None]).mean()
+        fluxes = [abs(lobe.profile.zonal(1)[0] * lobe.radiance.mean()) for lobe in self.lobes]
+        return refusal(
+            disc.profile.half_angle,
+            1 + radiance / behind if behind > 0 else np.inf,
+            radiance * solid_angle / sum(fluxes),
+            radiance**2 * solid_angle / (self.products().sum() / 9 or 1.0),  # squares of less than 1e-160 may be 0
+        )
+
+    def _without(self, lobe: Lobe) -> LobeLight:
+        """The other lobes; a black constant if there are none."""
+        others = tuple(other for other in self.lobes if other is not lobe)
+        return replace(self, lobes=others or (Lobe(Constant(), np.array([0.0, 0.0, 1.0]), np.zeros(3)),))

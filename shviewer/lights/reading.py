@@ -25,7 +25,7 @@ class Reading:
     """"auto" or a name of lights/layouts."""
     limits: Limits = DEFAULT_LIMITS
     convention: str = ""
-    """Of coefficient files that do not say theirs: a text for parse_convention (harmonics/conventions/programs.py)."""
+    """What coefficient files have that do not say theirs: a text for parse_convention (coefficients/programs.py)."""
     isolated: bool = field(default=False, compare=False)
     """Decode OpenEXR files in a child process, which a broken file may kill without harm. It changes no value."""
 

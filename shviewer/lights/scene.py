@@ -24,7 +24,8 @@ from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.limits import BRIGHTEST
 
 PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {

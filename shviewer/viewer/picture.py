@@ -15,7 +15,8 @@ from shviewer.analysis.subjects import Subject
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
@@ -99,8 +100,8 @@ def prepare(state: State, *, by_map: bool = False) -> Picture:
     return Picture(
         state=state,
         subject=found.subject,
-        original=_source(whole),
-        compared=_source(light),
+        original=Source(whole.lobes, whole.map),
+        compared=Source(light.lobes, light.map),
         suns=_sun_lobes(found.subject, recipe.quantity),
         coefficients=found.coefficients,
         drawn=drawn,
@@ -122,10 +123,6 @@ def _height(figures: Figures, scale: ErrorScale | None, exposure: float) -> floa
     if scale is None:
         return largest * exposure
     return largest * max(exposure, 1 / (scale.end * (scale.floor if scale.kind == "relative" else 1.0)))
-
-
-def _source(light: Light) -> Source:
-    return Source(light.lobes if isinstance(light, LobeLight) else (), light.radiance_map())
 
 
 def _sun_lobes(shown: Subject, quantity: str) -> tuple[Lobe, ...]:

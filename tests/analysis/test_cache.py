@@ -23,7 +23,6 @@ from shviewer.analysis.subjects import keep_light, load_light, read_again, versi
 from shviewer.errors import LightError
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import built_in_lights, file_version, find_light
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
 
@@ -62,7 +61,7 @@ def test_a_result_is_computed_once_for_a_light_and_its_arguments() -> None:
     assert counting.function(green, 1) is first
     assert counting.function(studio, 1) is not first
     assert counting.function(green, 2) is not first
-    assert counting.function(IrradianceLight(green), 1) is not first
+    assert counting.function(green.irradiance(), 1) is not first
     assert len(counting.calls) == 4
 
 
@@ -96,7 +95,7 @@ def test_the_light_used_longest_ago_is_forgotten_with_its_name_and_all_its_resul
     memory.name("first", lights[0])
     memory.name("second", lights[1])
     assert memory.named("first") is lights[0]  # used: now the second is the oldest
-    memory.results(IrradianceLight(lights[1]), "function")["key"] = "value"  # and now it is not
+    memory.results(lights[1].irradiance(), "function")["key"] = "value"  # and now it is not
     memory.results(lights[2], "function")
     assert memory.named("first") is None
     assert [light in memory for light in lights] == [False, True, True]
@@ -157,7 +156,7 @@ def test_of_sixty_images_the_oldest_are_gone_without_waiting_for_the_collector(t
                 picture = reconstruction_of(recipe_of(path, quantity=quantity, n_bands=3))
             light = load_light(recipe_of(path))
             lights.append(weakref.ref(light))
-            texels.append(weakref.ref(light.radiance_map()))
+            texels.append(weakref.ref(light.map))
             del picture, light
         for references in (lights, texels):
             alive = [number for number, reference in enumerate(references) if reference() is not None]

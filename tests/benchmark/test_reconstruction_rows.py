@@ -25,7 +25,8 @@ from shviewer.benchmark.reconstruction_rows import (
 )
 from shviewer.benchmark.subjects import Subject, subject_of
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import offscreen

@@ -18,7 +18,6 @@ from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
-from shviewer.lights.irradiance import IrradianceLight
 
 Capture = pytest.CaptureFixture[str]
 
@@ -282,7 +281,7 @@ def test_both_errors_are_said_whatever_is_written(quantity: str, tmp_path: Path,
     green = find_light("green")
     exact = green.coefficients(3)
     radiance = errors_by_band_count(green.products(), exact, exact)[-1]
-    shaded = IrradianceLight(green)
+    shaded = green.irradiance()
     irradiance = errors_by_band_count(shaded.products(), shaded.coefficients(3), shaded.coefficients(3))[-1]
     assert project("green", "--bands", 3, "--for", quantity, "-o", tmp_path / "a.json") == 0
     errors = f"radiance within {100 * radiance:.3g} %, as irradiance {100 * irradiance:.3g} %"

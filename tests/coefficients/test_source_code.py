@@ -24,7 +24,6 @@ from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.viewer.gl.renderer import Renderer
 
 COMPILER = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
@@ -149,5 +148,5 @@ def test_unitys_seven_vectors_are_made_as_the_guide_says() -> None:
     a, b, c = (eval(f"({row})", {"sh": sh, "c": 1}) for row in rows)
     value = np.dot(a, [x, y, z, 1]) + np.dot(b, [x * y, y * z, z * z, z * x]) + c[1] * (x * x - y * y)
     ours = np.array([[x, z, y]])
-    wanted = shviewer.reconstruct(IrradianceLight(find_light("venice_sunset")).coefficients(3), ours) / np.pi
+    wanted = shviewer.reconstruct(find_light("venice_sunset").irradiance().coefficients(3), ours) / np.pi
     assert value == pytest.approx(wanted[0, 1], rel=1e-12)

@@ -12,13 +12,15 @@ from shviewer.harmonics.metrics import (
     band_power,
     band_weights,
     channel_figures,
+    errors_by_band_count,
     relative,
     squared_error,
 )
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, orient
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 
 GREEN = LobeLight(
     (
@@ -302,3 +304,20 @@ def test_a_colour_whose_luminance_cancels_has_figures() -> None:
     assert figures["all"].relative_l2 < 1e-7
     with pytest.raises(ValueError, match="more energy than the light"):
         channel_figures(products * 0.99, exact, exact, 0.4)
+
+
+@pytest.mark.parametrize("factor", [1e-300, 1e-161, 1e-160, 1e-155])
+def test_a_channel_that_is_all_but_black_has_figures_beside_a_white_one(factor):
+    """Its squares have no digits left."""
+    rng = np.random.default_rng(0)
+    exact = rng.normal(size=(400, 3)) * np.array([1, 1, factor])
+    largest = np.nextafter(exact, 2 * exact)
+    figures = channel_figures(exact.T @ exact, largest, largest, peak=1.0)
+    assert figures["all"].relative_l2 < 1e-7
+    blue = exact * np.array([0, 0, 1])
+    assert np.isfinite(errors_by_band_count(blue.T @ blue, 1.01 * blue, 1.01 * blue)).all()
+
+
+def test_a_reconstruction_whose_squares_are_0_has_no_negative_energy():
+    shown = np.full((4, 3), -1e-200)
+    assert ErrorGrid(GREEN.radiance, GREEN.landmarks(), 16).compare(shown).negative_energy == 0

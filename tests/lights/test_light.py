@@ -1,20 +1,23 @@
 """What shviewer.lights.light promises: the text LIGHT names every kind of light, and every kind keeps one contract."""
 
 import difflib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
 from lights.images.hdr_files import exr_file, hdr_file, random_texels
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
-from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import built_in_lights, find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.light import About
 from shviewer.lights.lobes import LobeLight
 from shviewer.lights.reading import Reading
 
@@ -157,15 +160,17 @@ def test_a_name_longer_than_any_file_may_have_is_one_line(text):
     refusal(text)
 
 
-@pytest.fixture(params=["scene", "image", "function", "green", "studio", "cosine", "venice_sunset"])
+@pytest.fixture(params=["scene", "image", "function", "coefficients", "green", "studio", "cosine", "venice_sunset"])
 def light(request, tmp_path):
     """One light of every kind."""
+    (tmp_path / "sh.csv").write_text("red,green,blue\n3,2,1\n0.5,0,-0.5\n1,1,1\n0,0.25,0\n")
     (tmp_path / "scene.toml").write_text(SCENE)
     (tmp_path / "light.py").write_text(FUNCTION)
     return {
         "scene": lambda: find_light(str(tmp_path / "scene.toml")),
         "image": smooth_image,
         "function": lambda: find_light(f"{tmp_path / 'light.py'}:dusk"),
+        "coefficients": lambda: find_light(str(tmp_path / "sh.csv"), Reading(convention="three")),
     }.get(request.param, lambda: find_light(request.param))()
 
 
@@ -211,13 +216,61 @@ def test_the_coefficients_hold_no_more_energy_than_the_light(light):
     assert ((light.coefficients(32) ** 2).sum(axis=0) <= light.products().diagonal() * (1 + 1e-11)).all()
 
 
-def test_the_map_of_a_light_shows_its_radiance(light):
-    image = light.radiance_map()
+def test_a_light_is_drawn_by_its_lobes_or_by_its_map_and_either_shows_its_radiance(light):
     d = random_directions(300, seed=3)
-    if image is None:
-        assert isinstance(light, LobeLight)
-    else:
-        assert_allclose(image.sample(d), light.radiance(d), rtol=0, atol=1e-4 * np.abs(light.radiance(d)).max())
+    for one in (light, light.irradiance()):
+        assert bool(one.lobes) == (one.map is None)
+        shown = LobeLight(one.lobes).radiance(d) if one.map is None else one.map.sample(d)
+        assert_allclose(shown, one.radiance(d), rtol=0, atol=1e-4 * np.abs(one.radiance(d)).max())
+
+
+def test_rows_of_a_light_are_its_radiance_there(light):
+    theta, phi = np.array([0.0, 0.3, 1.6, np.pi]), column_azimuths(6)
+    d = directions_from_angles(theta[:, None], phi)
+    for one in (light, light.irradiance()):
+        wanted = one.radiance(d.reshape(-1, 3)).reshape(4, 6, 3).transpose(0, 2, 1)
+        assert_allclose(one.rows(theta, 6), wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
+
+
+def test_radiance_is_its_own_source_and_irradiance_its_own_irradiance(light):
+    irradiance = light.irradiance()
+    assert light.source is irradiance.source is light
+    assert irradiance.irradiance() is irradiance
+    coefficients = light.coefficients(6)
+    assert light.from_source(coefficients) is coefficients
+    assert_array_equal(irradiance.from_source(coefficients), irradiance.coefficients(6))
+    assert (irradiance.name, irradiance.about, irradiance.notes) == (light.name, light.about, light.notes)
+
+
+def test_the_texels_of_a_light_are_all_of_it_or_none(light):
+    areas = [area for _, area in light.texels()]
+    assert bool(areas) == (light.about.size is not None)
+    if areas:
+        assert_allclose(sum(area.sum() for area in areas), 4 * np.pi, rtol=1e-6)
+        norm = sum(area @ radiance**2 for radiance, area in light.texels())
+        assert_allclose(norm, light.products().diagonal(), rtol=1e-6)
+
+
+def test_a_light_says_what_it_is_made_of(tmp_path):
+    (tmp_path / "a.hdr").write_bytes(hdr_file(random_texels(4, 8)))
+    (tmp_path / "sh.csv").write_text("red,green,blue\n3,2,1\n")
+    image = find_light(str(tmp_path / "a.hdr"), Reading(layout="lat-long")).about
+    assert (image.encoding, image.size, image.layout) == ("Radiance RGBE, new run-length packing", (8, 4), "lat-long")
+    assert (image.n_bands, image.quantity, image.convention, image.file) == (None, None, None, None)
+    given = find_light(str(tmp_path / "sh.csv"), Reading(convention="shviewer,irradiance")).about
+    assert (given.encoding, given.size, given.layout) == (None, None, None)
+    assert (given.n_bands, given.quantity, given.convention) == (1, "irradiance", "shviewer")
+    assert given.file.numbers.tolist() == [[3, 2, 1]]
+    assert find_light("green").about == FunctionLight(np.exp).about == About()
+
+
+def test_finding_a_scene_loads_no_decoder_no_pillow_and_nothing_of_coefficients_or_suns():
+    code = "import sys; from shviewer.lights.find import find_light; find_light('green'); print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "shviewer.lights.lobes" in loaded
+    unwanted = ("PIL", "OpenEXR", "subprocess", "shviewer.coefficients.reading", "shviewer.lights.suns")
+    unwanted += tuple(f"shviewer.lights.images.{name}" for name in ("display_referred", "isolated", "openexr", "rgbe"))
+    assert [name for name in loaded if name in unwanted] == []
 
 
 def test_red_green_and_blue_of_an_image_grow_along_x_y_and_z():

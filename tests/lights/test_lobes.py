@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
-from shviewer.lights.lobes import MAX_LOBES, Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import MAX_LOBES, LobeLight
 
 Z = np.array([0, 0, 1.0])
 SMOOTH = LobeLight(
@@ -142,7 +143,7 @@ def test_sixty_four_equal_lobes_are_one_of_their_sum():
 def test_landmarks_are_the_axes_and_there_is_no_map():
     expected = np.array([[1, 2, -1], [1, 2, 0], [0, 0, 1], [0, 0, 1]]) / np.sqrt([[6], [5], [1], [1]])
     assert_allclose(SMOOTH.landmarks(), expected, rtol=0, atol=1e-15)
-    assert SMOOTH.radiance_map() is None
+    assert SMOOTH.map is None
 
 
 def test_a_light_is_its_own_key():

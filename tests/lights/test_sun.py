@@ -1,5 +1,7 @@
 """What shviewer.lights.suns.sun promises: suns leave a light as discs, and what is left and the discs are the light."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -13,7 +15,6 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.images.radiance_files import read_radiance_image
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.layouts.cube import (
     HORIZONTAL_CROSS,
     HORIZONTAL_STRIP,
@@ -23,10 +24,12 @@ from shviewer.lights.layouts.cube import (
     CubeLayout,
 )
 from shviewer.lights.layouts.lat_long import LatLongLayout
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.light import Light
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.lights.suns.caps import Caps, chord, chord_of
 from shviewer.lights.suns.compact_sources import CAP, MOST
-from shviewer.lights.suns.sun import Sun, split_suns
+from shviewer.lights.suns.sun import Sun
 from shviewer.resources import resource_folder
 
 HEIGHT, WIDTH = 128, 256
@@ -84,6 +87,22 @@ def texels_of(layout):
     if isinstance(layout, LatLongLayout):
         return layout.height, layout.width
     return layout.solid_angles().shape
+
+
+class Parts(NamedTuple):
+    """A light, and what it is split into."""
+
+    whole: Light
+    rest: Light
+    suns: tuple[Sun, ...]
+
+    @property
+    def sunlight(self):
+        return LobeLight(tuple(sun.lobe for sun in self.suns))
+
+
+def split_suns(a_light):
+    return Parts(a_light, *a_light.split_suns())
 
 
 def flux_taken(split):
@@ -371,8 +390,12 @@ def test_scenes_without_a_small_disc_have_no_sun(name):
     assert "has no sun" in refused(find_light(name))
 
 
+def test_a_disc_whose_squares_are_0_is_refused_in_words():
+    assert "holds only 0 % of the squared norm" in refused(LobeLight((Lobe(Disc(0.01), [0, 1, 0], 1e-200 * WHITE),)))
+
+
 def test_the_irradiance_of_a_light_cannot_be_split():
-    assert "only images and sums of lobes" in refused(IrradianceLight(find_light("sun-sky")))
+    assert "only images and sums of lobes" in refused(find_light("sun-sky").irradiance())
 
 
 def test_the_irradiance_lobe_is_exact_but_for_the_horizon():

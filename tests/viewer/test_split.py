@@ -14,7 +14,6 @@ from shviewer.analysis.subjects import subject
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.reading import DEFAULT_READING
-from shviewer.lights.suns.sun import split_suns
 from shviewer.viewer.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
@@ -53,7 +52,7 @@ def test_a_noon_sky_becomes_a_few_bands_and_a_sun():
 def test_the_figures_are_those_of_the_rest():
     light = noon()
     picture = prepare(state(light, n_bands=4))
-    rest = split_suns(light).rest
+    rest = light.split_suns().rest
     coefficients = rest.coefficients(4)
     expected = errors_by_band_count(rest.products(), coefficients, coefficients)[-1]
     assert_allclose(picture.figures.relative_l2, expected, rtol=1e-9)  # a difference of norms

@@ -9,7 +9,8 @@ from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.harmonics.extremes import LUMINANCE
 from shviewer.harmonics.zonal import Disc
 from shviewer.lights.find import find_light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
     MOST_ROWS,

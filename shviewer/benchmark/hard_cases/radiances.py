@@ -1,4 +1,4 @@
-"""Hard cases of radiances: none at all, no number, and numbers at the ends of what float64 holds."""
+"""Hard cases of radiances: none at all, no number, and numbers at the ends of what a light may have and float64 holds."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ from shviewer.harmonics.zonal import Disc
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
+from shviewer.limits import BRIGHTEST, DIMMEST
 
 
 def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
@@ -78,7 +80,7 @@ def subnormal_image(project: ProjectImage = project_image) -> float:
 
 
 def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
-    """The relative figures of a sun of 1e-300 to 1e30, the most there can be, against those of radiance 1.
+    """The relative figures of a sun of 1e-30 and of 1e30, the least and the most that a light may have, against those of 1.
 
     Bound: 1e-12, rounding of sums.
     """
@@ -88,7 +90,7 @@ def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] | None =
         return np.array((figures or figures_of)(LobeLight((lobe,))))
 
     plain = read(1.0)
-    return max(largest(read(radiance) - plain) for radiance in (1e-300, 1e-160, 1e-30, 1e30))
+    return max(largest(read(radiance) - plain) for radiance in (DIMMEST, BRIGHTEST))
 
 
 CASES = (
@@ -96,5 +98,5 @@ CASES = (
     Case("black light", "reads 0", 0.0, black),
     Case("radiance times 2^-900 to 2^900", "coefficients scale exactly", 0.0, magnitudes),
     Case("subnormal radiance", "sqrt(4 pi) L, in units of 5e-324", 64.0, subnormal_image),
-    Case("figures of radiance 1e-300 to 1e30", "those of radiance 1", 1e-12, figures_at_any_radiance),
+    Case("figures of radiance 1e-30 to 1e30", "those of radiance 1", 1e-12, figures_at_any_radiance),
 )

@@ -17,7 +17,8 @@ from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Disc, orient
 from shviewer.lights.find import find_light
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 
 OVERSHOOT = {
     2: 0.25,

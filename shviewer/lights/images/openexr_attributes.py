@@ -26,7 +26,7 @@ class Attribute(NamedTuple):
 
 
 class RawHeader(NamedTuple):
-    """Of one part; start and end are offsets into the file."""
+    """The header of one part; start and end are offsets into the file, bytes."""
 
     start: int
     end: int

@@ -1,12 +1,11 @@
 """Radiance from a file: which kind it is, whether it may be read, and what to do about bad values.
 
-The decoders are in decoders/, one per format. A *value* is one channel of one texel; counts in messages and notes are of
+The decoders are beside this file, one per format. A *value* is one channel of one texel; counts in messages and notes are of
 values.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,16 +15,9 @@ from numpy.typing import NDArray
 from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
 from shviewer.lights.images.decoded import Decoded
-from shviewer.lights.images.display_referred import decode_jpeg, decode_png
-from shviewer.lights.images.isolated import decode_isolated
-from shviewer.lights.images.openexr import decode_openexr
-from shviewer.lights.images.rgbe import decode_rgbe
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import Limits, check_brightness
 from shviewer.words import counted
-
-_Decoder = Callable[[bytes, Limits, str], Decoded]
-"""Of a file's bytes, the limits and the layer asked for ("" for none)."""
 
 
 @dataclass(frozen=True)
@@ -33,15 +25,13 @@ class _Kind:
     name: str
     magic: bytes
     suffixes: tuple[str, ...]
-    decode: _Decoder
 
 
-_KINDS = (
-    _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"), lambda data, limits, layer: decode_rgbe(data, limits)),
-    _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",), decode_openexr),
-    _Kind("PNG", b"\x89PNG", (".png",), lambda data, limits, layer: decode_png(data, limits)),
-    _Kind("JPEG", b"\xff\xd8\xff", (".jpg", ".jpeg"), lambda data, limits, layer: decode_jpeg(data, limits)),
-)
+_RGBE = _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"))
+_OPENEXR = _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",))
+_PNG = _Kind("PNG", b"\x89PNG", (".png",))
+_JPEG = _Kind("JPEG", b"\xff\xd8\xff", (".jpg", ".jpeg"))
+_KINDS = (_RGBE, _OPENEXR, _PNG, _JPEG)
 
 IMAGE_SUFFIXES = tuple(suffix for kind in _KINDS for suffix in kind.suffixes)
 
@@ -78,23 +68,37 @@ def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: s
 def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
     """`read_radiance_image` of a file that is in memory already; `name` is the path it has or might have."""
     with naming(name):
-        decode = _decoder(data, Path(name).suffix.lower())
-        if reading.isolated and decode is decode_openexr:
-            decode = decode_isolated
-        decoded = decode(data, reading.limits, layer)
+        kind = _kind(data, Path(name).suffix.lower())
+        decoded = _decoded(kind, data, reading.limits, layer, reading.isolated)
         notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
     check_brightness(max(float(decoded.pixels.max()), -float(decoded.pixels.min())), name)
     return replace(decoded, notes=decoded.notes + notes)
 
 
-def _decoder(data: bytes, suffix: str) -> _Decoder:
+def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: bool) -> Decoded:
+    """What is in the file, by a decoder that is loaded where it is needed: most lights need none."""
+    if kind is _RGBE:
+        from shviewer.lights.images.rgbe import decode_rgbe
+
+        return decode_rgbe(data, limits)
+    if kind is _OPENEXR:
+        from shviewer.lights.images.isolated import decode_isolated
+        from shviewer.lights.images.openexr import decode_openexr
+
+        return (decode_isolated if isolated else decode_openexr)(data, limits, layer)
+    from shviewer.lights.images.display_referred import decode_jpeg, decode_png
+
+    return (decode_png if kind is _PNG else decode_jpeg)(data, limits)
+
+
+def _kind(data: bytes, suffix: str) -> _Kind:
     """By the first bytes; a suffix that says otherwise is refused, since one of the two is a mistake."""
     for kind in _KINDS:
         if not data.startswith(kind.magic):
             continue
         if any(suffix in other.suffixes for other in _KINDS if other is not kind):
             raise LightError(f"named {suffix} but holds {kind.name}; rename it to end in {kind.suffixes[0]}")
-        return kind.decode
+        return kind
     wanted = "an image is read as .hdr (Radiance), .exr (OpenEXR), .png or .jpg: convert it"
     for magic, name in _OTHER_MAGICS:
         if data.startswith(magic):

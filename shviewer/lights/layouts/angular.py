@@ -87,7 +87,9 @@ class AngularLayout(DiscLayout):
         return np.broadcast_to(x[:, None, :], areas.shape), np.broadcast_to(y[:, :, None], areas.shape), areas
 
     def _add(self, x: Array, y: Array, values: Array, n_bands: int) -> Array:
-        """Of values (2, 2, k, 3) per area: world +y and -y, +z and -z, at distances x sideways and y up or down (k,)."""
+        """Coefficients (n**2, 3) of values (2, 2, k, 3) per area: world +y and -y, +z and -z, at distances x sideways and y up
+        or down (k,).
+        """
         radius = np.hypot(x, y)
         density = np.pi**2 * np.sinc(radius)
         directions = np.stack([np.cos(np.pi * radius), x * density / np.pi, y * density / np.pi], axis=-1)

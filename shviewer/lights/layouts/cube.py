@@ -120,7 +120,7 @@ class CubeLayout:
 
     @property
     def raster_width(self) -> int:
-        """Of a lat-long image that is nowhere coarser than the middle of a face."""
+        """Columns of a lat-long image that is nowhere coarser than the middle of a face."""
         return 4 * self.face
 
     def solid_angles(self) -> Array:
@@ -141,7 +141,7 @@ class CubeLayout:
         return row + self._corners[face, 0], column + self._corners[face, 1]
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
-        """Of a texel in an empty cell: the middle of the front."""
+        """For a texel in an empty cell the middle of the front."""
         face = self._faces_by_cell[rows // self.face, columns // self.face]
         u, v = ((2 * (index % self.face) + 1) / self.face - 1 for index in (columns, rows))
         directions = self._directions(np.maximum(face, 0), u, v)

@@ -38,7 +38,7 @@ class DiscLayout:
 
     @property
     def raster_width(self) -> int:
-        """Of a lat-long image that is nowhere much coarser."""
+        """Columns of a lat-long image that is nowhere much coarser."""
         return 2 * self.side
 
     def radius(self, theta: Array) -> Array:
@@ -61,7 +61,7 @@ class DiscLayout:
         return np.clip(((1 + position) / 2 * self.side).astype(np.int64), 0, self.side - 1)
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
-        """Of a texel whose centre is outside the disc: a point of it inside; of one wholly outside: straight back."""
+        """For a texel whose centre is outside the disc a point of it inside; for one wholly outside straight back."""
         right, down = ((2 * index + 1) / self.side - 1 for index in (columns, rows))
         radius = np.hypot(right, down)
         inner_right, inner_down = (np.sign(a) * np.maximum(np.abs(a) - 1 / self.side, 0) for a in (right, down))
@@ -90,7 +90,7 @@ class DiscLayout:
 
     @cached_property
     def quadrant_solid_angles(self) -> Array:
-        """Of the lower right quadrant (half, half); middle texels of an odd number count with their halves."""
+        """Steradians of the texels of the lower right quadrant, (half, half); the middle ones of an odd number count half."""
         raise NotImplementedError
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:

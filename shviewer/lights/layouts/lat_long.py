@@ -16,7 +16,7 @@ from shviewer.lights.layouts.layout import Indices
 
 @dataclass(frozen=True)
 class LatLongLayout:
-    """Of any height and width: the whole sphere, however far from 2:1."""
+    """The whole sphere in an image of any height and width, however far from 2:1."""
 
     height: int
     width: int

@@ -18,7 +18,7 @@ Indices = NDArray[np.int64]
 
 
 class Layout(Protocol):
-    """Of an image of a given height and width, in texels."""
+    """How an image of a given height and width, in texels, covers the sphere."""
 
     @property
     def name(self) -> str:
@@ -39,7 +39,7 @@ class Layout(Protocol):
         """
 
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
-        """Those of texels (k,), without the others: (k,)."""
+        """Steradians of the texels (k,) alone: (k,)."""
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         """Row and column, (k,) each, of the texel in whose area each unit direction (k, 3) lies."""

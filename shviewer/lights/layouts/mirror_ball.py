@@ -137,6 +137,8 @@ class _Tiles:
         return self.ball.mirrored(self.pixels, rows, columns, self.repeat)
 
     def _add(self, x: Array, y: Array, depth: Array, values: Array, n_bands: int) -> Array:
-        """Of values (2, 2, k, 3) per area: world +y and -y, +z and -z, at distances x sideways and y up or down (k,)."""
+        """Coefficients (n**2, 3) of values (2, 2, k, 3) per area: world +y and -y, +z and -z, at distances x sideways and y up
+        or down (k,).
+        """
         directions = np.stack([2 * depth * depth - 1, 2 * x * depth, 2 * y * depth], axis=-1)
         return project_mirrored(directions, 4 * values[None], n_bands)

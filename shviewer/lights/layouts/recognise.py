@@ -29,7 +29,7 @@ LOSSY_MARGIN = 16
 """Texels along a border that may be a mixture of both sides: antialiased, or in a JPEG's blocks, 16 wide for colours."""
 
 SAMPLES = 2**18
-"""Of the texels that show something so many are looked at, about."""
+"""About how many of the texels that show something are looked at."""
 
 _Notes = tuple[str, ...]
 
@@ -104,7 +104,7 @@ def _by_shape(pixels: NDArray[np.float32], lossy: bool) -> tuple[Layout, _Notes]
 
 
 def _arrangement(height: int, width: int) -> Arrangement | None:
-    """Of whole faces. A strip of unknown origin is in the order of OpenGL and Direct3D."""
+    """How six whole faces fill the image, if they do. A strip of unknown origin is in the order of OpenGL and Direct3D."""
     for arrangement in (VERTICAL_CROSS, HORIZONTAL_CROSS, HORIZONTAL_STRIP, VERTICAL_STRIP):
         if arrangement.face_size(height, width):
             return arrangement

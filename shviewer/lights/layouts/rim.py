@@ -12,7 +12,7 @@ from shviewer.harmonics.basis import Array
 
 @dataclass(frozen=True, eq=False)
 class RimPoints:
-    """Of k pieces of rectangles, (k, n). x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation.
+    """Points in k pieces of rectangles, (k, n). x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation.
 
     weights: areas. texels: the index of each piece's rectangle, (k,).
     """

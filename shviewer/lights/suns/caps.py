@@ -18,7 +18,7 @@ MARGIN = 1.5
 """A tile's texels may bulge beyond its corners: near a pole, or where a layout folds."""
 
 FEW = 2**14
-"""Of an image of no more texels every one is looked at: a tile could hold a whole face of a small cube."""
+"""Texels of an image so small that every one is looked at: a tile could hold a whole face of a small cube."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Texels:
     columns: Indices
     """(k,)"""
     directions: Array
-    """Of their centres, (k, 3)."""
+    """Unit vectors to their centres, (k, 3)."""
     solid_angles: Array
     """Steradians, (k,), all above 0."""
 
@@ -66,7 +66,7 @@ class Caps:
         self._radii = reach if height * width > FEW else np.full_like(reach, 2.0)
 
     def texels(self, rows: Indices, columns: Indices) -> Texels:
-        """Those of the texels (k,) that show anything."""
+        """The texels in those places (k,), but for what shows nothing."""
         solid_angles = self._layout.solid_angles_at(rows, columns)
         seen = solid_angles > 0
         rows, columns = rows[seen], columns[seen]

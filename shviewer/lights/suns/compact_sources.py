@@ -17,14 +17,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, normalise
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.suns.caps import Caps, Texels, chord, chord_of
+from shviewer.lights.suns.sun import Sun
 
 CAP = np.radians(3.0)
 RIM = np.radians(4.0)
@@ -50,17 +51,6 @@ RULE = (
 )
 
 
-class Found(NamedTuple):
-    """A disc in place of what was taken."""
-
-    axis: Array
-    """Unit, (3,)."""
-    half_angle: float
-    """Radians."""
-    radiance: Array
-    """(3,)"""
-
-
 def refusal(half_angle: float, contrast: float, flux: float, energy: float) -> str:
     """Why the brightest spot is not compact, in words; "" if it is. Flux and energy are shares of the whole."""
     if not contrast >= CONTRAST:
@@ -74,6 +64,13 @@ def refusal(half_angle: float, contrast: float, flux: float, energy: float) -> s
     return ""
 
 
+def suns_or_refusal(name: str, suns: list[Sun], why: str) -> tuple[Sun, ...]:
+    """The suns of the light `name`, the greatest flux first. LightError if there are none; why: what was found instead."""
+    if not suns:
+        raise LightError(f"{name} has no sun: {why}; {RULE}; show it unsplit")
+    return tuple(sorted(suns, key=lambda sun: -sun.flux.sum()))
+
+
 @dataclass(frozen=True, eq=False)
 class _Excess:
     """What rises around an axis, and what would be left of it."""
@@ -81,9 +78,9 @@ class _Excess:
     texels: Texels
     before: NDArray[np.float32]
     after: NDArray[np.float32]
-    """Of the texels, (k, 3)."""
+    """Values of the texels, (k, 3), now and if it were taken."""
     level: Array
-    """Of the ring beyond, (3,)."""
+    """What LEVEL of the ring beyond stays below, (3,)."""
     rim: float
     """The brightest between CAP and RIM, of the channels' mean."""
 
@@ -94,7 +91,7 @@ class _Excess:
 
     @cached_property
     def mean(self) -> Array:
-        """Of the three channels of `taken`, (k,)."""
+        """The mean of the three channels of `taken`, (k,)."""
         return np.asarray(self.taken.mean(axis=1))
 
     @property
@@ -124,16 +121,16 @@ class CompactSources:
         self._mean *= self._solid_angles > 0
         self._caps = Caps(layout, *self.pixels.shape[:2])
 
-    def take_all(self) -> tuple[list[Found], str]:
+    def take_all(self) -> tuple[list[Sun], str]:
         """(the sources taken out, why there are no more)."""
-        sources: list[Found] = []
+        sources: list[Sun] = []
         while True:
             found, why = self._take_brightest(MOST - len(sources))
             sources += found
             if not found or len(sources) == MOST:
                 return sources, why
 
-    def _take_brightest(self, most: int) -> tuple[list[Found], str]:
+    def _take_brightest(self, most: int) -> tuple[list[Sun], str]:
         """Up to `most` sources that are compact in the present image, and what is wrong with the first spot that is not.
 
         A source has a texel of at least sqrt(ENERGY ||f||^2 / solid angle of the cap), which few texels reach.
@@ -144,7 +141,7 @@ class CompactSources:
         flux, squares = self._flux_and_squares(peak)
         dimmest = np.sqrt(ENERGY * squares / np.pi) / chord_of(CAP)
         waiting = self._brighter_than(dimmest * peak)
-        found: list[Found] = []
+        found: list[Sun] = []
         why = ""
         for _ in range(TRIES):
             if not len(waiting) or len(found) == most:
@@ -183,7 +180,7 @@ class CompactSources:
         return bright.directions[np.argsort(-self._mean[bright.rows, bright.columns], kind="stable")]
 
     def _middle(self, peak: Array) -> Array:
-        """Of what is at least half as bright within CAP of `peak`, which may lie at its edge."""
+        """The unit vector to the middle of what is at least half as bright within CAP of `peak`, which may lie at its edge."""
         near = self._caps.cap(peak, CAP)
         mean = self._mean[near.rows, near.columns]
         return normalise((near.solid_angles * (mean >= mean.max() / 2)) @ near.directions)
@@ -202,7 +199,7 @@ class CompactSources:
         rim = self._mean[ring.rows, ring.columns][chord(ring.directions, axis) <= chord_of(RIM)]
         return _Excess(cap, before, after, level.astype(np.float64), float(rim.max(initial=-np.inf)))
 
-    def _disc(self, excess: _Excess) -> Found:
+    def _disc(self, excess: _Excess) -> Sun:
         """The disc whose bands 0 and 1 are those of what is taken, by the layout's exact integrals over its texels."""
         rows, columns = excess.texels.rows, excess.texels.columns
         scale = np.abs(excess.taken).max()
@@ -213,7 +210,7 @@ class CompactSources:
         length = float(np.linalg.norm(vector))
         smallest = float(excess.texels.solid_angles[excess.mean.argmax()]) / (4 * np.pi)
         half_angle = float(2 * np.arcsin(np.sqrt(min(1.0, max(1 - length / bands[0], smallest)))))
-        return Found(vector / length, half_angle, excess.flux / (4 * np.pi * np.sin(half_angle / 2) ** 2))
+        return Sun(vector / length, half_angle, excess.flux / (4 * np.pi * np.sin(half_angle / 2) ** 2))
 
     def _remove(self, excess: _Excess) -> None:
         rows, columns = excess.texels.rows, excess.texels.columns

@@ -15,18 +15,14 @@ sun's own 0.265 degrees.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from shviewer.coefficients.suns import DirectionalLight
-from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc
-from shviewer.lights.environment import EnvironmentLight
-from shviewer.lights.light import Light
-from shviewer.lights.lobes import Lobe, LobeLight
-from shviewer.lights.suns.compact_sources import MOST, RULE, CompactSources, refusal
+from shviewer.harmonics.zonal import ClampedLinear, Disc
+from shviewer.lights.lobe import Lobe
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +48,7 @@ class Sun:
 
     @property
     def irradiance(self) -> Array:
-        """Of a surface that faces it, (3,): pi sin(a)^2 times the radiance."""
+        """What a surface that faces it receives, (3,): pi sin(a)^2 times the radiance."""
         return np.asarray(self.radiance * (np.pi * np.sin(self.half_angle) ** 2))
 
     @property
@@ -71,71 +67,3 @@ class Sun:
         Where the horizon cuts it, too small: by 2a / 3 pi of `irradiance` when half of it has set, by less before and after.
         """
         return Lobe(ClampedLinear(), self.axis, self.irradiance)
-
-
-@dataclass(frozen=True, eq=False)
-class Split:
-    """whole = rest + suns. The whole is the light that was split, untouched."""
-
-    whole: Light
-    rest: Light
-    suns: tuple[Sun, ...]
-    """The greatest flux first."""
-
-    @property
-    def sunlight(self) -> LobeLight:
-        """The suns as a light: its coefficients and those of the rest add up to the whole's."""
-        return LobeLight(tuple(sun.lobe for sun in self.suns), f"sun of {self.whole.name}")
-
-
-def split_suns(light: Light) -> Split:
-    """Takes the suns out of an image or a sum of lobes. LightError for other lights and if there is none."""
-    rest: Light
-    if isinstance(light, EnvironmentLight):
-        sources = CompactSources(light.pixels, light.layout)
-        found, why = sources.take_all()
-        suns, rest = [Sun(*source) for source in found], replace(light, pixels=sources.pixels)
-    elif isinstance(light, LobeLight):
-        suns, rest, why = _split_lobes(light)
-    else:
-        raise LightError(f"{light.name}: only images and sums of lobes can be split; show it with its sun")
-    if not suns:
-        raise LightError(f"{light.name} has no sun: {why}; {RULE}; show it unsplit")
-    return Split(light, rest, tuple(sorted(suns, key=lambda sun: -sun.flux.sum())))
-
-
-def _split_lobes(light: LobeLight) -> tuple[list[Sun], LobeLight, str]:
-    """(suns, rest, why the brightest disc in the rest is none)."""
-    suns: list[Sun] = []
-    rest = light
-    while len(suns) < MOST:
-        discs = [lobe for lobe in rest.lobes if isinstance(lobe.profile, Disc) and lobe.radiance.mean() > 0]
-        discs.sort(key=lambda lobe: -lobe.radiance.mean())
-        refusals = [_disc_refusal(disc, rest) for disc in discs]
-        if "" not in refusals:
-            return suns, rest, next(iter(refusals), "it has no disc")
-        sun = discs[refusals.index("")]
-        suns.append(Sun(sun.axis, sun.profile.half_angle, sun.radiance))
-        rest = _without(rest, sun)
-    return suns, rest, ""
-
-
-def _disc_refusal(disc: Lobe, light: LobeLight) -> str:
-    """Why one of a light's discs is no sun; "" if it is. As everywhere, of the mean of the channels."""
-    radiance, solid_angle = float(disc.radiance.mean()) / light.unit, float(disc.profile.zonal(1)[0])
-    behind = _without(light, disc).radiance(disc.axis[None]).mean() / light.unit
-    fluxes = [abs(lobe.profile.zonal(1)[0] * lobe.radiance.mean() / light.unit) for lobe in light.lobes]
-    contrast = 1 + radiance / behind if behind > 0 else np.inf
-    norm_squared = light.products().sum() / 9
-    return refusal(
-        disc.profile.half_angle,
-        contrast,
-        radiance * solid_angle / sum(fluxes),
-        radiance**2 * solid_angle / norm_squared,
-    )
-
-
-def _without(light: LobeLight, lobe: Lobe) -> LobeLight:
-    """The other lobes; a black constant if there are none."""
-    others = tuple(other for other in light.lobes if other is not lobe)
-    return replace(light, lobes=others or (Lobe(Constant(), np.array([0.0, 0.0, 1.0]), np.zeros(3)),))

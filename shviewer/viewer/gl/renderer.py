@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.lights.lobes import Lobe
+from shviewer.lights.lobe import Lobe
 from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Composition, Sphere
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces

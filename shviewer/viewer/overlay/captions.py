@@ -74,7 +74,7 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
 def describe_light(picture: Picture) -> list[str]:
     """The light in a few words, with what must not be missed; the description alone is the first thing to go."""
     light = picture.subject.whole
-    encoding = getattr(getattr(light, "source", light), "encoding", None) or ""
+    encoding = light.about.encoding or ""
     count = len(light.notes)
     marks = ["LDR"] * ("(LDR)" in encoding) + [counted(count, "note")] * (count > 0)
     return [", ".join(words) for words in ([light.description, *marks], marks, marks[:1]) if words]

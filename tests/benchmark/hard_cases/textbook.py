@@ -168,13 +168,13 @@ def irradiance_factors(n_bands: int) -> np.ndarray:
     return factors
 
 
-def figures_of(light) -> list[float]:
-    """Relative L2 error of five bands and their energies: squares as they are, divided by their sum."""
+def figures_of(light, squares=np.float64) -> list[float]:
+    """Relative L2 error of five bands and their energies: squares of that type, divided by their sum."""
     from shviewer.harmonics.quadrature import gauss_legendre
 
     points = gauss_legendre(20_000).direction_set()
     with np.errstate(all="ignore"):
-        norm = (points.weights[:, None] * light.radiance(points.directions) ** 2).sum()
-        power = (light.coefficients(5) ** 2).sum(axis=1)
+        norm = (points.weights[:, None] * light.radiance(points.directions).astype(squares) ** 2).sum()
+        power = (light.coefficients(5).astype(squares) ** 2).sum(axis=1)
         shares = np.add.reduceat(power, np.arange(5) ** 2) / norm
         return [float(np.sqrt(1 - shares.sum())), *shares]

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.lobes import Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import Box, Composition, Sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.picture import Picture

@@ -13,7 +13,7 @@ from viewer.gl.frames import lobes, picture_view, positions, reconstructing, rou
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.lobes import Lobe
+from shviewer.lights.lobe import Lobe
 from shviewer.viewer.colour_maps import map_of, table
 from shviewer.viewer.composition import Box, Composition, Sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap

@@ -30,7 +30,8 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.lobes import MAX_LOBES, Lobe, LobeLight
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import MAX_LOBES, LobeLight
 from shviewer.viewer.camera import towards
 from shviewer.viewer.composition import Box, Composition, Sphere, compose
 from shviewer.viewer.drawn import DirectSum, SplineMap

@@ -74,4 +74,4 @@ def errors_by_count(picture: Picture) -> Array:
     if picture.state.recipe.n_bands <= len(errors):
         return errors
     exact = project(light, *BEST, picture.projection.n_bands).coefficients  # beyond what samples were searched for
-    return errors_by_band_count(light.products(), exact / light.unit, picture.projection.coefficients / light.unit)
+    return errors_by_band_count(light.products(), exact, picture.projection.coefficients)

@@ -17,7 +17,6 @@ from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.irradiance import IrradianceLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.composition import compose
@@ -138,8 +137,8 @@ def test_the_irradiance_takes_the_time_of_the_lights_own_samples_and_has_errors_
     for _ in range(2):
         projections._measured_projection.cache_clear()
         project(light, "jittered", 500, 0, 8)
-    project(IrradianceLight(light), "jittered", 500, 0, 8)
-    (_, radiance), (_, irradiance) = (measurements(of, 8) for of in (light, IrradianceLight(light)))
+    project(light.irradiance(), "jittered", 500, 0, 8)
+    (_, radiance), (_, irradiance) = (measurements(of, 8) for of in (light, light.irradiance()))
     assert (irradiance.milliseconds, irradiance.repetitions) == (radiance.milliseconds, 2)
     assert irradiance.errors[4] < radiance.errors[4] / 5
 
