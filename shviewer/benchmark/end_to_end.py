@@ -18,7 +18,7 @@ import moderngl
 
 from shviewer.analysis.cache import MEMORY
 from shviewer.benchmark.hard_cases.shader import Shader
-from shviewer.benchmark.measurement import Measurement, timed
+from shviewer.benchmark.row import Row, not_measured, timed
 from shviewer.benchmark.timing import Timing, summarise, time_interleaved
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composition import compose
@@ -50,6 +50,8 @@ NOTES = {
     KNOWN_KEY: "Up, to bands shown before",
     IDLE: "CPU milliseconds per second",
 }
+
+IN_SESSION, IN_PROCESSES = (PICTURE, SAVED, NEW_KEY, KNOWN_KEY), (VERSION, SCREENSHOT)
 
 IDLE_SECONDS = 4
 PATIENCE = 60.0
@@ -90,7 +92,18 @@ except GraphicsError as error:
 Work = Callable[[], object]
 
 
-def process_rows(text: str, name: str, drawing: Shader | str, *, budget: float, at_least: int = 5) -> list[Measurement]:
+def rows_not_measured(name: str, methods: Sequence[str], key_bands: Sequence[int] = KEY_BANDS) -> list[Row]:
+    """Of a light that is called `name`, in place of those of session_rows and process_rows that nothing has been done for."""
+    after_key = [n + 1 for n in key_bands]
+    bands: dict[str, list[int | None]] = {NEW_KEY: [*after_key], KNOWN_KEY: [*after_key], VERSION: [None]}
+    return [
+        not_measured(SECTION, method, "" if method == VERSION else name, n_bands)
+        for method in methods
+        for n_bands in bands.get(method, [ViewState().n_bands])
+    ]
+
+
+def process_rows(text: str, name: str, drawing: Shader | str, *, budget: float, at_least: int = 5) -> list[Row]:
     """New processes: `--version`, the floor of all, and a screenshot of the LIGHT `text`, which the rows call `name`.
 
     drawing: what draws; a text says why nothing does, and then the screenshot is absent. budget: seconds.
@@ -113,7 +126,7 @@ def session_rows(
     budget: float,
     key_bands: Sequence[int] = KEY_BANDS,
     at_least: int = 5,
-) -> list[Measurement]:
+) -> list[Row]:
     """In this process: the LIGHT `text` to its first picture, and Up to the next one. Every light is forgotten on the way.
 
     A picture is done when OpenGL says so, in the window's size and format, overlay included. No rows where nothing draws.
@@ -142,7 +155,7 @@ def session_rows(
     return [_row(method, name, n_bands, timing) for (method, n_bands), timing in times.items()]
 
 
-def idle_row(seconds: int = IDLE_SECONDS) -> Measurement | str:
+def idle_row(seconds: int = IDLE_SECONDS) -> Row | str:
     """Milliseconds of CPU time per second in which nothing happens to a window; a text says why there is none."""
     command = [sys.executable, "-c", WATCHED_WINDOW, str(seconds)]
     patience = PATIENCE + seconds
@@ -203,7 +216,5 @@ def _environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
-def _row(method: str, light: str, n_bands: int | None, timing: Timing) -> Measurement:
-    return Measurement(
-        section=SECTION, method=method, light=light, n_bands=n_bands, **timed(timing), note=NOTES[method]
-    )
+def _row(method: str, light: str, n_bands: int | None, timing: Timing) -> Row:
+    return Row(section=SECTION, method=method, light=light, n_bands=n_bands, **timed(timing), note=NOTES[method])

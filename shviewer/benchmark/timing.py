@@ -44,11 +44,6 @@ def wall_milliseconds(work: Work) -> float:
     return 1000 * (perf_counter() - start)
 
 
-def time_it(work: Work, *, budget: float, at_least: int = 5, warm_up: int = 1) -> Timing:
-    """The time of one piece of work. `budget`: seconds, passed only to reach `at_least` repeats."""
-    return time_interleaved({"": work}, budget=budget, at_least=at_least, warm_up=warm_up)[""]
-
-
 def time_interleaved(
     works: Mapping[Name, Work],
     *,

@@ -10,9 +10,9 @@ import pytest
 
 from shviewer.benchmark import projection_rows
 from shviewer.benchmark.experiments import BEST, METHODS, method
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.measured_lights import MeasuredLight, find_measured_lights, measured_light
 from shviewer.benchmark.projection_rows import errors_of
-from shviewer.benchmark.subjects import Subject, find_subjects, subject_of
+from shviewer.benchmark.row import Row
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import channel_figures
@@ -30,21 +30,21 @@ def small_image() -> EnvironmentLight:
 
 
 @pytest.fixture(scope="module")
-def green(green: Subject) -> Subject:
+def green(green: MeasuredLight) -> MeasuredLight:
     return replace(green, needs={0.1: green.needs[0.1]})
 
 
 def rows_of(
-    subject: Subject, seed: int, bands: tuple[int, ...] = (3, 5), samples: tuple[int, ...] = (100, 400)
-) -> list[Measurement]:
-    rows: list[Measurement] = []
-    groups = projection_rows.plan([subject], bands, samples)
+    measured: MeasuredLight, seed: int, bands: tuple[int, ...] = (3, 5), samples: tuple[int, ...] = (100, 400)
+) -> list[Row]:
+    rows: list[Row] = []
+    groups = projection_rows.plan([measured], bands, samples)
     projection_rows.measure(groups, 1e3, seed, rows.extend, lambda share, what: None, filling=0.0)
     return rows
 
 
 @pytest.fixture(scope="module")
-def green_rows(green: Subject) -> list[Measurement]:
+def green_rows(green: MeasuredLight) -> list[Row]:
     return rows_of(green, 0)
 
 
@@ -62,11 +62,11 @@ def test_every_method_comes_near_the_lights_own_coefficients() -> None:
 @pytest.mark.parametrize(("name", "low", "high"), [("random", -0.7, -0.3), ("jittered", -1.2, -0.8)])
 def test_errors_of_random_methods_fall_as_theory_says(name: str, low: float, high: float) -> None:
     """On a smooth light N^(-1/2) for independent points and N^-1 for one per cell; medians of nine seeds."""
-    subject = subject_of(FunctionLight(lambda d: np.exp(d @ [1.0, 0.5, -0.3])))
+    measured = measured_light(FunctionLight(lambda d: np.exp(d @ [1.0, 0.5, -0.3])))
     medians = []
     for samples in (400, 25_600):
-        found = [method(name).project(subject.light, samples, seed, 3) for seed in range(9)]
-        medians.append(np.median([errors_of(subject, each).error for each in found]))
+        found = [method(name).project(measured.light, samples, seed, 3) for seed in range(9)]
+        medians.append(np.median([errors_of(measured, each).error for each in found]))
     assert low < np.log(medians[1] / medians[0]) / np.log(64) < high
 
 
@@ -141,7 +141,7 @@ def test_a_method_that_is_not_in_the_table_is_refused_in_one_line() -> None:
         method("lebedev")
 
 
-def test_errors_in_the_rows_are_those_of_the_metrics_module(green: Subject, green_rows: list[Measurement]) -> None:
+def test_errors_in_the_rows_are_those_of_the_metrics_module(green: MeasuredLight, green_rows: list[Row]) -> None:
     light = green.light
     for row in green_rows:
         seeds = range(projection_rows.SEEDS) if row.method in RANDOM else [0]
@@ -160,7 +160,7 @@ def test_errors_in_the_rows_are_those_of_the_metrics_module(green: Subject, gree
                 assert row.error_high * kept == pytest.approx(added.max(), rel=1e-6)
 
 
-def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(green_rows: list[Measurement]) -> None:
+def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(green_rows: list[Row]) -> None:
     for row in green_rows:
         assert (row.error is None) == (row.method == BEST)
         assert (row.error_low is not None) == (row.method in RANDOM)
@@ -172,8 +172,8 @@ def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(gree
         assert row.reference_accuracy == 0
 
 
-def test_one_seed_gives_identical_errors_and_another_does_not(green: Subject, green_rows: list[Measurement]) -> None:
-    def errors(rows: list[Measurement]) -> dict[object, tuple[object, ...]]:
+def test_one_seed_gives_identical_errors_and_another_does_not(green: MeasuredLight, green_rows: list[Row]) -> None:
+    def errors(rows: list[Row]) -> dict[object, tuple[object, ...]]:
         return {row.key: (row.error, row.error_low, row.error_high, row.truncation, row.total_error) for row in rows}
 
     first, again, other = errors(green_rows), errors(rows_of(green, 0)), errors(rows_of(green, 7))
@@ -186,26 +186,26 @@ def test_a_bright_light_has_the_errors_of_a_dim_one() -> None:
         return FunctionLight(lambda d: factor * np.exp(2 * d[:, 0]), "lobe")
 
     names = ("gauss-legendre", "random")
-    small, large = subject_of(scaled(1.0)), subject_of(scaled(1e29))
+    small, large = measured_light(scaled(1.0)), measured_light(scaled(1e29))
     for name in names:
         errors = [errors_of(each, method(name).project(each.light, 1000, 0, 4)) for each in (small, large)]
         assert errors[0].error == pytest.approx(errors[1].error, rel=1e-6)
         assert errors[0].total == pytest.approx(errors[1].total, rel=1e-6)
 
 
-def test_each_light_has_the_band_counts_that_it_needs(green: Subject) -> None:
+def test_each_light_has_the_band_counts_that_it_needs(green: MeasuredLight) -> None:
     assert green.needs == {0.1: 10}
     groups = projection_rows.plan([green], (3,), (100, 1_000_000))
     assert [group.n_bands for group in groups] == [3, 10]
     assert {count for _, count in groups[1].seconds} == {None, 100, 10_000}
 
 
-def test_a_plan_keeps_the_chosen_methods_and_the_reference(green: Subject) -> None:
+def test_a_plan_keeps_the_chosen_methods_and_the_reference(green: MeasuredLight) -> None:
     (group,) = projection_rows.plan([replace(green, needs={})], (3,), (100,), ("fejer",))
     assert [each.name for each, _ in group.seconds] == [BEST, "fejer"]
 
 
-def test_a_budget_leaves_out_the_longest_first_and_the_answers_last(green: Subject) -> None:
+def test_a_budget_leaves_out_the_longest_first_and_the_answers_last(green: MeasuredLight) -> None:
     groups = projection_rows.plan([green], (3, 10), (100, 10_000, 1_000_000))
     whole = sum(group.total() for group in groups)
     assert projection_rows.fit(groups, whole) == []
@@ -219,14 +219,16 @@ def test_a_budget_leaves_out_the_longest_first_and_the_answers_last(green: Subje
     assert max(count or 0 for _, count in groups[0].seconds) < 1_000_000
 
 
-def test_a_budget_for_nothing_leaves_nothing(green: Subject) -> None:
+def test_a_budget_for_nothing_leaves_nothing(green: MeasuredLight) -> None:
     groups = projection_rows.plan([green], (3,), (100,))
     left_out = projection_rows.fit(groups, 0.0)
     assert not any(group.seconds for group in groups)
     assert "best way: green, 3 10 bands" in projection_rows.describe(left_out)
 
 
-def test_a_machine_slower_than_the_table_is_given_less_to_do(green: Subject, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_machine_slower_than_the_table_is_given_less_to_do(
+    green: MeasuredLight, monkeypatch: pytest.MonkeyPatch
+) -> None:
     clock = iter(float(10 * i) for i in range(100))
     monkeypatch.setattr(projection_rows, "perf_counter", lambda: next(clock))
     monkeypatch.setattr(projection_rows, "_measure_group", lambda group, filling, seed: [])
@@ -243,4 +245,4 @@ def test_every_light_is_measured_once_and_two_of_a_name_are_told_apart(tmp_path:
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "sky.toml").write_text(text)
     texts = [str(tmp_path / "a/sky.toml"), "green", "green", str(tmp_path / "b/sky.toml")]
-    assert [subject.name for subject in find_subjects(texts)] == ["sky", "green", texts[3]]
+    assert [measured.name for measured in find_measured_lights(texts)] == ["sky", "green", texts[3]]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shviewer.benchmark import peers
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.row import Row
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import degrees
 from shviewer.harmonics.quadrature import fibonacci
@@ -25,7 +25,7 @@ def test_a_peer_that_is_not_installed_is_named_and_left_out() -> None:
 
 def test_ours_is_measured_beside_whatever_peers_there_are() -> None:
     answer = peers.measure(["film_studio", "green"], [3], 2.0, 0)
-    rows = [Measurement.from_dict(row) for row in answer["rows"]]
+    rows = [Row.from_dict(row) for row in answer["rows"]]
     ours = [(row.light, row.method, row.samples) for row in rows if row.method.startswith(peers.OURS)]
     assert sorted(ours, key=str) == [
         ("film_studio", "shviewer f32", None),

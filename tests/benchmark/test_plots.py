@@ -13,20 +13,20 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from shviewer.benchmark.measurement import Measurement
 from shviewer.benchmark.page.plot_marks import DASHES, LOOKS, nice_ticks, plain, spread
 from shviewer.benchmark.page.plots import FLOOR, error_curves, frame_curves, make_plots, time_error_curves
 from shviewer.benchmark.reconstruction_rows import CACHED, DIRECT, PER_FRAME
+from shviewer.benchmark.row import Row
 
 
-def projected(method: str, milliseconds: float, error: float, light: str = "green") -> Measurement:
-    return Measurement(
+def projected(method: str, milliseconds: float, error: float, light: str = "green") -> Row:
+    return Row(
         section="projection", method=method, light=light, n_bands=9, milliseconds=milliseconds, total_error=error
     )
 
 
-def drawn(method: str, n_bands: int, milliseconds: float, truncation: float, light: str = "green") -> Measurement:
-    return Measurement(
+def drawn(method: str, n_bands: int, milliseconds: float, truncation: float, light: str = "green") -> Row:
+    return Row(
         section="reconstruction",
         method=method,
         light=light,

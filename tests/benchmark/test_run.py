@@ -13,11 +13,11 @@ import pytest
 
 from shviewer.benchmark import budget, costs, projection_rows, sections, timing
 from shviewer.benchmark.budget import Clock, allot
-from shviewer.benchmark.measurement import COLUMNS, Measurement
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page import plots
 from shviewer.benchmark.page.document import Report, read_report
 from shviewer.benchmark.page.projection_tables import _matrix
+from shviewer.benchmark.row import COLUMNS, Row
 from shviewer.benchmark.run import write_report
 from shviewer.errors import LightError, OutputError, UsageError
 
@@ -81,7 +81,7 @@ def test_plots_are_linked_and_the_line_that_installs_them_is_there(folder: Path)
 
 
 def test_many_bands_continue_in_a_second_table() -> None:
-    rows = [Measurement(section="projection", method="random", samples=10, n_bands=n, error=0.5) for n in range(1, 20)]
+    rows = [Row(section="projection", method="random", samples=10, n_bands=n, error=0.5) for n in range(1, 20)]
     lines = _matrix(rows, lambda row: f"{row.error:12}")
     assert max(map(len, lines)) <= 128
     assert lines.count("") == 2
@@ -91,7 +91,7 @@ def test_many_bands_continue_in_a_second_table() -> None:
 def test_an_interrupted_run_leaves_a_readable_partial_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     measure, calls = projection_rows._measure_group, 0
 
-    def interrupted(*arguments: object) -> list[Measurement]:
+    def interrupted(*arguments: object) -> list[Row]:
         nonlocal calls
         calls += 1
         if calls == 2:

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 
 from shviewer.benchmark import reconstruction_rows as reconstruction
 from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.measurement import Measurement
 from shviewer.benchmark.page.plot_marks import (
     INCHES,
     STYLE,
@@ -29,6 +28,7 @@ from shviewer.benchmark.page.plot_marks import (
     shorten,
 )
 from shviewer.benchmark.projection_rows import SECTION as PROJECTION
+from shviewer.benchmark.row import Row
 from shviewer.files import write_atomically
 from shviewer.harmonics.metrics import pareto_front
 
@@ -49,7 +49,7 @@ TOLERANCES = (0.1, 0.05, 0.01)
 SIXTY_HERTZ = 1000 / 60
 
 
-def make_plots(rows: Sequence[Measurement], folder: Path) -> tuple[tuple[Path, ...], str]:
+def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str]:
     """Write what the rows allow, each as .svg and .png; returns the files, and why there are none if matplotlib is missing.
 
     OutputError if a file cannot be written.
@@ -76,7 +76,7 @@ def make_plots(rows: Sequence[Measurement], folder: Path) -> tuple[tuple[Path, .
     return tuple(written), ""
 
 
-def _plots(rows: Sequence[Measurement]) -> dict[str, Callable[[Figure], None]]:
+def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
     """File stem -> what draws it."""
     plots: dict[str, Callable[[Figure], None]] = {}
     for light in _in_order(row.light for row in rows if row.section == PROJECTION):
@@ -94,7 +94,7 @@ def _plots(rows: Sequence[Measurement]) -> dict[str, Callable[[Figure], None]]:
     return plots
 
 
-def time_error_curves(rows: Sequence[Measurement], light: str) -> list[Curve]:
+def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:
     """(milliseconds, percent) of each method with all its band counts and samples, as far as it does not beat itself."""
     curves = []
     for look, method in enumerate(METHODS):
@@ -109,7 +109,7 @@ def time_error_curves(rows: Sequence[Measurement], light: str) -> list[Curve]:
     return curves
 
 
-def error_curves(rows: Sequence[Measurement]) -> list[Curve]:
+def error_curves(rows: Sequence[Row]) -> list[Curve]:
     """(bands, percent left out) of each light."""
     curves = []
     for look, light in enumerate(_in_order(row.light for row in rows if row.truncation is not None)):
@@ -122,7 +122,7 @@ def error_curves(rows: Sequence[Measurement]) -> list[Curve]:
     return [curve for curve in curves if len(curve.points) > 1]
 
 
-def frame_curves(rows: Sequence[Measurement]) -> list[Curve]:
+def frame_curves(rows: Sequence[Row]) -> list[Curve]:
     """(bands, milliseconds) of each way of drawing, and of making the map: medians over the lights, with their quartiles."""
     drawn = ("milliseconds", "low_quartile", "high_quartile")
     columns = (
@@ -132,7 +132,7 @@ def frame_curves(rows: Sequence[Measurement]) -> list[Curve]:
     )
     curves = []
     for look, (name, method, names) in enumerate(columns):
-        found: dict[int, list[Measurement]] = {}
+        found: dict[int, list[Row]] = {}
         for row in rows:
             known = all(getattr(row, column) for column in names)
             if row.section == reconstruction.SECTION and row.method == method and row.n_bands and known:
