@@ -1,7 +1,7 @@
 """The report's plots, made of its rows alone: time against error, error against bands, frame time against bands.
 
 For a column of print: 86 mm wide, 8 pt, a colour, a marker and a dash for each curve (M. Okabe, K. Ito, "Color Universal
-Design", 2008), and its name beside it. Equal rows give equal bytes with one version of matplotlib.
+Design", 2008), and a legend below the axes. Equal rows give equal bytes with one version of matplotlib.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 import statistics
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shviewer.benchmark import reconstruction_rows as reconstruction
 from shviewer.benchmark.experiments import METHODS
@@ -19,11 +19,10 @@ from shviewer.benchmark.page.plot_marks import (
     INCHES,
     STYLE,
     Curve,
+    add_legend,
     draw_curves,
     log_axes,
-    name_ends,
     padded,
-    place_names,
     plain,
     shorten,
 )
@@ -47,6 +46,8 @@ BAND_FLOOR = 1e-3
 
 TOLERANCES = (0.1, 0.05, 0.01)
 SIXTY_HERTZ = 1000 / 60
+MARKED: dict[str, Any] = {"color": "0.45", "linewidth": 0.7, "linestyle": (0, (1, 2)), "zorder": 1}
+"""A level to be seen across the axes."""
 
 
 def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str]:
@@ -154,9 +155,16 @@ def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None
     axes = log_axes(figure, f"{shorten(light)}: total error against the time to project", x, y)
     axes.set_xlabel("milliseconds")
     stairs = [(front[0][0], y[1]), *front, (x[1], front[-1][1])]
-    axes.step(*zip(*stairs, strict=True), where="post", color="0.85", linewidth=5, zorder=1, solid_joinstyle="miter")
     draw_curves(axes, curves)
-    place_names(axes, [*curves, Curve("Pareto front", tuple(stairs[1:]), -1)])
+    broad: dict[str, Any] = {
+        "color": "0.85",
+        "linewidth": 5,
+        "zorder": 1,
+        "solid_joinstyle": "miter",
+        "label": "Pareto front",
+    }
+    axes.step(*zip(*stairs, strict=True), where="post", **broad)
+    add_legend(figure)
 
 
 def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
@@ -168,9 +176,10 @@ def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
     axes.set_yticks(ticks, [f"{'< ' * (tick == 100 * BAND_FLOOR == lowest)}{plain(tick)} %" for tick in ticks])
     _band_axis(axes)
     for tolerance in TOLERANCES:
-        axes.axhline(100 * tolerance, color="0.45", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)
+        axes.axhline(100 * tolerance, **MARKED)
     draw_curves(axes, curves)
-    name_ends(axes, curves)
+    axes.plot([], [], **MARKED, label="tolerances")
+    add_legend(figure)
 
 
 def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
@@ -179,9 +188,9 @@ def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
     title = "milliseconds per frame of 1280 \N{MULTIPLICATION SIGN} 640"
     axes = log_axes(figure, title, _band_range(curves), y, unit="")
     _band_axis(axes)
-    axes.axhline(SIXTY_HERTZ, color="0.45", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)
     draw_curves(axes, curves)
-    name_ends(axes, [*curves, Curve("60 a second", ((axes.get_xlim()[1], SIXTY_HERTZ),), -1)])
+    axes.axhline(SIXTY_HERTZ, **MARKED, label="60 a second")
+    add_legend(figure)
 
 
 def _band_range(curves: Sequence[Curve]) -> tuple[float, float]:
