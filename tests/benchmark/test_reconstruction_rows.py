@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
 
 from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projections import BEST
+from shviewer.benchmark import reconstruction_rows as module
 from shviewer.benchmark.enough_bands import where_bands_stop_paying
 from shviewer.benchmark.hard_cases.shader import Shader
 from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
@@ -46,6 +48,21 @@ def test_without_opengl_the_rows_of_the_shader_are_absent_and_all_others_are_the
     assert all(row.milliseconds and row.repeats == 1 and row.note == PER_MILLION for row in rows.values())
 
 
+@pytest.mark.parametrize(("seconds", "reached"), [(0.0, []), (5.0, [1]), (1e3, [1, 3, 9])])
+def test_band_counts_come_smallest_first_as_far_as_the_time_allows(
+    green: MeasuredLight, seconds: float, reached: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every look at the clock takes a second."""
+    ticks = count()
+    monkeypatch.setattr(module, "perf_counter", lambda: float(next(ticks)))
+    rows = module.reconstruction_rows(green, NO_OPENGL, budget=0, at_most=seconds, bands=(9, 1, 3), at_least=1)
+    assert [row.n_bands for row in rows if row.method == MAP_32 and row.measured] == reached
+    assert sorted((row.n_bands or 0, row.method) for row in rows) == [
+        (n, name) for n in (1, 3, 9) for name in sorted(CPU)
+    ]
+    assert {row.note for row in rows if not row.measured} <= {"not measured"}
+
+
 def test_what_the_bands_leave_out_is_what_the_window_says(green: MeasuredLight) -> None:
     errors = errors_of(green.light, *BEST)
     for row in reconstruction_rows(green, NO_OPENGL, budget=0, bands=(2, 9), at_least=1):
@@ -76,8 +93,6 @@ def test_the_shader_is_as_exact_as_float32_at_every_band_count(green: MeasuredLi
 
 def test_an_error_in_the_coefficients_drawn_is_seen(green: MeasuredLight, renderer: Renderer) -> None:
     """The shader's error is not the difference of two equal wrongs: one per cent more light is one per cent of error."""
-    from shviewer.benchmark import reconstruction_rows as module
-
     stage = module._Stage(green, 5)
     brighter = replace(stage.direct, drawn=DirectSum(1.01 * stage.coefficients))
     with offscreen(renderer, module.FRAME) as target:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from shviewer.benchmark import timing
-from shviewer.benchmark.timing import MOST_REPEATS, summarise, time_interleaved, time_it
+from shviewer.benchmark.timing import MOST_REPEATS, summarise, time_interleaved
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_what_comes_before_a_run_is_told_its_number_and_not_timed(
 
 
 def test_a_budget_of_nothing_still_gives_as_many_repeats_as_asked_for() -> None:
-    assert time_it(lambda: None, budget=0.0, at_least=7).repeats == 7
+    assert time_interleaved({"": lambda: None}, budget=0.0, at_least=7)[""].repeats == 7
 
 
 def test_what_is_fast_is_repeated_more_often_and_not_for_ever(taking: Callable[[float], Callable[[], None]]) -> None:
@@ -66,5 +66,5 @@ def test_what_is_fast_is_repeated_more_often_and_not_for_ever(taking: Callable[[
 
 
 def test_the_budget_ends_the_repeats(taking: Callable[[float], Callable[[], None]]) -> None:
-    assert time_it(taking(2**-6), budget=2**-3, at_least=1).repeats == 8
-    assert time_it(taking(1.0), budget=2**-3, at_least=3).repeats == 3
+    assert time_interleaved({"": taking(2**-6)}, budget=2**-3, at_least=1)[""].repeats == 8
+    assert time_interleaved({"": taking(1.0)}, budget=2**-3, at_least=3)[""].repeats == 3

@@ -152,8 +152,8 @@ def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None
     everything = [point for curve in curves for point in curve.points]
     front = [everything[i] for i in pareto_front(everything)]
     x, y = padded(x for x, _ in everything), padded((y for _, y in everything), highest=115.0)
-    axes = log_axes(figure, f"{shorten(light)}: total error against the time to project", x, y)
-    axes.set_xlabel("milliseconds")
+    axes = log_axes(figure, f"{shorten(light)}: total error", x, y)
+    axes.set_xlabel("milliseconds to project")
     stairs = [(front[0][0], y[1]), *front, (x[1], front[-1][1])]
     draw_curves(axes, curves)
     broad: dict[str, Any] = {
