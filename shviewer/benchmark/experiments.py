@@ -67,10 +67,6 @@ class Method:
     points: Callable[[Light], int] = lambda light: 0
     """Of a method without samples: how many it sums one by one; 0 where it is about as fast as the best way."""
 
-    def project(self, light: Light, samples: int, seed: int, n_bands: int) -> Array:
-        """Coefficients (n_bands**2, 3), prepared and run."""
-        return self.prepare(light, samples, seed, n_bands).project()
-
     def words_for(self, light_best: str) -> str:
         """The best way is called what the light calls it."""
         return light_best if self.name == BEST else self.words

@@ -156,11 +156,12 @@ def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
 
     text = run.texts[0] if run.texts else experiments.LIGHTS[0]
     name = run.page.lights[0].name if run.texts else text
-    missing = [] if isinstance(drawing, Shader) else [f"pictures: nothing was drawn: {drawing}"]
+    drawn = isinstance(drawing, Shader)
+    missing = [] if drawn else [f"pictures: nothing was drawn: {drawing}"]
     at_least = QUICK_REPEATS if run.options.quick else 5
     parts = (
-        ("pictures", end_to_end.session_rows, end_to_end.IN_SESSION if isinstance(drawing, Shader) else (), 0.4),
-        ("new processes", end_to_end.process_rows, end_to_end.IN_PROCESSES, 0.5),
+        ("pictures", end_to_end.session_rows, end_to_end.IN_SESSION if drawn else (), 0.4),
+        ("new processes", end_to_end.process_rows, end_to_end.IN_PROCESSES if drawn else (end_to_end.VERSION,), 0.5),
     )
     for what, rows_of, methods, share in parts:
         run.clock.tell(what)
@@ -170,7 +171,8 @@ def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
             run.add(end_to_end.rows_not_measured(name, methods))
     if run.options.budget >= IDLE_FROM and not run.options.quick and run.options.shader:
         run.clock.tell("an idle window")
-        idle = end_to_end.idle_row()
+        in_time = run.clock.left() > 0
+        idle = end_to_end.idle_row() if in_time else end_to_end.rows_not_measured("green", (end_to_end.IDLE,))[0]
         if isinstance(idle, str):
             missing.append(f"an idle window: {idle}")
         else:

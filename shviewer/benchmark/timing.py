@@ -24,11 +24,6 @@ class Timing:
     high_quartile: float
     repeats: int
 
-    @property
-    def spread(self) -> float:
-        """The distance of the quartiles over the median."""
-        return (self.high_quartile - self.low_quartile) / self.median if self.median else 0.0
-
 
 def summarise(milliseconds: list[float]) -> Timing:
     """ValueError for no times at all."""

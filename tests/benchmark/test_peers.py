@@ -32,7 +32,8 @@ def test_ours_is_measured_beside_whatever_peers_there_are() -> None:
         ("film_studio", "shviewer", 10_000),
         ("film_studio", "shviewer", None),
     ]
-    assert all(row.error is None and row.repeats >= 1 for row in rows)  # how many fit depends on the machine
+    assert all(row.error is None for row in rows)
+    assert all(row.repeats >= 1 if row.measured else row.note == "not measured" for row in rows)  # on the machine
     there = {row.method for row in rows} | {line.split(":")[0].split(",")[0] for line in answer["missing"]}
     assert there >= {*peers.IMAGE_PEERS, *peers.SAMPLE_PEERS}
 
