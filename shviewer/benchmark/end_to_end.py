@@ -5,6 +5,7 @@ Cold is a new process, Python's start included; warm is a process that has drawn
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -51,8 +52,6 @@ NOTES = {
     IDLE: "CPU milliseconds per second",
 }
 
-IN_SESSION, IN_PROCESSES = (PICTURE, SAVED, NEW_KEY, KNOWN_KEY), (VERSION, SCREENSHOT)
-
 IDLE_SECONDS = 4
 PATIENCE = 60.0
 """Seconds that a process may take to start, draw or end."""
@@ -92,30 +91,21 @@ except GraphicsError as error:
 Work = Callable[[], object]
 
 
-def rows_not_measured(name: str, methods: Sequence[str], key_bands: Sequence[int] = KEY_BANDS) -> list[Row]:
-    """Of a light that is called `name`, in place of those of session_rows and process_rows that nothing has been done for."""
-    after_key = [n + 1 for n in key_bands]
-    bands: dict[str, list[int | None]] = {NEW_KEY: [*after_key], KNOWN_KEY: [*after_key], VERSION: [None]}
-    return [
-        not_measured(SECTION, method, "" if method == VERSION else name, n_bands)
-        for method in methods
-        for n_bands in bands.get(method, [ViewState().n_bands])
-    ]
-
-
-def process_rows(text: str, name: str, drawing: Shader | str, *, budget: float, at_least: int = 5) -> list[Row]:
+def process_rows(
+    text: str, name: str, drawing: Shader | str, *, budget: float, at_most: float = math.inf, at_least: int = 5
+) -> list[Row]:
     """New processes: `--version`, the floor of all, and a screenshot of the LIGHT `text`, which the rows call `name`.
 
-    drawing: what draws; a text says why nothing does, and then the screenshot is absent. budget: seconds.
+    drawing: what draws; a text says why nothing does, and then the screenshot is absent. budget: seconds. at_most: seconds
+    beyond which nothing is measured.
     """
     with tempfile.TemporaryDirectory() as folder:
         works = {VERSION: _process("--version")}
         if isinstance(drawing, Shader):
             works[SCREENSHOT] = _process("screenshot", str(Path(folder) / "out.png"), text)
-        times = time_interleaved(works, budget=budget, at_least=at_least)
-    return [_row(VERSION, "", None, times[VERSION])] + [
-        _row(SCREENSHOT, name, ViewState().n_bands, times[SCREENSHOT]) for _ in (0,) if SCREENSHOT in times
-    ]
+        times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least)
+    places = {VERSION: ("", None), SCREENSHOT: (name, ViewState().n_bands)}
+    return [_row(method, *places[method], times.get(method)) for method in works]
 
 
 def session_rows(
@@ -124,12 +114,14 @@ def session_rows(
     drawing: Shader | str,
     *,
     budget: float,
+    at_most: float = math.inf,
     key_bands: Sequence[int] = KEY_BANDS,
     at_least: int = 5,
 ) -> list[Row]:
     """In this process: the LIGHT `text` to its first picture, and Up to the next one. Every light is forgotten on the way.
 
     A picture is done when OpenGL says so, in the window's size and format, overlay included. No rows where nothing draws.
+    budget: seconds. at_most: seconds beyond which nothing is measured.
     """
     if isinstance(drawing, str):
         return []
@@ -150,13 +142,18 @@ def session_rows(
             if work[0] in (NEW_KEY, KNOWN_KEY):
                 session.upload(replace(start, n_bands=work[1] - 1))
 
-        times = time_interleaved(works, budget=budget, at_least=at_least, before=before)
+        times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least, before=before)
     MEMORY.clear()
-    return [_row(method, name, n_bands, timing) for (method, n_bands), timing in times.items()]
+    return [_row(method, name, n_bands, times.get((method, n_bands))) for method, n_bands in works]
 
 
-def idle_row(seconds: int = IDLE_SECONDS) -> Row | str:
-    """Milliseconds of CPU time per second in which nothing happens to a window; a text says why there is none."""
+def idle_row(seconds: int = IDLE_SECONDS, at_most: float = math.inf) -> Row | str:
+    """Milliseconds of CPU time per second in which nothing happens to a window; a text says why there is none.
+
+    at_most: seconds; a window is not opened if it is watched for longer.
+    """
+    if at_most < seconds:
+        return _row(IDLE, "green", ViewState().n_bands, None)
     command = [sys.executable, "-c", WATCHED_WINDOW, str(seconds)]
     patience = PATIENCE + seconds
     try:
@@ -216,5 +213,7 @@ def _environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
-def _row(method: str, light: str, n_bands: int | None, timing: Timing) -> Row:
+def _row(method: str, light: str, n_bands: int | None, timing: Timing | None) -> Row:
+    if timing is None:
+        return not_measured(SECTION, method, light, n_bands)
     return Row(section=SECTION, method=method, light=light, n_bands=n_bands, **timed(timing), note=NOTES[method])

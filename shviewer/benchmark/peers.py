@@ -241,7 +241,7 @@ def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: in
                     too_slow.add(contest)
                     rows.append(not_measured(SECTION, contest[0], light.name, n_bands, contest[1]).as_dict())
                     del works[contest]
-            for contest, timing in time_interleaved(works, budget=share, warm_up=0).items():
+            for contest, timing in time_interleaved(works, budget=share, warm_up=False).items():
                 row = Row(
                     section=SECTION,
                     light=light.name,

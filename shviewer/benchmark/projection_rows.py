@@ -162,7 +162,7 @@ def _measure_round(round_: Round, running: dict[Experiment, _Running], filling: 
         {experiment: work(experiment) for experiment in running},
         budget=AT_LEAST / 1000 * sum(state.cold for state in running.values()) + filling,
         at_least=AT_LEAST,
-        warm_up=0,
+        warm_up=False,
         before=before,
     )
     return [_row(round_, experiment, running[experiment], timing) for experiment, timing in timings.items()]

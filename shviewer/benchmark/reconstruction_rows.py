@@ -113,7 +113,7 @@ def reconstruction_rows(
                 step_turn += wall_milliseconds(work) / 1000
             turn += step_turn
             step = perf_counter() - start
-        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=0, before=before)
+        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=False, before=before)
     missing = [
         not_measured(SECTION, method, measured.name, n_bands)
         for n_bands in sorted(set(bands) - set(stages))

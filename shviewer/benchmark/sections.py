@@ -156,23 +156,16 @@ def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
 
     text = run.texts[0] if run.texts else experiments.LIGHTS[0]
     name = run.page.lights[0].name if run.texts else text
-    drawn = isinstance(drawing, Shader)
-    missing = [] if drawn else [f"pictures: nothing was drawn: {drawing}"]
+    missing = [] if isinstance(drawing, Shader) else [f"pictures: nothing was drawn: {drawing}"]
     at_least = QUICK_REPEATS if run.options.quick else 5
-    parts = (
-        ("pictures", end_to_end.session_rows, end_to_end.IN_SESSION if drawn else (), 0.4),
-        ("new processes", end_to_end.process_rows, end_to_end.IN_PROCESSES if drawn else (end_to_end.VERSION,), 0.5),
-    )
-    for what, rows_of, methods, share in parts:
+    parts = (("pictures", end_to_end.session_rows, 0.4), ("new processes", end_to_end.process_rows, 0.5))
+    for what, rows_of, share in parts:
         run.clock.tell(what)
-        if run.clock.left() > 0:
-            run.add(rows_of(text, name, drawing, budget=share * budget, at_least=at_least))
-        else:
-            run.add(end_to_end.rows_not_measured(name, methods))
+        at_most = run.clock.left()
+        run.add(rows_of(text, name, drawing, budget=share * budget, at_most=at_most, at_least=at_least))
     if run.options.budget >= IDLE_FROM and not run.options.quick and run.options.shader:
         run.clock.tell("an idle window")
-        in_time = run.clock.left() > 0
-        idle = end_to_end.idle_row() if in_time else end_to_end.rows_not_measured("green", (end_to_end.IDLE,))[0]
+        idle = end_to_end.idle_row(at_most=run.clock.left())
         if isinstance(idle, str):
             missing.append(f"an idle window: {idle}")
         else:

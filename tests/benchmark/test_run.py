@@ -207,7 +207,7 @@ def test_the_clock_tells_the_share_of_the_time_and_what_a_section_leaves_over_go
 
 
 def test_nothing_is_begun_after_the_time_is_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(end_to_end, "process_rows", lambda *rest, **options: pytest.fail("begun"))
+    monkeypatch.setattr(end_to_end.subprocess, "run", lambda *rest, **options: pytest.fail("begun"))
     options = Options(budget=1e-4, quick=True, sections=("projection", "end to end"), shader=False)
     summary = write_report(["green"], tmp_path, options)
     report = read_report(tmp_path / "report.json")

@@ -67,3 +67,20 @@ def test_what_is_fast_is_repeated_more_often_and_not_for_ever(taking: Callable[[
 def test_the_budget_ends_the_repeats(taking: Callable[[float], Callable[[], None]]) -> None:
     assert time_interleaved({"": taking(2**-6)}, budget=2**-3, at_least=1)[""].repeats == 8
     assert time_interleaved({"": taking(1.0)}, budget=2**-3, at_least=3)[""].repeats == 3
+
+
+def test_what_does_not_fit_by_its_warm_up_is_not_repeated_and_what_comes_after_the_time_not_begun(
+    taking: Callable[[float], Callable[[], None]],
+) -> None:
+    calls: list[str] = []
+
+    def work(name: str, seconds: float) -> Callable[[], object]:
+        take = taking(seconds)
+        return lambda: (calls.append(name), take())
+
+    works = {
+        name: work(name, seconds) for name, seconds in (("a", 1.0), ("b", 9.0), ("c", 2.0), ("d", 99.0), ("e", 1.0))
+    }
+    found = time_interleaved(works, budget=0.0, at_most=30.0, at_least=3)
+    assert {name: timing.repeats for name, timing in found.items()} == {"a": 3, "c": 3}
+    assert "".join(calls) == "abcd" + 3 * "ac"
