@@ -10,7 +10,7 @@ import pytest
 
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import Report, read_report
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.row import Row, not_measured
 from shviewer.errors import UsageError
 
 MACHINE = {"processor": "one", "processors": 2, "system": "Linux 6"}
@@ -82,6 +82,14 @@ def test_rows_are_matched_by_what_was_done_and_counted_otherwise() -> None:
     assert [change.after for change in found.changes] == [row()]
     assert (found.only_before, found.only_after) == (1, 2)
     assert "Only there: 1 rows; only here: 2." in found.as_markdown("old.json")
+
+
+def test_what_one_of_the_two_did_not_measure_is_not_compared() -> None:
+    unreached = not_measured("projection", "jittered", "green", 9, 100)
+    found = compare(report(row()), report(unreached))
+    assert (found.changes, found.only_before, found.only_after) == ((), 1, 0)
+    found = compare(report(unreached), report(row()))
+    assert (found.changes, found.only_before, found.only_after) == ((), 0, 1)
 
 
 def test_a_report_read_back_is_the_report(tmp_path: Path) -> None:

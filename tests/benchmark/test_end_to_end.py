@@ -153,3 +153,10 @@ def row_of_an_idle_window(monkeypatch: pytest.MonkeyPatch) -> Row | str:
 def test_times_are_of_the_program_as_installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     assert "PYTHONDONTWRITEBYTECODE" not in end_to_end._environment()
+
+
+def test_a_window_is_not_opened_where_there_is_no_time_to_watch_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(subprocess, "run", lambda *rest, **options: pytest.fail("opened"))
+    row = idle_row(seconds=4, at_most=3.9)
+    assert isinstance(row, Row)
+    assert (row.method, row.note) == (IDLE, "not measured")

@@ -38,6 +38,14 @@ def test_ours_is_measured_beside_whatever_peers_there_are() -> None:
     assert there >= {*peers.IMAGE_PEERS, *peers.SAMPLE_PEERS}
 
 
+def test_what_is_too_slow_for_the_budget_is_a_row_that_says_so() -> None:
+    answer = peers.measure(["film_studio"], [3, 9], 1e-6, 0)
+    ours = [Row.from_dict(row) for row in answer["rows"] if row["method"] == peers.OURS]
+    assert [(row.n_bands, row.samples, row.note) for row in ours] == [
+        (n_bands, samples, "not measured") for n_bands in (3, 9) for samples in (None, 10_000)
+    ]
+
+
 def test_sphericart_on_samples_does_what_we_do() -> None:
     pytest.importorskip("sphericart")
     samples = fibonacci(500)
