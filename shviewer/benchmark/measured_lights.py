@@ -49,6 +49,7 @@ def find_measured_lights(
 
 
 def measured_light(light: Light, tolerances: Sequence[float] = TOLERANCES, name: str = "") -> MeasuredLight:
+    """A light under its name or another, with its exact coefficients and what their first bands leave out."""
     exact, products = light.coefficients(MOST_BANDS), light.products()
     truncation = errors_by_band_count(products, exact / light.unit, exact / light.unit)
     needs = {tolerance: smallest_band_count(truncation, tolerance) for tolerance in tolerances}

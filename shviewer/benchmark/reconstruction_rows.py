@@ -132,16 +132,9 @@ def _with_times(rows: dict[Name, Row], stages: dict[int, _Stage], times: dict[Na
     for (method, n_bands), row in sorted(rows.items(), key=lambda item: item[0][1]):
         timing = times[method, n_bands]
         runs_per_million = 1e6 / stages[n_bands].directions_of(method) if row.note == PER_MILLION else 1.0
-        columns = timed(
-            Timing(
-                timing.median * runs_per_million,
-                timing.low_quartile * runs_per_million,
-                timing.high_quartile * runs_per_million,
-                timing.repeats,
-            )
-        )
+        low, middle, high = (t * runs_per_million for t in (timing.low_quartile, timing.median, timing.high_quartile))
         set_up = times[MAKING, n_bands].median if method == CACHED else None
-        done.append(replace(row, **columns, set_up_milliseconds=set_up))
+        done.append(replace(row, **timed(Timing(middle, low, high, timing.repeats)), set_up_milliseconds=set_up))
     return done
 
 
