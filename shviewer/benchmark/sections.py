@@ -22,9 +22,6 @@ from shviewer.errors import UsageError
 
 PEER_BANDS = (3, 9, 16, 32)
 QUICK_RECONSTRUCTED = (3, 16)
-IDLE_FROM = 60.0
-"""The idle window takes six seconds: only for budgets of at least so many."""
-
 QUICK_REPEATS = 3
 """Of what is slow, where five do not fit."""
 
@@ -158,12 +155,12 @@ def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
     name = run.page.lights[0].name if run.texts else text
     missing = [] if isinstance(drawing, Shader) else [f"pictures: nothing was drawn: {drawing}"]
     at_least = QUICK_REPEATS if run.options.quick else 5
-    parts = (("pictures", end_to_end.session_rows, 0.4), ("new processes", end_to_end.process_rows, 0.5))
+    parts = (("pictures", end_to_end.session_rows, 0.25), ("new processes", end_to_end.process_rows, 0.35))
     for what, rows_of, share in parts:
         run.clock.tell(what)
         at_most = run.clock.left()
         run.add(rows_of(text, name, drawing, budget=share * budget, at_most=at_most, at_least=at_least))
-    if run.options.budget >= IDLE_FROM and not run.options.quick and run.options.shader:
+    if not run.options.quick and run.options.shader:
         run.clock.tell("an idle window")
         idle = end_to_end.idle_row(at_most=run.clock.left())
         if isinstance(idle, str):
