@@ -13,7 +13,7 @@ from helpers import hear_signals, unavailable
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
 
 from shviewer.analysis.cache import MEMORY
-from shviewer.benchmark.subjects import Subject, subject_of
+from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
 from shviewer.errors import GraphicsError
 from shviewer.lights.find import find_light
 from shviewer.viewer.gl.renderer import Renderer
@@ -75,9 +75,9 @@ def renderer(session_renderer: Renderer) -> Iterator[Renderer]:
 
 
 @pytest.fixture(scope="session")
-def green() -> Subject:
+def green() -> MeasuredLight:
     """The light of the paper as a report sees it."""
-    return subject_of(find_light("green"))
+    return measured_light(find_light("green"))
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Who gets how much of a budget, and an honest word on how long it will still take."""
+"""The seconds of a run: how many each section gets, what is left of them, and how long it will still take."""
 
 from __future__ import annotations
 
@@ -6,14 +6,11 @@ from collections.abc import Callable, Mapping
 from time import perf_counter
 
 Progress = Callable[[float, float, str], object]
-"""Told the share that is done, 0 to 1, the seconds that are left, and what comes next."""
+"""Told the share of the time that has passed, 0 to 1, the seconds that are left at most, and what comes next."""
 
 SHARES = {"projection": 0.55, "reconstruction": 0.2, "end to end": 0.15, "peers": 0.1}
 STABILITY_SECONDS = 15.0
 """Beside the budget: the hard cases are what they are."""
-
-LEAST_KNOWN = 1.0
-"""Seconds that have to pass before the machine's pace is believed."""
 
 
 def allot(wanted: Mapping[str, bool], budget: float) -> dict[str, float]:
@@ -25,47 +22,35 @@ def allot(wanted: Mapping[str, bool], budget: float) -> dict[str, float]:
 
 
 class Clock:
-    """Turns the sections' own progress into that of the whole."""
+    """Tells each section how much time it has left, and the user how much the run has.
+
+    seconds: of each section. What one of them leaves over, or takes too much, is added to or taken from the next.
+    """
 
     def __init__(self, seconds: Mapping[str, float], progress: Progress | None) -> None:
-        self.seconds = dict(seconds)
+        self.waiting = dict(seconds)
         self.progress = progress
-        self.start = perf_counter()
-        self.done = 0.0
+        self.start = self.deadline = self.likely_end = perf_counter()
         self.current = ""
-        self.current_start = self.start
-
-    def elapsed(self) -> float:
-        """Seconds since the beginning."""
-        return perf_counter() - self.start
-
-    def pace(self) -> float:
-        """How many times as long as planned the finished sections took; at least 1."""
-        return max(1.0, (self.current_start - self.start) / self.done) if self.done else 1.0
 
     def begin(self, section: str) -> None:
         """Section by section, in any order; each once."""
-        self.done += self.seconds.pop(self.current, 0.0)
-        self.current, self.current_start = section, perf_counter()
-        self.tell(0.0, "")
+        own = self.waiting.pop(section)
+        self.current = section
+        self.deadline += own
+        self.likely_end = min(self.deadline, perf_counter() + own)
+        self.tell("")
 
-    def expect(self, seconds: float) -> None:
-        """The present section will take so long."""
-        self.seconds[self.current] = seconds
+    def left(self) -> float:
+        """Seconds until the present section has to end; below zero when its time is up."""
+        return self.deadline - perf_counter()
 
-    def tell(self, share: float, what: str) -> None:
-        """How much of the present section is done, 0 to 1, and what it does next.
-
-        What is left of it goes on at its own pace, once there is one; the other sections take what they were given.
-        """
+    def tell(self, what: str) -> None:
+        """What the present section does next."""
         if self.progress is None:
             return
-        planned, elapsed = self.seconds.get(self.current, 0.0), perf_counter() - self.current_start
-        known = share > 0 and elapsed > LEAST_KNOWN
-        rest = elapsed * (1 - share) / share if known else planned * (1 - share)
-        later = sum(seconds for name, seconds in self.seconds.items() if name != self.current)
-        passed = self.elapsed()
-        left = rest + later
+        now = perf_counter()
+        passed, left = now - self.start, max(0.0, self.likely_end - now) + sum(self.waiting.values())
         words = f"{self.current}: {what}" if what else self.current
         self.progress(passed / max(passed + left, 1e-9), left, words)
 

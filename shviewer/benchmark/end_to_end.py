@@ -5,6 +5,7 @@ Cold is a new process, Python's start included; warm is a process that has drawn
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -18,7 +19,7 @@ import moderngl
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.recipe import Recipe
 from shviewer.benchmark.hard_cases.shader import Shader
-from shviewer.benchmark.measurement import Measurement, timed
+from shviewer.benchmark.row import Row, not_measured, timed
 from shviewer.benchmark.timing import Timing, summarise, time_interleaved
 from shviewer.errors import GraphicsError
 from shviewer.viewer.actions import more_bands
@@ -90,19 +91,21 @@ except GraphicsError as error:
 Work = Callable[[], object]
 
 
-def process_rows(text: str, name: str, drawing: Shader | str, *, budget: float, at_least: int = 5) -> list[Measurement]:
+def process_rows(
+    text: str, name: str, drawing: Shader | str, *, budget: float, at_most: float = math.inf, at_least: int = 5
+) -> list[Row]:
     """New processes: `--version`, the floor of all, and a screenshot of the LIGHT `text`, which the rows call `name`.
 
-    drawing: what draws; a text says why nothing does, and then the screenshot is absent. budget: seconds.
+    drawing: what draws; a text says why nothing does, and then the screenshot is absent. budget: seconds. at_most: seconds
+    beyond which nothing is measured.
     """
     with tempfile.TemporaryDirectory() as folder:
         works = {VERSION: _process("--version")}
         if isinstance(drawing, Shader):
             works[SCREENSHOT] = _process("screenshot", str(Path(folder) / "out.png"), text)
-        times = time_interleaved(works, budget=budget, at_least=at_least)
-    return [_row(VERSION, "", None, times[VERSION])] + [
-        _row(SCREENSHOT, name, Recipe().n_bands, times[SCREENSHOT]) for _ in (0,) if SCREENSHOT in times
-    ]
+        times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least)
+    places = {VERSION: ("", None), SCREENSHOT: (name, Recipe.n_bands)}
+    return [_row(method, *places[method], times.get(method)) for method in works]
 
 
 def session_rows(
@@ -111,12 +114,14 @@ def session_rows(
     drawing: Shader | str,
     *,
     budget: float,
+    at_most: float = math.inf,
     key_bands: Sequence[int] = KEY_BANDS,
     at_least: int = 5,
-) -> list[Measurement]:
+) -> list[Row]:
     """In this process: the LIGHT `text` to its first picture, and Up to the next one. Every light is forgotten on the way.
 
     A picture is done when OpenGL says so, in the window's size and format, overlay included. No rows where nothing draws.
+    budget: seconds. at_most: seconds beyond which nothing is measured.
     """
     if isinstance(drawing, str):
         return []
@@ -137,13 +142,18 @@ def session_rows(
             if work[0] in (NEW_KEY, KNOWN_KEY):
                 session.upload(changed(start, n_bands=work[1] - 1))
 
-        times = time_interleaved(works, budget=budget, at_least=at_least, before=before)
+        times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least, before=before)
     MEMORY.clear()
-    return [_row(method, name, n_bands, timing) for (method, n_bands), timing in times.items()]
+    return [_row(method, name, n_bands, times.get((method, n_bands))) for method, n_bands in works]
 
 
-def idle_row(seconds: int = IDLE_SECONDS) -> Measurement | str:
-    """Milliseconds of CPU time per second in which nothing happens to a window; a text says why there is none."""
+def idle_row(seconds: int = IDLE_SECONDS, at_most: float = math.inf) -> Row | str:
+    """Milliseconds of CPU time per second in which nothing happens to a window; a text says why there is none.
+
+    at_most: seconds; a window is not opened if it is watched for longer.
+    """
+    if at_most < seconds:
+        return _row(IDLE, "green", Recipe.n_bands, None)
     command = [sys.executable, "-c", WATCHED_WINDOW, str(seconds)]
     patience = PATIENCE + seconds
     try:
@@ -155,7 +165,7 @@ def idle_row(seconds: int = IDLE_SECONDS) -> Measurement | str:
     if done.returncode:
         return (done.stderr.strip().splitlines() or [f"the window ended with {done.returncode}"])[-1]
     shares = [float(line) for line in done.stdout.split()]
-    return _row(IDLE, "green", Recipe().n_bands, summarise([1000 * share for share in shares]))
+    return _row(IDLE, "green", Recipe.n_bands, summarise([1000 * share for share in shares]))
 
 
 class _Session:
@@ -203,7 +213,7 @@ def _environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
-def _row(method: str, light: str, n_bands: int | None, timing: Timing) -> Measurement:
-    return Measurement(
-        section=SECTION, method=method, light=light, n_bands=n_bands, **timed(timing), note=NOTES[method]
-    )
+def _row(method: str, light: str, n_bands: int | None, timing: Timing | None) -> Row:
+    if timing is None:
+        return not_measured(SECTION, method, light, n_bands)
+    return Row(section=SECTION, method=method, light=light, n_bands=n_bands, **timed(timing), note=NOTES[method])

@@ -7,12 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from shviewer.benchmark.measurement import Measurement
 from shviewer.benchmark.reconstruction_rows import CACHED, DIRECT, MAP_32, SECTION
+from shviewer.benchmark.row import Row
 from shviewer.harmonics.metrics import PARSEVAL_FLOOR
 
 
-def where_bands_stop_paying(rows: Sequence[Measurement]) -> str:
+def where_bands_stop_paying(rows: Sequence[Row]) -> str:
     """One sentence on the rows of one light; "" where there are none.
 
     More bands stop paying where what they leave out falls below what the arithmetic adds; and, in the direct sum, where
@@ -37,7 +37,7 @@ def where_bands_stop_paying(rows: Sequence[Measurement]) -> str:
     return f"{last.light}: {'; '.join(parts)}."
 
 
-def _direct_sum(direct: list[Measurement]) -> list[str]:
+def _direct_sum(direct: list[Row]) -> list[str]:
     """Up to where the direct sum pays."""
     steps = list(pairwise(direct))
     paying = [_number(a.total_error) > _slowdown(a, b) * _number(b.total_error) for a, b in steps]
@@ -52,13 +52,13 @@ def _direct_sum(direct: list[Measurement]) -> list[str]:
     ]
 
 
-def _slowdown(a: Measurement, b: Measurement) -> float:
+def _slowdown(a: Row, b: Row) -> float:
     """How many times as long b takes; 1 where the quartiles overlap."""
     apart = _number(b.low_quartile) > _number(a.high_quartile)
     return _number(b.milliseconds) / _number(a.milliseconds) if apart else 1.0
 
 
-def _crossing(direct: list[Measurement], cached: list[Measurement]) -> list[str]:
+def _crossing(direct: list[Row], cached: list[Row]) -> list[str]:
     """From where on the cached map is the faster one."""
     by_bands = {row.n_bands: row for row in cached}
     faster = [row for row in direct if _slowdown(by_bands[row.n_bands], row) > 1]
@@ -71,11 +71,11 @@ def _crossing(direct: list[Measurement], cached: list[Measurement]) -> list[str]
     ]
 
 
-def _bands(row: Measurement) -> str:
+def _bands(row: Row) -> str:
     return f"{row.n_bands} band{'' if row.n_bands == 1 else 's'}"
 
 
-def _floor(row: Measurement) -> float:
+def _floor(row: Row) -> float:
     """Below this, what is left out cannot be told from rounding."""
     return max(_number(row.arithmetic_error), PARSEVAL_FLOOR)
 

@@ -64,12 +64,8 @@ class Method:
     takes_samples: bool = True
     random: bool = False
     """Another seed gives another result."""
-    separable: bool = False
-    """A pass over the values does not cost more with more bands, hardly."""
-
-    def project(self, light: Light, samples: int, seed: int, n_bands: int) -> Array:
-        """Coefficients (n_bands**2, 3), prepared and run."""
-        return self.prepare(light, samples, seed, n_bands).project()
+    points: Callable[[Light], int] = lambda light: 0
+    """Of a method without samples: how many it sums one by one; 0 where it is about as fast as the best way."""
 
     def words_for(self, light_best: str) -> str:
         """The best way is called what the light calls it."""
@@ -87,8 +83,9 @@ def _best(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
     return Prepared(lambda: copy(light).coefficients(n_bands), None)
 
 
-def texel_count(light: EnvironmentLight) -> int:
-    """Those that show something."""
+def texel_count(light: Light) -> int:
+    """How many texels of an image show something."""
+    assert isinstance(light, EnvironmentLight)
     solid_angles = light.layout.solid_angles()
     return int(np.count_nonzero(solid_angles) * (light.pixels.shape[1] // solid_angles.shape[1]))
 
@@ -182,14 +179,12 @@ METHODS: tuple[Method, ...] = (
         "Gauss-Legendre",
         "Gauss-Legendre rows, equidistant azimuths, summed separably",
         _on_product(gauss_legendre),
-        separable=True,
     ),
     Method(
         "fejer",
         "Fejer lat-long",
         "a lat-long grid with the weights that make it exact, summed separably",
         _on_product(fejer),
-        separable=True,
     ),
     Method(
         "fibonacci",
@@ -218,6 +213,7 @@ METHODS: tuple[Method, ...] = (
         _per_texel,
         _is_image,
         takes_samples=False,
+        points=texel_count,
     ),
     Method(
         "half",
@@ -226,7 +222,6 @@ METHODS: tuple[Method, ...] = (
         _reduced(2),
         _divides(2),
         takes_samples=False,
-        separable=True,
     ),
     Method(
         "quarter",
@@ -235,7 +230,6 @@ METHODS: tuple[Method, ...] = (
         _reduced(4),
         _divides(4),
         takes_samples=False,
-        separable=True,
     ),
 )
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from shviewer.benchmark.experiments import BEST, PAPER, PAPER_SAMPLES, method
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.measured_lights import MOST_BANDS, MeasuredLight
 from shviewer.benchmark.page.tables import milliseconds, percent
-from shviewer.benchmark.subjects import MOST_BANDS, Subject
+from shviewer.benchmark.row import Row
 from shviewer.harmonics.metrics import PARSEVAL_FLOOR, pareto_front
 from shviewer.words import grouped
 
 
-def front_of(rows: Sequence[Measurement], accuracy: float = 0.0) -> list[Measurement]:
+def front_of(rows: Sequence[Row], accuracy: float = 0.0) -> list[Row]:
     """The front of one light's projections: milliseconds against the total error.
 
     Errors that rounding or the reference's own accuracy cannot tell apart count as equal, and so do times whose quartiles
@@ -28,27 +28,27 @@ def front_of(rows: Sequence[Measurement], accuracy: float = 0.0) -> list[Measure
     return [row for i, row in enumerate(front) if not any(alike(row, better) for better in front[i + 1 :])]
 
 
-def sentences(subject: Subject, rows: Sequence[Measurement]) -> list[str]:
+def sentences(measured: MeasuredLight, rows: Sequence[Row]) -> list[str]:
     """One per tolerance: what reaches it at the least cost, and what the paper's samples do there.
 
     rows: the projections of this light. Tolerances that no number of bands reaches share a sentence.
     """
     found = []
-    for tolerance in sorted(subject.needs, reverse=True):
-        needed = subject.needs[tolerance]
+    for tolerance in sorted(measured.needs, reverse=True):
+        needed = measured.needs[tolerance]
         if needed is None:
-            less = "" if tolerance == min(subject.needs) else " or less"
-            left = percent(float(subject.truncation[-1]))
+            less = "" if tolerance == min(measured.needs) else " or less"
+            left = percent(float(measured.truncation[-1]))
             found.append(
                 f"for {percent(tolerance)} relative L2{less}: this light needs more than {MOST_BANDS} bands, whatever the"
                 f" method: {MOST_BANDS} leave {left}."
             )
             break
-        found.append(_sentence(subject, tolerance, needed, rows))
+        found.append(_sentence(measured, tolerance, needed, rows))
     return found
 
 
-def _sentence(subject: Subject, tolerance: float, needed: int, rows: Sequence[Measurement]) -> str:
+def _sentence(measured: MeasuredLight, tolerance: float, needed: int, rows: Sequence[Row]) -> str:
     goal = f"for {percent(tolerance)} relative L2: "
     good = [
         row
@@ -61,11 +61,11 @@ def _sentence(subject: Subject, tolerance: float, needed: int, rows: Sequence[Me
     good = [row for row in good if row.n_bands == fewest]
     winner = min(good, key=lambda row: (row.milliseconds, row.total_error))
     winner = next((row for row in good if row.method == BEST and alike(row, winner)), winner)
-    answer = f"{goal}{bands(fewest)}, {name_of(winner, subject)}, {milliseconds(winner.milliseconds)} ms"
+    answer = f"{goal}{bands(fewest)}, {name_of(winner, measured)}, {milliseconds(winner.milliseconds)} ms"
     answer += f", which leaves {percent(winner.total_error)}"
     rivals = [row for row in rows if row.n_bands == winner.n_bands and row is not winner]
     best = next((row for row in rivals if row.method == BEST), None)
-    others = [f"{subject.light.best_method} takes {_times(best, winner)}"] if best is not None else []
+    others = [f"{measured.light.best_method} takes {_times(best, winner)}"] if best is not None else []
     paper = next((row for row in rivals if row.method == PAPER and row.samples == PAPER_SAMPLES), None)
     if paper is not None and paper.total_error is not None:
         end = "stop at" if paper.total_error > tolerance else "reach"
@@ -76,7 +76,7 @@ def _sentence(subject: Subject, tolerance: float, needed: int, rows: Sequence[Me
     return "; ".join([answer, *others]) + "."
 
 
-def _times(row: Measurement, other: Measurement) -> str:
+def _times(row: Row, other: Row) -> str:
     """How many times as long; nothing where the quartiles of the two overlap."""
     if row.milliseconds is None or not other.milliseconds:
         return "an unknown time"
@@ -86,7 +86,7 @@ def _times(row: Measurement, other: Measurement) -> str:
     return f"{ratio:.2g} times as long" if ratio < 10 else f"{ratio:.0f} times as long"
 
 
-def alike(first: Measurement, second: Measurement) -> bool:
+def alike(first: Row, second: Row) -> bool:
     """Whether the quartiles of two times overlap. Times without quartiles are taken at their word."""
     ends = (first.low_quartile, first.high_quartile, second.low_quartile, second.high_quartile)
     if any(end is None for end in ends):
@@ -95,9 +95,9 @@ def alike(first: Measurement, second: Measurement) -> bool:
     return low <= other_high and other_low <= high
 
 
-def name_of(row: Measurement, subject: Subject) -> str:
+def name_of(row: Row, measured: MeasuredLight) -> str:
     """The method in words, with its samples."""
-    words = method(row.method).words_for(subject.light.best_method)
+    words = method(row.method).words_for(measured.light.best_method)
     return words if row.samples is None else f"{words}, {grouped(row.samples)} samples"
 
 

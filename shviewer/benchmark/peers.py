@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.benchmark.experiments import lat_long_texels
-from shviewer.benchmark.measurement import Measurement, timed
+from shviewer.benchmark.row import Row, not_measured, timed
 from shviewer.benchmark.timing import time_interleaved, wall_milliseconds
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
@@ -184,9 +184,7 @@ def available(makers: dict[str, Callable[[], Any]], missing: Callable[[str, str]
     return found
 
 
-def peer_rows(
-    lights: Sequence[str], bands: Sequence[int], budget: float, seed: int
-) -> tuple[list[Measurement], list[str]]:
+def peer_rows(lights: Sequence[str], bands: Sequence[int], budget: float, seed: int) -> tuple[list[Row], list[str]]:
     """Rows measured by a process with one thread, and what was missing. Lights are named by text.
 
     UsageError if the process fails.
@@ -201,7 +199,7 @@ def peer_rows(
             last = (done.stderr.strip().splitlines() or ["no message"])[-1]
             raise UsageError(f"--peers: measuring them failed: {last}; leave --peers out, or reinstall them: {INSTALL}")
         answer = json.loads(out.read_text(encoding="utf-8"))
-    return [Measurement.from_dict(row) for row in answer["rows"]], [str(line) for line in answer["missing"]]
+    return [Row.from_dict(row) for row in answer["rows"]], [str(line) for line in answer["missing"]]
 
 
 def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: int) -> dict[str, list[Any]]:
@@ -227,6 +225,7 @@ def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: in
                 where = f"{contest[0]}, {light.name}, {n_bands} bands"
                 if contest in too_slow:
                     missing.append(f"{where}: too slow for the budget with fewer bands")
+                    rows.append(not_measured(SECTION, contest[0], light.name, n_bands, contest[1]).as_dict())
                     del works[contest]
                     continue
                 try:
@@ -240,9 +239,10 @@ def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: in
                         f"{where}: too slow for the budget, one run takes about {first[contest] / 1000:.1g} s"
                     )
                     too_slow.add(contest)
+                    rows.append(not_measured(SECTION, contest[0], light.name, n_bands, contest[1]).as_dict())
                     del works[contest]
-            for contest, timing in time_interleaved(works, budget=share, warm_up=0).items():
-                row = Measurement(
+            for contest, timing in time_interleaved(works, budget=share, warm_up=False).items():
+                row = Row(
                     section=SECTION,
                     light=light.name,
                     method=contest[0],

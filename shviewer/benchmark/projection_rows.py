@@ -1,7 +1,8 @@
 """Measuring projections: methods x samples x bands of every light, time against the error of the coefficients.
 
-One group is a light with one number of bands; all its experiments take turns, so that their times can be compared. Random
-methods draw new samples for each of the first SEEDS repeats, outside the clock, which gives time and spread in one go.
+One round is a light with one number of bands and one number of samples; all its experiments take turns, so that their times
+can be compared. Rounds come smallest first, until the time is up. Random methods draw new samples for each of the first SEEDS
+repeats, outside the clock, which gives time and spread in one go.
 """
 
 from __future__ import annotations
@@ -14,162 +15,133 @@ from time import perf_counter
 
 import numpy as np
 
-from shviewer.benchmark import costs
 from shviewer.benchmark.experiments import BEST, METHODS, PAPER, PAPER_SAMPLES, Method, Prepared
-from shviewer.benchmark.measurement import Measurement, timed
-from shviewer.benchmark.subjects import Subject
+from shviewer.benchmark.measured_lights import MeasuredLight
+from shviewer.benchmark.row import Row, not_measured, timed
 from shviewer.benchmark.timing import Timing, time_interleaved, wall_milliseconds
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import relative, squared_error
 from shviewer.lights.light import Light
-from shviewer.words import grouped
 
 SECTION = "projection"
 SEEDS = 5
 AT_LEAST = 5
 """Repeats. Each experiment is run twice more: cold, and for its memory."""
 
-RUNS = AT_LEAST + 2
 SET_UPS, SHORT = 3, 50.0
 """Setting up is timed so often, if all but the last take less than so many milliseconds."""
 
-FILLING = 1.0
-"""Seconds that a group may spend on more repeats of what is fast."""
+FILLING = 0.1
+"""Seconds that a round may spend on more repeats of what is fast."""
 
 Experiment = tuple[Method, int | None]
-Omission = tuple[Experiment, str, int]
-"""What was left out, of which light, with how many bands."""
-
-Measured = Callable[[list[Measurement]], object]
-Tell = Callable[[float, str], object]
-"""Told how much of the section is done, 0 to 1, and what comes next."""
+Add = Callable[[list[Row]], object]
 
 
-@dataclass
-class Group:
-    """A light, a number of bands, and what is run: with the seconds that each experiment is expected to take in all."""
+@dataclass(frozen=True, eq=False)
+class Round:
+    """A light, a number of bands, and what takes turns: methods with one number of samples."""
 
-    subject: Subject
+    measured: MeasuredLight
     n_bands: int
-    seconds: dict[Experiment, float] = field(default_factory=dict)
-    kept_last: frozenset[Experiment] = frozenset()
-    """What an answer to "what to use" needs, left out only if nothing else is left."""
-
-    def total(self) -> float:
-        return sum(self.seconds.values()) + min(FILLING, 0.05 * len(self.seconds))
+    experiments: list[Experiment] = field(default_factory=list)
 
 
 def plan(
-    subjects: Sequence[Subject], bands: Sequence[int], samples: Sequence[int], methods: Sequence[str] = ()
-) -> list[Group]:
-    """Every experiment, each light with its own band counts for the tolerances added, there to PAPER_SAMPLES at most.
+    lights: Sequence[MeasuredLight], bands: Sequence[int], samples: Sequence[int], methods: Sequence[str] = ()
+) -> list[Round]:
+    """Every experiment, smallest first: by samples, then by bands, then light by light.
 
-    methods: names, to which BEST is added; none for all.
+    Each light has its own band counts for the tolerances added, there to PAPER_SAMPLES at most. methods: names, to which
+    BEST is added; none for all.
     """
     chosen = [method for method in METHODS if not methods or method.name in (BEST, *methods)]
-    groups = []
-    for subject in subjects:
-        evaluation = costs.evaluation_seconds(subject.light)
-        needed = {n for n in subject.needs.values() if n is not None}
-        for n_bands in sorted({*bands, *needed}):
-            group = Group(subject, n_bands)
+    rounds: dict[tuple[int, int, int], Round] = {}
+    for number, measured in enumerate(lights):
+        needed = {n for n in measured.needs.values() if n is not None}
+        for n_bands in {*bands, *needed}:
             counts = samples if n_bands in bands else [n for n in samples if n <= PAPER_SAMPLES]
             counts = sorted({*counts, PAPER_SAMPLES}) if n_bands in needed else counts
             for method in chosen:
-                if not method.applies(subject.light):
+                if not method.applies(measured.light):
                     continue
                 for count in counts if method.takes_samples else (None,):
-                    run = costs.run_seconds(method, subject.light, count, n_bands, evaluation)
-                    making = costs.set_up_seconds(method, count) * (RUNS if method.random else 2)
-                    group.seconds[method, count] = RUNS * run + making
-            group.kept_last = frozenset(
-                (method, count)
-                for method, count in group.seconds
-                if n_bands in needed and (method.name == BEST or (method.name == PAPER and count == PAPER_SAMPLES))
-            )
-            groups.append(group)
-    return groups
+                    place = _size(method, measured.light, count), n_bands, number
+                    rounds.setdefault(place, Round(measured, n_bands)).experiments.append((method, count))
+    return [rounds[place] for place in sorted(rounds)]
 
 
-def fit(groups: Sequence[Group], budget: float) -> list[Omission]:
-    """Leave out the longest experiments until the rest fits `budget` seconds; returns what was left out.
-
-    Repeats have been cut to AT_LEAST already: what remains of the budget is filled with more of them.
-    """
-    total = sum(group.total() for group in groups)
-    everything = [
-        (experiment in group.kept_last, -seconds, number, experiment)
-        for number, group in enumerate(groups)
-        for experiment, seconds in group.seconds.items()
-    ]
-    left_out = []
-    for _, _, number, experiment in sorted(everything, key=lambda item: item[:3]):
-        if total <= budget:
-            break
-        group = groups[number]
-        before = group.total()
-        del group.seconds[experiment]
-        total += group.total() - before
-        left_out.append((experiment, group.subject.name, group.n_bands))
-    return left_out
-
-
-def describe(left_out: Sequence[Omission]) -> list[str]:
-    """A line per experiment: where it is missing."""
-    bands: dict[str, dict[str, list[int]]] = {}
-    for (method, samples), light, n_bands in left_out:
-        words = method.words if samples is None else f"{method.words} {grouped(samples)}"
-        bands.setdefault(words, {}).setdefault(light, []).append(n_bands)
-    return [
-        f"{words}: {'; '.join(f'{light}, {_listed(counts)} bands' for light, counts in sorted(lights.items()))}"
-        for words, lights in bands.items()
-    ]
-
-
-def _listed(counts: Sequence[int]) -> str:
-    return " ".join(map(str, sorted(counts)))
+def _size(method: Method, light: Light, samples: int | None) -> int:
+    """Points to be summed. The paper's take their turns with the best way, which they are compared with first of all."""
+    if samples is None:
+        return method.points(light)
+    return 0 if (method.name, samples) == (PAPER, PAPER_SAMPLES) else samples
 
 
 def measure(
-    groups: Sequence[Group], budget: float, seed: int, measured: Measured, tell: Tell, filling: float = FILLING
-) -> list[Omission]:
-    """Run the groups; `measured` gets the rows of each as soon as they are there. Returns what was left out on the way.
+    rounds: Sequence[Round],
+    left: Callable[[], float],
+    seed: int,
+    add: Add,
+    tell: Callable[[str], object],
+    filling: float = FILLING,
+) -> None:
+    """Run the rounds while there is time; `add` gets the rows of each, and those of what was not measured, as soon as they are
+    there.
 
-    filling: seconds that a group may spend on repeats beyond AT_LEAST, where the budget has them. Where the machine is
-    slower than the table, later groups are cut to what is left of the `budget`, in seconds.
+    left: says how many seconds there still are. filling: seconds that a round may spend on repeats beyond AT_LEAST. An
+    experiment is begun if it fits into what is left should it take as long as the next smaller one of its method and light,
+    in proportion to the samples; one that has none is run once to know.
     """
-    start = perf_counter()
-    left_out: list[Omission] = []
-    planned = [group.total() for group in groups]
-    for number, group in enumerate(groups):
-        tell(sum(planned[:number]) / max(sum(planned), 1e-9), f"{group.subject.name}, {group.n_bands} bands")
-        elapsed, done, to_do = perf_counter() - start, sum(planned[:number]), sum(planned[number:])
-        allowed = max(0.0, budget - elapsed) * planned[number] / max(to_do, 1e-9)
-        pace = max(0.25, elapsed / done) if done > 0.5 else 1.0
-        if group.total() * pace > 1.3 * allowed:
-            left_out += fit([group], allowed / pace)
-        if group.seconds:
-            spare = allowed - pace * sum(group.seconds.values())
-            measured(_measure_group(group, min(filling, max(0.0, spare)), seed))
-    tell(1.0, "")
-    return left_out
+    known: dict[tuple[str, Experiment, int], float] = {}
+    for round_ in rounds:
+        name, n_bands = round_.measured.name, round_.n_bands
+        tell(f"{name}, {n_bands} bands")
+        running: dict[Experiment, _Running] = {}
+        reserved = 0.0
+        for experiment in round_.experiments:
+            if reserved + _expected(known, name, experiment, n_bands) >= left():
+                continue
+            cold = _cold(experiment, round_.measured.light, n_bands, seed)
+            known[name, experiment, n_bands] = (AT_LEAST + 2) * cold / 1000
+            rest = (AT_LEAST + 1) * cold / 1000
+            if reserved + rest < left():
+                running[experiment] = _warm(experiment, round_.measured.light, n_bands, seed, cold)
+                reserved += rest
+        if running:
+            add(_measure_round(round_, running, max(0.0, min(filling, left() - reserved)), seed))
+        skipped = [experiment for experiment in round_.experiments if experiment not in running]
+        if skipped:
+            add([not_measured(SECTION, method.name, name, n_bands, samples) for method, samples in skipped])
+
+
+def _expected(
+    known: dict[tuple[str, Experiment, int], float], light: str, experiment: Experiment, n_bands: int
+) -> float:
+    """Seconds; 0 where nothing smaller has been run."""
+    method, samples = experiment
+    smaller = [
+        seconds * ((samples or 1) / (count or 1))
+        for (name, (other, count), bands), seconds in known.items()
+        if name == light and other is method and (count or 0) <= (samples or 0) and bands <= n_bands
+    ]
+    return smaller[-1] if smaller else 0.0
 
 
 @dataclass
 class _Running:
-    """One experiment while its group runs."""
+    """One experiment while its round runs."""
 
     prepared: Prepared
     cold: float
     """Milliseconds of setting up and projecting once."""
     peak_mib: float
     found: list[Array] = field(default_factory=list)
-    """Of the first repeats; one is enough where nothing is random."""
+    """Coefficients of the first repeats; one is enough where nothing is random."""
 
 
-def _measure_group(group: Group, filling: float, seed: int) -> list[Measurement]:
-    light, n_bands = group.subject.light, group.n_bands
-    running = {experiment: _set_up(experiment, light, n_bands, seed) for experiment in group.seconds}
+def _measure_round(round_: Round, running: dict[Experiment, _Running], filling: float, seed: int) -> list[Row]:
+    light, n_bands = round_.measured.light, round_.n_bands
 
     def before(experiment: Experiment, repeat: int) -> None:
         method, samples = experiment
@@ -188,16 +160,16 @@ def _measure_group(group: Group, filling: float, seed: int) -> list[Measurement]
 
     timings = time_interleaved(
         {experiment: work(experiment) for experiment in running},
-        budget=AT_LEAST / RUNS * sum(group.seconds.values()) + filling,
+        budget=AT_LEAST / 1000 * sum(state.cold for state in running.values()) + filling,
         at_least=AT_LEAST,
-        warm_up=0,
+        warm_up=False,
         before=before,
     )
-    return [_row(group, experiment, running[experiment], timing) for experiment, timing in timings.items()]
+    return [_row(round_, experiment, running[experiment], timing) for experiment, timing in timings.items()]
 
 
-def _set_up(experiment: Experiment, light: Light, n_bands: int, seed: int) -> _Running:
-    """Samples and tables made anew and timed, then once more, warm, for the memory. This is the warm-up, too."""
+def _cold(experiment: Experiment, light: Light, n_bands: int, seed: int) -> float:
+    """Milliseconds of one run with samples and tables made anew. This is the warm-up, too."""
     method, samples = experiment
     cold: list[float] = []
     while len(cold) < (SET_UPS if sum(cold) < SHORT else 1):
@@ -209,6 +181,12 @@ def _set_up(experiment: Experiment, light: Light, n_bands: int, seed: int) -> _R
             making = 0.0  # nothing is made: a function's evaluations were counted
         cold.append(making + wall_milliseconds(prepared.project))
         del prepared
+    return float(np.median(cold))
+
+
+def _warm(experiment: Experiment, light: Light, n_bands: int, seed: int, cold: float) -> _Running:
+    """Once more, for the memory."""
+    method, samples = experiment
     tracemalloc.start()
     try:
         prepared = method.prepare(light, samples or 0, seed, n_bands)
@@ -217,7 +195,7 @@ def _set_up(experiment: Experiment, light: Light, n_bands: int, seed: int) -> _R
         peak = tracemalloc.get_traced_memory()[1] / 2**20
     finally:
         tracemalloc.stop()
-    return _Running(prepared, float(np.median(cold)), peak)
+    return _Running(prepared, cold, peak)
 
 
 def forget_tables() -> None:
@@ -231,30 +209,30 @@ def forget_tables() -> None:
 
 @dataclass(frozen=True)
 class Errors:
-    """Of one projection, all relative: see Measurement."""
+    """Of one projection, all relative: see Row."""
 
     error: float
     truncation: float
     total: float
 
 
-def errors_of(subject: Subject, coefficients: Array) -> Errors:
+def errors_of(measured: MeasuredLight, coefficients: Array) -> Errors:
     """Coefficients (n_bands**2, 3) against the light's own, by the metrics of the window."""
-    norm, exact = subject.products.diagonal(), subject.exact[: len(coefficients)]
+    norm, exact = measured.products.diagonal(), measured.exact[: len(coefficients)]
     left_out, added = squared_error(norm, exact, coefficients)
     return Errors(relative(added, (exact**2).sum(axis=0)), relative(left_out, norm), relative(left_out + added, norm))
 
 
-def _row(group: Group, experiment: Experiment, state: _Running, timing: Timing) -> Measurement:
+def _row(round_: Round, experiment: Experiment, state: _Running, timing: Timing) -> Row:
     method, samples = experiment
-    found = [errors_of(group.subject, coefficients) for coefficients in state.found]
+    found = [errors_of(round_.measured, coefficients) for coefficients in state.found]
     errors = [each.error for each in found]
     reference = method.name == BEST
-    return Measurement(
+    return Row(
         section=SECTION,
-        light=group.subject.name,
+        light=round_.measured.name,
         method=method.name,
-        n_bands=group.n_bands,
+        n_bands=round_.n_bands,
         samples=samples,
         evaluations=state.prepared.evaluations,
         **timed(timing),
@@ -262,9 +240,9 @@ def _row(group: Group, experiment: Experiment, state: _Running, timing: Timing) 
         error=None if reference else float(np.median(errors)),
         error_low=min(errors) if method.random else None,
         error_high=max(errors) if method.random else None,
-        reference_accuracy=group.subject.light.accuracy(),
+        reference_accuracy=round_.measured.light.accuracy(),
         truncation=found[0].truncation,
         total_error=found[0].truncation if reference else float(np.median([each.total for each in found])),
         peak_mib=state.peak_mib,
-        note=f"the reference: {group.subject.light.best_method}" if reference else "",
+        note=f"the reference: {round_.measured.light.best_method}" if reference else "",
     )

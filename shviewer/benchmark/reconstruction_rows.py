@@ -6,17 +6,20 @@ Both are relative to the norm of the light, so that they compare: where they mee
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
+from time import perf_counter
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.benchmark.hard_cases.shader import Shader
-from shviewer.benchmark.measurement import Measurement, timed
-from shviewer.benchmark.subjects import Subject
-from shviewer.benchmark.timing import Timing, time_interleaved
+from shviewer.benchmark.measured_lights import MeasuredLight
+from shviewer.benchmark.row import Row, not_measured, timed
+from shviewer.benchmark.timing import Timing, time_interleaved, wall_milliseconds
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
@@ -40,6 +43,7 @@ MAP_SIZE = (1025, 2048)
 DIRECT, CACHED = "shader, direct sum", "shader, cached map"
 SCATTERED, BASIS = "CPU, scattered", "CPU, basis matrix"
 MAP_64, MAP_32 = "CPU, map float64", "CPU, map float32"
+CPU = (SCATTERED, BASIS, MAP_64, MAP_32)
 MAKING = "making the map"
 """Not a row: the set-up of CACHED, uploading included."""
 
@@ -66,68 +70,87 @@ Work = Callable[[], object]
 
 
 def reconstruction_rows(
-    subject: Subject, drawing: Shader | str, *, budget: float, bands: Sequence[int] = BANDS, at_least: int = 3
-) -> list[Measurement]:
+    measured: MeasuredLight,
+    drawing: Shader | str,
+    *,
+    budget: float,
+    at_most: float = math.inf,
+    bands: Sequence[int] = BANDS,
+    at_least: int = 3,
+) -> list[Row]:
     """Every evaluation of the light at every band count. LightError if it is too dim or too bright to be drawn.
 
     drawing: what draws; a text says why nothing does, and then the rows of the shader are absent. budget: seconds for all
     timings, passed only to reach `at_least` runs of each; the errors, which warm everything up, take a few seconds more.
+    at_most: seconds for everything. Band counts come smallest first, and one is not begun, and its rows are not measured, if
+    it does not fit into them should it take as long as the one before.
     """
-    stages = {n_bands: _Stage(subject, n_bands) for n_bands in bands}
-    rows: dict[Name, Measurement] = {}
+    begun = perf_counter()
+    stages: dict[int, _Stage] = {}
+    rows: dict[Name, Row] = {}
     works: dict[Name, Work] = {}
-    for n_bands, stage in stages.items():
-        rows |= {(method, n_bands): stage.row(method, error) for method, error in stage.errors().items()}
-        works |= {(method, n_bands): work for method, work in stage.works().items()}
-    if isinstance(drawing, str):
-        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=0)
-        return _with_times(rows, stages, times)
-    with offscreen(drawing.renderer, FRAME) as target:
-        frame = _Frame(drawing.renderer, target)
-        for n_bands, stage in stages.items():
-            rows |= {(method, n_bands): stage.row(method, error) for method, error in frame.errors(stage).items()}
-            works |= {(method, n_bands): work for method, work in frame.works(stage).items()}
+    turn = step = step_turn = 0.0  # seconds: of one run of every work; of the last band count, alone and of its works
+    with offscreen(drawing.renderer, FRAME) if isinstance(drawing, Shader) else nullcontext() as target:
+        frame = _Frame(drawing.renderer, target) if isinstance(drawing, Shader) and target is not None else None
 
         def before(name: Name, repeat: int) -> None:
-            frame.be_ready_for(name[0], stages[name[1]])
+            if frame is not None:
+                frame.be_ready_for(name[0], stages[name[1]])
 
-        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=0, before=before)
-    return _with_times(rows, stages, times)
+        for n_bands in sorted(bands):
+            start = perf_counter()
+            if start - begun + step + at_least * (turn + step_turn) >= at_most:
+                break
+            stage = stages[n_bands] = _Stage(measured, n_bands)
+            errors, own = stage.errors(), stage.works()
+            if frame is not None:
+                errors |= frame.errors(stage)
+                own |= frame.works(stage)
+            rows |= {(method, n_bands): stage.row(method, error) for method, error in errors.items()}
+            works |= {(method, n_bands): work for method, work in own.items()}
+            step_turn = 0.0
+            for method, work in own.items():
+                before((method, n_bands), -1)
+                step_turn += wall_milliseconds(work) / 1000
+            turn += step_turn
+            step = perf_counter() - start
+        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=False, before=before)
+    missing = [
+        not_measured(SECTION, method, measured.name, n_bands)
+        for n_bands in sorted(set(bands) - set(stages))
+        for method in (*CPU, *(_shader_methods(n_bands) if isinstance(drawing, Shader) else ()))
+    ]
+    return _with_times(rows, stages, times) + missing
 
 
-def _with_times(
-    rows: dict[Name, Measurement], stages: dict[int, _Stage], times: dict[Name, Timing]
-) -> list[Measurement]:
+def _shader_methods(n_bands: int) -> tuple[str, ...]:
+    return (CACHED, DIRECT) if n_bands <= MAX_DIRECT_BANDS else (CACHED,)
+
+
+def _with_times(rows: dict[Name, Row], stages: dict[int, _Stage], times: dict[Name, Timing]) -> list[Row]:
     """By band count, then by method."""
     done = []
     for (method, n_bands), row in sorted(rows.items(), key=lambda item: item[0][1]):
         timing = times[method, n_bands]
         runs_per_million = 1e6 / stages[n_bands].directions_of(method) if row.note == PER_MILLION else 1.0
-        columns = timed(
-            Timing(
-                timing.median * runs_per_million,
-                timing.low_quartile * runs_per_million,
-                timing.high_quartile * runs_per_million,
-                timing.repeats,
-            )
-        )
+        low, middle, high = (t * runs_per_million for t in (timing.low_quartile, timing.median, timing.high_quartile))
         set_up = times[MAKING, n_bands].median if method == CACHED else None
-        done.append(replace(row, **columns, set_up_milliseconds=set_up))
+        done.append(replace(row, **timed(Timing(middle, low, high, timing.repeats)), set_up_milliseconds=set_up))
     return done
 
 
 class _Stage:
     """One light with one band count: what is evaluated, on the CPU and how exactly."""
 
-    def __init__(self, subject: Subject, n_bands: int) -> None:
-        picture = prepare(state_of(subject.light, n_bands=n_bands))
-        light = subject.light
+    def __init__(self, measured: MeasuredLight, n_bands: int) -> None:
+        picture = prepare(state_of(measured.light, n_bands=n_bands))
+        light = measured.light
         self.n_bands = n_bands
-        self.light_name = subject.name
+        self.light_name = measured.name
         self.coefficients = picture.coefficients
         self.direct = replace(picture, drawn=DirectSum(picture.coefficients), light_from_world=np.eye(3))
         self.synthesis = Synthesis(picture.coefficients)
-        self.truncation = float(subject.truncation[n_bands - 1])
+        self.truncation = float(measured.truncation[n_bands - 1])
         self.rms = float(np.sqrt(np.trace(light.products()) / (4 * np.pi)))
         count = min(MOST_DIRECTIONS, MOST_VALUES // self.n_bands**2)
         vectors = np.random.default_rng(SEED).normal(size=(count, 3))
@@ -195,9 +218,9 @@ class _Stage:
             MAP_32: self.map,
         }
 
-    def row(self, method: str, arithmetic_error: float | None) -> Measurement:
+    def row(self, method: str, arithmetic_error: float | None) -> Row:
         """Without its times."""
-        return Measurement(
+        return Row(
             section=SECTION,
             method=method,
             light=self.light_name,
@@ -227,8 +250,8 @@ class _Frame:
         self.normals = np.stack([right, up, facing], axis=-1)[self.inside]
 
     def works(self, stage: _Stage) -> dict[str, Work]:
-        works: dict[str, Work] = {MAKING: lambda: self.make_map(stage), CACHED: self.draw}
-        return works | ({DIRECT: self.draw} if stage.n_bands <= MAX_DIRECT_BANDS else {})
+        works: dict[str, Work] = {MAKING: lambda: self.make_map(stage)}
+        return works | dict.fromkeys(_shader_methods(stage.n_bands), self.draw)
 
     def be_ready_for(self, method: str, stage: _Stage) -> None:
         """Show what is going to be drawn, which is not timed."""
@@ -250,10 +273,8 @@ class _Frame:
 
     def errors(self, stage: _Stage) -> dict[str, float]:
         """By method."""
-        pictures = {CACHED: stage.on_a_map()}
-        if stage.n_bands <= MAX_DIRECT_BANDS:
-            pictures[DIRECT] = stage.direct
-        return {method: self._error(stage, picture) for method, picture in pictures.items()}
+        pictures = {CACHED: stage.on_a_map(), DIRECT: stage.direct}
+        return {method: self._error(stage, pictures[method]) for method in _shader_methods(stage.n_bands)}
 
     def _error(self, stage: _Stage, picture: Picture) -> float:
         """Of the linear radiance read back from the right sphere, seen from the front and from behind."""

@@ -12,19 +12,19 @@ from pathlib import Path
 from shviewer.benchmark import experiments
 from shviewer.benchmark.budget import STABILITY_SECONDS, Clock, Progress, allot
 from shviewer.benchmark.front import sentences
+from shviewer.benchmark.machine import machine_record, versions
+from shviewer.benchmark.measured_lights import QUICK_TOLERANCES, TOLERANCES, MeasuredLight, find_measured_lights
 from shviewer.benchmark.options import SECTIONS, Options
 from shviewer.benchmark.page import writing
 from shviewer.benchmark.page.document import Report, read_report
-from shviewer.benchmark.page.machine import machine_record, versions
 from shviewer.benchmark.sections import AGAINST, Run, measure_sections
-from shviewer.benchmark.subjects import QUICK_TOLERANCES, TOLERANCES, Subject, find_subjects
 from shviewer.errors import OutputError
 from shviewer.lights.light import Light
 
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run came to. text: some lines for the terminal."""
+    """What a run came to. rows: how many were measured. text: some lines for the terminal."""
 
     folder: Path
     files: tuple[str, ...]
@@ -45,7 +45,7 @@ def write_report(
     before = None if options.against is None else read_report(options.against)
     writing.make_folder(folder)
     chosen = list(lights) or list(experiments.QUICK_LIGHTS if options.quick else experiments.LIGHTS)
-    subjects = find_subjects(chosen, QUICK_TOLERANCES if options.quick else TOLERANCES, options.reading)
+    found = find_measured_lights(chosen, QUICK_TOLERANCES if options.quick else TOLERANCES, options.reading)
     wanted = {name: name in options.sections for name in SECTIONS} | {"peers": options.peers}
     seconds = allot(wanted, options.seconds) | ({"hard cases": STABILITY_SECONDS} if options.stability else {})
     report = Report(
@@ -53,10 +53,10 @@ def write_report(
         command=options.command or shlex.join(["shviewer", *sys.argv[1:]]),
         machine=machine_record(),
         versions=versions(),
-        lights={subject.name: _light_record(subject) for subject in subjects},
+        lights={measured.name: _light_record(measured) for measured in found},
     )
     texts = [text for text in chosen if isinstance(text, str)]
-    run = Run(options, folder, report, writing.Page(subjects), texts, Clock(seconds, progress), before)
+    run = Run(options, folder, report, writing.Page(found), texts, Clock(seconds, progress), before)
     run.write()
     try:
         measure_sections(run, seconds)
@@ -68,7 +68,8 @@ def write_report(
         raise
     run.write()
     run.clock.finish()
-    return Summary(folder, (*writing.FILES, *run.page.plots), len(report.rows), _summary(run), run.stability_failed)
+    count = sum(row.measured for row in report.rows)
+    return Summary(folder, (*writing.FILES, *run.page.plots), count, _summary(run), run.stability_failed)
 
 
 def _plots(run: Run) -> None:
@@ -80,20 +81,20 @@ def _plots(run: Run) -> None:
     run.page.plot_message = message
 
 
-def _light_record(subject: Subject) -> dict[str, object]:
+def _light_record(measured: MeasuredLight) -> dict[str, object]:
     return {
-        "description": subject.light.description,
-        "best_method": subject.light.best_method,
-        "accuracy": subject.light.accuracy(),
-        "bands_within": {f"{tolerance:g}": count for tolerance, count in subject.needs.items()},
-        "error_by_bands": subject.truncation.tolist(),
+        "description": measured.light.description,
+        "best_method": measured.light.best_method,
+        "accuracy": measured.light.accuracy(),
+        "bands_within": {f"{tolerance:g}": count for tolerance, count in measured.needs.items()},
+        "error_by_bands": measured.truncation.tolist(),
     }
 
 
 def _summary(run: Run) -> str:
     lines = []
-    for subject in run.page.subjects:
-        rows = [row for row in run.report.rows if row.light == subject.name and row.section == "projection"]
-        lines += [f"{subject.name}: {sentence}" for sentence in sentences(subject, rows)] if rows else []
+    for measured in run.page.lights:
+        rows = [row for row in run.report.measured("projection") if row.light == measured.name]
+        lines += [f"{measured.name}: {sentence}" for sentence in sentences(measured, rows)] if rows else []
     against = run.page.hosted.get(AGAINST, "").partition("\n")[0]
     return "\n".join([*lines, *([against] if against else [])])

@@ -10,28 +10,20 @@ from pathlib import Path
 from shviewer.benchmark import experiments, projection_rows
 from shviewer.benchmark.budget import Clock
 from shviewer.benchmark.hard_cases.shader import Shader, shader_or_reason
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.machine import Yardstick
+from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page import writing
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import Report
-from shviewer.benchmark.page.machine import Yardstick
-from shviewer.benchmark.page.row_tables import rows_table
-from shviewer.benchmark.subjects import Subject
+from shviewer.benchmark.page.row_tables import lines_not_measured, rows_table
+from shviewer.benchmark.row import Row
 from shviewer.errors import UsageError
 
 PEER_BANDS = (3, 9, 16, 32)
 QUICK_RECONSTRUCTED = (3, 16)
-IDLE_FROM = 60.0
-"""The idle window takes six seconds: only for budgets of at least so many."""
-
 QUICK_REPEATS = 3
 """Of what is slow, where five do not fit."""
-
-QUICK_END, QUICK_PART = 13.0, 2.5
-"""Seconds after which --quick begins nothing more, so that it ends within 15, and what its last parts take: reconstruction,
-pictures and new processes."""
-
 
 AGAINST = "Against an older report"
 
@@ -51,17 +43,13 @@ class Run:
     yardstick: Yardstick = field(default_factory=Yardstick)
     stability_failed: bool = False
 
-    def add(self, rows: Sequence[Measurement]) -> None:
+    def add(self, rows: Sequence[Row]) -> None:
+        """Rows of what was measured and of what was not."""
         self.report.rows += rows
-        self.yardstick.measure()
+        if any(row.measured for row in rows):
+            self.yardstick.measure()
         self.report.yardstick = self.yardstick.record()
-
-    def late(self, what: str) -> bool:
-        """Whether `what` would take --quick too long on a machine that has been as slow as this one; noted if so."""
-        if not self.options.quick or self.clock.elapsed() + QUICK_PART * self.clock.pace() <= QUICK_END:
-            return False
-        self.report.left_out.append(f"{what}: --quick was out of time")
-        return True
+        self.report.left_out = lines_not_measured(self.report.rows)
 
     def write(self) -> None:
         if self.before is not None and self.options.against is not None:
@@ -75,7 +63,7 @@ class Run:
 def measure_sections(run: Run, seconds: dict[str, float]) -> None:
     if "projection" in seconds:
         run.clock.begin("projection")
-        _projection(run, seconds["projection"])
+        _projection(run)
         run.write()
     if "peers" in seconds:
         run.clock.begin("peers")
@@ -84,7 +72,7 @@ def measure_sections(run: Run, seconds: dict[str, float]) -> None:
     with shader_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:
         if isinstance(drawing, Shader):
             run.report.renderer = drawing.version
-        if "reconstruction" in seconds and not run.late("reconstruction"):
+        if "reconstruction" in seconds:
             run.clock.begin("reconstruction")
             _reconstruction(run, drawing, seconds["reconstruction"])
             run.write()
@@ -98,19 +86,15 @@ def measure_sections(run: Run, seconds: dict[str, float]) -> None:
         run.write()
 
 
-def _projection(run: Run, budget: float) -> None:
+def _projection(run: Run) -> None:
     quick = run.options.quick
-    groups = projection_rows.plan(
-        run.page.subjects,
+    rounds = projection_rows.plan(
+        run.page.lights,
         experiments.QUICK_BANDS if quick else experiments.BANDS,
         experiments.QUICK_SAMPLES if quick else experiments.SAMPLES,
         run.options.methods,
     )
-    left_out = projection_rows.fit(groups, budget)
-    run.report.left_out = projection_rows.describe(left_out)
-    run.clock.expect(sum(group.total() for group in groups))
-    left_out += projection_rows.measure(groups, budget, run.options.seed, run.add, run.clock.tell)
-    run.report.left_out = projection_rows.describe(left_out)
+    projection_rows.measure(rounds, run.clock.left, run.options.seed, run.add, run.clock.tell)
 
 
 def _peers(run: Run, budget: float) -> None:
@@ -134,12 +118,12 @@ def _reconstruction(run: Run, drawing: Shader | str, budget: float) -> None:
     from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
 
     quick = run.options.quick
-    chosen = _representative(run.page.subjects)[: 1 if quick else 2]
-    for number, subject in enumerate(chosen):
-        run.clock.tell(number / len(chosen), subject.name)
-        share = 0.5 * budget / len(chosen)
-        bands, at_least = (QUICK_RECONSTRUCTED, QUICK_REPEATS) if quick else (BANDS, 5)
-        run.add(reconstruction_rows(subject, drawing, budget=share, bands=bands, at_least=at_least))
+    chosen = _representative(run.page.lights)[: 1 if quick else 2]
+    bands, at_least = (QUICK_RECONSTRUCTED, QUICK_REPEATS) if quick else (BANDS, 5)
+    for number, measured in enumerate(chosen):
+        run.clock.tell(measured.name)
+        filling, at_most = 0.5 * budget / len(chosen), run.clock.left() / (len(chosen) - number)
+        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=bands, at_least=at_least))
     rows = [row for row in run.report.rows if row.section == "reconstruction"]
     lines = [
         "What a band costs where the sum is evaluated, against what it brings. Where the arithmetic error reaches what the",
@@ -148,18 +132,19 @@ def _reconstruction(run: Run, drawing: Shader | str, budget: float) -> None:
         *rows_table(rows, ("left out", "arithmetic", "note")),
         "",
     ]
-    for subject in chosen:
-        lines += [f"- {where_bands_stop_paying([row for row in rows if row.light == subject.name])}"]
+    for measured in chosen:
+        sentence = where_bands_stop_paying([row for row in rows if row.light == measured.name and row.measured])
+        lines += [f"- {sentence}"] if sentence else []
     if isinstance(drawing, str):
         lines += ["", f"Nothing was drawn: {drawing}."]
     run.page.hosted["Reconstruction"] = "\n".join(lines)
 
 
-def _representative(subjects: Sequence[Subject]) -> list[Subject]:
+def _representative(lights: Sequence[MeasuredLight]) -> list[MeasuredLight]:
     """The first light of each kind."""
-    kinds: dict[type, Subject] = {}
-    for subject in subjects:
-        kinds.setdefault(type(subject.light), subject)
+    kinds: dict[type, MeasuredLight] = {}
+    for measured in lights:
+        kinds.setdefault(type(measured.light), measured)
     return list(kinds.values())
 
 
@@ -167,37 +152,30 @@ def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
     from shviewer.benchmark import end_to_end
 
     text = run.texts[0] if run.texts else experiments.LIGHTS[0]
-    name = run.page.subjects[0].name if run.texts else text
+    name = run.page.lights[0].name if run.texts else text
     missing = [] if isinstance(drawing, Shader) else [f"pictures: nothing was drawn: {drawing}"]
     at_least = QUICK_REPEATS if run.options.quick else 5
-    if not run.late("end to end, pictures"):
-        run.add(end_to_end.session_rows(text, name, drawing, budget=0.4 * budget, at_least=at_least))
-    run.clock.tell(0.4, "new processes")
-    if not run.late("end to end, new processes"):
-        run.add(end_to_end.process_rows(text, name, drawing, budget=0.5 * budget, at_least=at_least))
-    if run.options.budget >= IDLE_FROM and not run.options.quick and run.options.shader:
-        run.clock.tell(0.7, "an idle window")
-        idle = end_to_end.idle_row()
+    parts = (("pictures", end_to_end.session_rows, 0.25), ("new processes", end_to_end.process_rows, 0.35))
+    for what, rows_of, share in parts:
+        run.clock.tell(what)
+        at_most = run.clock.left()
+        run.add(rows_of(text, name, drawing, budget=share * budget, at_most=at_most, at_least=at_least))
+    if not run.options.quick and run.options.shader:
+        run.clock.tell("an idle window")
+        idle = end_to_end.idle_row(at_most=run.clock.left())
         if isinstance(idle, str):
             missing.append(f"an idle window: {idle}")
         else:
             run.add([idle])
     rows = [row for row in run.report.rows if row.section == "end to end"]
-    lines = ["What a user waits for.", "", *(rows_table(rows, ("note",)) if rows else ["Not measured."])]
+    lines = ["What a user waits for.", "", *rows_table(rows, ("note",))]
     run.page.hosted["End to end"] = "\n".join([*lines, "", *(f"- Without {line}" for line in missing)])
 
 
 def _stability(run: Run) -> None:
     from shviewer.benchmark import hard_cases as stability
 
-    count, total = 0, len(stability.CASES)
-
-    def tell(name: str) -> None:
-        nonlocal count
-        run.clock.tell(count / total, name)
-        count += 1
-
-    outcomes = stability.run(progress=tell, shader=run.options.shader)
+    outcomes = stability.run(progress=run.clock.tell, shader=run.options.shader)
     run.stability_failed = not all(outcome.passed for outcome in outcomes)
     run.report.extra["stability"] = json.loads(stability.as_json(outcomes))
     run.page.hosted["Hard cases"] = stability.as_markdown(outcomes).partition("\n")[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from time import perf_counter
@@ -24,11 +25,6 @@ class Timing:
     high_quartile: float
     repeats: int
 
-    @property
-    def spread(self) -> float:
-        """The distance of the quartiles over the median."""
-        return (self.high_quartile - self.low_quartile) / self.median if self.median else 0.0
-
 
 def summarise(milliseconds: list[float]) -> Timing:
     """ValueError for no times at all."""
@@ -44,33 +40,37 @@ def wall_milliseconds(work: Work) -> float:
     return 1000 * (perf_counter() - start)
 
 
-def time_it(work: Work, *, budget: float, at_least: int = 5, warm_up: int = 1) -> Timing:
-    """The time of one piece of work. `budget`: seconds, passed only to reach `at_least` repeats."""
-    return time_interleaved({"": work}, budget=budget, at_least=at_least, warm_up=warm_up)[""]
-
-
 def time_interleaved(
     works: Mapping[Name, Work],
     *,
     budget: float,
+    at_most: float = math.inf,
     at_least: int = 5,
-    warm_up: int = 1,
+    warm_up: bool = True,
     before: Callable[[Name, int], object] | None = None,
 ) -> dict[Name, Timing]:
     """The times of all: A B C A B C ..., so that a slow moment of the machine hits all of them.
 
     `budget`: seconds for all together, passed only to reach `at_least` repeats; each gets an equal share, so that fast work
     is repeated more often, up to MOST_REPEATS. `before`(name, repeat) prepares a run and is not timed; repeat counts
-    from 0, warm-ups have -1.
+    from 0, warm-ups have -1. `at_most`: seconds for everything; work that by its warm-up does not fit into them `at_least`
+    times is left out, and is not even begun where those before it leave no time.
     """
-    for _ in range(warm_up):
-        for name, work in works.items():
-            if before is not None:
-                before(name, -1)
-            work()
-    times: dict[Name, list[float]] = {name: [] for name in works}
-    share = 1000 * budget / max(1, len(works))
-    waiting = dict(works)
+    start, turn = perf_counter(), 0.0
+    waiting = {} if warm_up else dict(works)
+    for name, work in works.items() if warm_up else ():
+        begun = perf_counter()
+        if begun - start + at_least * turn >= at_most:
+            continue
+        if before is not None:
+            before(name, -1)
+        work()
+        end = perf_counter()
+        if end - start + at_least * (turn + end - begun) < at_most:
+            turn += end - begun
+            waiting[name] = work
+    times: dict[Name, list[float]] = {name: [] for name in waiting}
+    share = 1000 * budget / max(1, len(waiting))
     start = perf_counter()
     while waiting:
         for name, work in waiting.items():

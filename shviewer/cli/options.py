@@ -186,7 +186,7 @@ def report_parser() -> OneLineParser:
         "--budget",
         metavar="SECONDS",
         type=finite,
-        help="of measuring (default 120); repeats, then sizes are trimmed to it",
+        help="of measuring (default 120), smallest first; what they do not reach is not measured",
     )
     parser.add_argument("--methods", metavar="M,M", help="only these ways to project, and the best way of each light")
     parser.add_argument("--seed", metavar="S", type=int, default=0, help="of all random samples (default 0)")

@@ -16,7 +16,7 @@ from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.from_options import recipe_from
-from shviewer.cli.status_line import status_line
+from shviewer.cli.status_line import bar, status_line
 from shviewer.coefficients.axes import Axes
 from shviewer.coefficients.convention import OVER_PI, Convention
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
@@ -161,8 +161,7 @@ def _batch(
     rows: list[Row] = []
     for number, light in enumerate(lights):
         if status:
-            filled = round(24 * number / len(lights))
-            status(f"[{'#' * filled}{'.' * (24 - filled)}] {number + 1} of {len(lights)}  {light[:60]}")
+            status(f"{bar(number / len(lights))} {number + 1} of {len(lights)}  {light[:60]}")
         rows.append(_one_of_many(light, folder, kind, convention, recipe_of, {row.file for row in rows}))
         if rows[-1].error:
             if status:

@@ -7,6 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 
+def bar(done: float) -> str:
+    """done: 0 to 1."""
+    filled = round(24 * done)
+    return f"[{'#' * filled}{'.' * (24 - filled)}]"
+
+
 class StatusLine:
     """What is at work, on one line of the terminal."""
 
@@ -15,8 +21,7 @@ class StatusLine:
 
     def fraction(self, done: float, seconds_left: float, what: str) -> None:
         """done: 0 to 1."""
-        filled = round(24 * done)
-        self.show(f"[{'#' * filled}{'.' * (24 - filled)}] {seconds_left:4.0f} s left  {what[:60]}")
+        self.show(f"{bar(done)} {seconds_left:4.0f} s left  {what[:60]}")
 
     def clear(self) -> None:
         self.show("")

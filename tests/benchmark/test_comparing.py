@@ -8,22 +8,22 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.benchmark.measurement import Measurement
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import Report, read_report
+from shviewer.benchmark.row import Row, not_measured
 from shviewer.errors import UsageError
 
 MACHINE = {"processor": "one", "processors": 2, "system": "Linux 6"}
 
 
-def report(*rows: Measurement, **others: object) -> Report:
+def report(*rows: Row, **others: object) -> Report:
     return replace(Report(0, "shviewer report", MACHINE, {}, rows=list(rows), complete=True), **others)
 
 
-def row(ms: float = 1.0, quartiles: tuple[float, float] = (0.99, 1.01), **others: object) -> Measurement:
+def row(ms: float = 1.0, quartiles: tuple[float, float] = (0.99, 1.01), **others: object) -> Row:
     columns = {"section": "projection", "light": "green", "method": "jittered", "n_bands": 9, "samples": 100} | others
     low, high = ms * quartiles[0], ms * quartiles[1]
-    return Measurement(milliseconds=ms, low_quartile=low, high_quartile=high, repeats=5, **columns)
+    return Row(milliseconds=ms, low_quartile=low, high_quartile=high, repeats=5, **columns)
 
 
 def verdicts(before: Report, after: Report) -> tuple[str, str]:
@@ -82,6 +82,14 @@ def test_rows_are_matched_by_what_was_done_and_counted_otherwise() -> None:
     assert [change.after for change in found.changes] == [row()]
     assert (found.only_before, found.only_after) == (1, 2)
     assert "Only there: 1 rows; only here: 2." in found.as_markdown("old.json")
+
+
+def test_what_one_of_the_two_did_not_measure_is_not_compared() -> None:
+    unreached = not_measured("projection", "jittered", "green", 9, 100)
+    found = compare(report(row()), report(unreached))
+    assert (found.changes, found.only_before, found.only_after) == ((), 1, 0)
+    found = compare(report(unreached), report(row()))
+    assert (found.changes, found.only_before, found.only_after) == ((), 0, 1)
 
 
 def test_a_report_read_back_is_the_report(tmp_path: Path) -> None:

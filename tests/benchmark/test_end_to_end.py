@@ -28,7 +28,7 @@ from shviewer.benchmark.end_to_end import (
     session_rows,
 )
 from shviewer.benchmark.hard_cases.shader import Shader
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.row import Row
 from shviewer.errors import GraphicsError
 from shviewer.lights.reading import DEFAULT_READING
 from shviewer.viewer.gl.renderer import Renderer
@@ -104,7 +104,8 @@ def test_what_is_new_is_computed_anew_and_what_is_known_is_not(
         return {}
 
     monkeypatch.setattr(end_to_end, "time_interleaved", in_reverse)
-    assert session_rows("green", "green", Shader(renderer), budget=0, key_bands=(5,)) == []
+    rows = session_rows("green", "green", Shader(renderer), budget=0, key_bands=(5,))
+    assert {row.note for row in rows} == {"not measured"}
     assert seen == {KNOWN_KEY: (2, 2), NEW_KEY: (1, 2), SAVED: (0, 1), PICTURE: (0, 1)}
 
 
@@ -120,7 +121,7 @@ def test_without_a_display_the_idle_window_is_absent_with_the_reason(monkeypatch
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_SESSION_TYPE"):
         monkeypatch.delenv(name, raising=False)
     reason = idle_row(1)
-    if isinstance(reason, Measurement):
+    if isinstance(reason, Row):
         pytest.skip("there is a display without a variable that names it")
     assert "no display to open a window on" in reason
     assert "\n" not in reason
@@ -135,13 +136,13 @@ def test_an_idle_window_on_a_display_is_a_share_of_a_core(monkeypatch: pytest.Mo
         row = row_of_an_idle_window(monkeypatch)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert isinstance(row, Measurement), row
+    assert isinstance(row, Row), row
     assert (row.method, row.repeats) == (IDLE, 1)
     assert row.milliseconds is not None
     assert 0 < row.milliseconds < 1000  # of a second of one core
 
 
-def row_of_an_idle_window(monkeypatch: pytest.MonkeyPatch) -> Measurement | str:
+def row_of_an_idle_window(monkeypatch: pytest.MonkeyPatch) -> Row | str:
     with virtual_display() as display:
         monkeypatch.setenv("DISPLAY", display)
         monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
@@ -152,3 +153,10 @@ def row_of_an_idle_window(monkeypatch: pytest.MonkeyPatch) -> Measurement | str:
 def test_times_are_of_the_program_as_installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     assert "PYTHONDONTWRITEBYTECODE" not in end_to_end._environment()
+
+
+def test_a_window_is_not_opened_where_there_is_no_time_to_watch_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(subprocess, "run", lambda *rest, **options: pytest.fail("opened"))
+    row = idle_row(seconds=4, at_most=3.9)
+    assert isinstance(row, Row)
+    assert (row.method, row.note) == (IDLE, "not measured")

@@ -1,4 +1,4 @@
-"""The table of methods, their rows, and how a plan is cut to a budget."""
+"""The table of methods, their rows, and how far a budget goes."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from shviewer.benchmark import projection_rows
-from shviewer.benchmark.experiments import BEST, METHODS, method
-from shviewer.benchmark.measurement import Measurement
-from shviewer.benchmark.projection_rows import errors_of
-from shviewer.benchmark.subjects import Subject, find_subjects, subject_of
+from shviewer.benchmark.experiments import BEST, METHODS, Method, method
+from shviewer.benchmark.measured_lights import MeasuredLight, find_measured_lights, measured_light
+from shviewer.benchmark.page.row_tables import lines_not_measured
+from shviewer.benchmark.projection_rows import Experiment, errors_of
+from shviewer.benchmark.row import Row, not_measured
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import channel_figures
@@ -29,22 +30,26 @@ def small_image() -> EnvironmentLight:
     return EnvironmentLight(texels, name="noise")
 
 
+def project(each: Method, light: Light, samples: int, seed: int, n_bands: int) -> np.ndarray:
+    return each.prepare(light, samples, seed, n_bands).project()
+
+
 @pytest.fixture(scope="module")
-def green(green: Subject) -> Subject:
+def green(green: MeasuredLight) -> MeasuredLight:
     return replace(green, needs={0.1: green.needs[0.1]})
 
 
 def rows_of(
-    subject: Subject, seed: int, bands: tuple[int, ...] = (3, 5), samples: tuple[int, ...] = (100, 400)
-) -> list[Measurement]:
-    rows: list[Measurement] = []
-    groups = projection_rows.plan([subject], bands, samples)
-    projection_rows.measure(groups, 1e3, seed, rows.extend, lambda share, what: None, filling=0.0)
+    measured: MeasuredLight, seed: int, bands: tuple[int, ...] = (3, 5), samples: tuple[int, ...] = (100, 400)
+) -> list[Row]:
+    rows: list[Row] = []
+    rounds = projection_rows.plan([measured], bands, samples)
+    projection_rows.measure(rounds, lambda: 1e3, seed, rows.extend, lambda what: None, filling=0.0)
     return rows
 
 
 @pytest.fixture(scope="module")
-def green_rows(green: Subject) -> list[Measurement]:
+def green_rows(green: MeasuredLight) -> list[Row]:
     return rows_of(green, 0)
 
 
@@ -54,7 +59,7 @@ def test_every_method_comes_near_the_lights_own_coefficients() -> None:
         exact = light.coefficients(4)
         for each in METHODS:
             if each.applies(light):
-                found = each.project(light, 40_000, 1, 4)
+                found = project(each, light, 40_000, 1, 4)
                 assert found.shape == (16, 3), each.name
                 assert np.linalg.norm(found - exact) < 0.05 * np.linalg.norm(exact), (each.name, light.name)
 
@@ -62,11 +67,11 @@ def test_every_method_comes_near_the_lights_own_coefficients() -> None:
 @pytest.mark.parametrize(("name", "low", "high"), [("random", -0.7, -0.3), ("jittered", -1.2, -0.8)])
 def test_errors_of_random_methods_fall_as_theory_says(name: str, low: float, high: float) -> None:
     """On a smooth light N^(-1/2) for independent points and N^-1 for one per cell; medians of nine seeds."""
-    subject = subject_of(FunctionLight(lambda d: np.exp(d @ [1.0, 0.5, -0.3])))
+    measured = measured_light(FunctionLight(lambda d: np.exp(d @ [1.0, 0.5, -0.3])))
     medians = []
     for samples in (400, 25_600):
-        found = [method(name).project(subject.light, samples, seed, 3) for seed in range(9)]
-        medians.append(np.median([errors_of(subject, each).error for each in found]))
+        found = [project(method(name), measured.light, samples, seed, 3) for seed in range(9)]
+        medians.append(np.median([errors_of(measured, each).error for each in found]))
     assert low < np.log(medians[1] / medians[0]) / np.log(64) < high
 
 
@@ -77,7 +82,7 @@ def test_gauss_legendre_is_exact_once_there_are_points_enough() -> None:
     light = FunctionLight(lambda d: evaluate_basis(d, n_bands) @ coefficients)
 
     def error(rows: int) -> float:
-        found = method("gauss-legendre").project(light, 2 * rows**2, 0, n_bands)
+        found = project(method("gauss-legendre"), light, 2 * rows**2, 0, n_bands)
         return float(np.abs(found - coefficients).max())
 
     assert error(n_bands) < 1e-13
@@ -99,7 +104,7 @@ def test_half_resolution_takes_the_means_of_four_texels() -> None:
     image = small_image()
     means = image.pixels.reshape(16, 2, 32, 2, 3).mean(axis=(1, 3))
     wanted = EnvironmentLight(means).coefficients(3)
-    assert method("half").project(image, 0, 0, 3) == pytest.approx(wanted, abs=1e-5)  # float32 sums of four
+    assert project(method("half"), image, 0, 0, 3) == pytest.approx(wanted, abs=1e-5)  # float32 sums of four
 
 
 def test_evaluations_are_what_the_light_was_asked_for() -> None:
@@ -141,11 +146,11 @@ def test_a_method_that_is_not_in_the_table_is_refused_in_one_line() -> None:
         method("lebedev")
 
 
-def test_errors_in_the_rows_are_those_of_the_metrics_module(green: Subject, green_rows: list[Measurement]) -> None:
+def test_errors_in_the_rows_are_those_of_the_metrics_module(green: MeasuredLight, green_rows: list[Row]) -> None:
     light = green.light
     for row in green_rows:
         seeds = range(projection_rows.SEEDS) if row.method in RANDOM else [0]
-        found = [method(row.method).project(light, row.samples or 0, seed, row.n_bands) for seed in seeds]
+        found = [project(method(row.method), light, row.samples or 0, seed, row.n_bands) for seed in seeds]
         exact = light.coefficients(row.n_bands)
         figures = [channel_figures(light.products(), exact, shown, 1.0)["all"] for shown in found]
         # the sums are the same but for their order: a few roundings
@@ -160,7 +165,7 @@ def test_errors_in_the_rows_are_those_of_the_metrics_module(green: Subject, gree
                 assert row.error_high * kept == pytest.approx(added.max(), rel=1e-6)
 
 
-def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(green_rows: list[Measurement]) -> None:
+def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(green_rows: list[Row]) -> None:
     for row in green_rows:
         assert (row.error is None) == (row.method == BEST)
         assert (row.error_low is not None) == (row.method in RANDOM)
@@ -172,8 +177,8 @@ def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(gree
         assert row.reference_accuracy == 0
 
 
-def test_one_seed_gives_identical_errors_and_another_does_not(green: Subject, green_rows: list[Measurement]) -> None:
-    def errors(rows: list[Measurement]) -> dict[object, tuple[object, ...]]:
+def test_one_seed_gives_identical_errors_and_another_does_not(green: MeasuredLight, green_rows: list[Row]) -> None:
+    def errors(rows: list[Row]) -> dict[object, tuple[object, ...]]:
         return {row.key: (row.error, row.error_low, row.error_high, row.truncation, row.total_error) for row in rows}
 
     first, again, other = errors(green_rows), errors(rows_of(green, 0)), errors(rows_of(green, 7))
@@ -186,55 +191,123 @@ def test_a_bright_light_has_the_errors_of_a_dim_one() -> None:
         return FunctionLight(lambda d: factor * np.exp(2 * d[:, 0]), "lobe")
 
     names = ("gauss-legendre", "random")
-    small, large = subject_of(scaled(1.0)), subject_of(scaled(1e29))
+    small, large = measured_light(scaled(1.0)), measured_light(scaled(1e29))
     for name in names:
-        errors = [errors_of(each, method(name).project(each.light, 1000, 0, 4)) for each in (small, large)]
+        errors = [errors_of(each, project(method(name), each.light, 1000, 0, 4)) for each in (small, large)]
         assert errors[0].error == pytest.approx(errors[1].error, rel=1e-6)
         assert errors[0].total == pytest.approx(errors[1].total, rel=1e-6)
 
 
-def test_each_light_has_the_band_counts_that_it_needs(green: Subject) -> None:
+def test_each_light_has_the_band_counts_that_it_needs(green: MeasuredLight) -> None:
     assert green.needs == {0.1: 10}
-    groups = projection_rows.plan([green], (3,), (100, 1_000_000))
-    assert [group.n_bands for group in groups] == [3, 10]
-    assert {count for _, count in groups[1].seconds} == {None, 100, 10_000}
+    rounds = projection_rows.plan([green], (3,), (100, 1_000_000))
+    assert {each.n_bands for each in rounds} == {3, 10}
+    assert {count for each in rounds if each.n_bands == 10 for _, count in each.experiments} == {None, 100, 10_000}
 
 
-def test_a_plan_keeps_the_chosen_methods_and_the_reference(green: Subject) -> None:
-    (group,) = projection_rows.plan([replace(green, needs={})], (3,), (100,), ("fejer",))
-    assert [each.name for each, _ in group.seconds] == [BEST, "fejer"]
+def test_a_plan_keeps_the_chosen_methods_and_the_reference(green: MeasuredLight) -> None:
+    rounds = projection_rows.plan([replace(green, needs={})], (3,), (100,), ("fejer",))
+    assert [each.name for round_ in rounds for each, _ in round_.experiments] == [BEST, "fejer"]
 
 
-def test_a_budget_leaves_out_the_longest_first_and_the_answers_last(green: Subject) -> None:
-    groups = projection_rows.plan([green], (3, 10), (100, 10_000, 1_000_000))
-    whole = sum(group.total() for group in groups)
-    assert projection_rows.fit(groups, whole) == []
-    left_out = projection_rows.fit(groups, whole / 3)
-    assert sum(group.total() for group in groups) <= whole / 3
-    assert {count for (_, count), _, _ in left_out} == {1_000_000}
-    assert any(line.startswith("plain random 1 000 000: green, ") for line in projection_rows.describe(left_out))
-    projection_rows.fit(groups, 0.3)
-    kept = {(each.name, count) for each, count in groups[1].seconds}
-    assert {(BEST, None), ("jittered", 10_000)} <= kept
-    assert max(count or 0 for _, count in groups[0].seconds) < 1_000_000
+def test_rounds_come_smallest_first_and_light_by_light(green: MeasuredLight) -> None:
+    other = replace(green, name="other", needs={})
+    rounds = projection_rows.plan([replace(green, needs={}), other], (9, 3), (1000, 100), ("fejer",))
+    places = [(round_.experiments[0][1], round_.n_bands, round_.measured.name) for round_ in rounds]
+    names = ("green", "other")
+    assert places == [(count, n, name) for count in (None, 100, 1000) for n in (3, 9) for name in names]
 
 
-def test_a_budget_for_nothing_leaves_nothing(green: Subject) -> None:
-    groups = projection_rows.plan([green], (3,), (100,))
-    left_out = projection_rows.fit(groups, 0.0)
-    assert not any(group.seconds for group in groups)
-    assert "best way: green, 3 10 bands" in projection_rows.describe(left_out)
+def test_the_papers_samples_take_turns_with_the_best_way(green: MeasuredLight) -> None:
+    first = projection_rows.plan([green], (3,), (100, 10_000))[0]
+    assert [(each.name, count) for each, count in first.experiments] == [(BEST, None), ("jittered", 10_000)]
 
 
-def test_a_machine_slower_than_the_table_is_given_less_to_do(green: Subject, monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = iter(float(10 * i) for i in range(100))
-    monkeypatch.setattr(projection_rows, "perf_counter", lambda: next(clock))
-    monkeypatch.setattr(projection_rows, "_measure_group", lambda group, filling, seed: [])
-    groups = projection_rows.plan([green], (3, 5, 9), (100, 1_000_000))
-    experiments = len(groups[-1].seconds)
-    left_out = projection_rows.measure(groups, 20.0, 0, lambda rows: None, lambda share, what: None)
-    assert left_out
-    assert len(groups[-1].seconds) < experiments
+def test_every_texel_is_a_sample_where_rounds_are_ordered() -> None:
+    rounds = projection_rows.plan(
+        [measured_light(small_image(), ())], (3,), (100, 10_000), ("per-texel", "half", "random")
+    )
+    assert [[(each.name, count) for each, count in round_.experiments] for round_ in rounds] == [
+        [(BEST, None), ("half", None)],
+        [("random", 100)],
+        [("per-texel", None)],  # 2048 of them
+        [("random", 10_000)],
+    ]
+
+
+def limited(measured: MeasuredLight, seconds: float, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Row], float]:
+    """Rows of so many seconds, and the seconds that they took, where a run takes a millisecond for every sample."""
+    now = 0.0
+
+    def cold(experiment: Experiment, *rest: object) -> float:
+        nonlocal now
+        now += (experiment[1] or 1) / 1000
+        return float(experiment[1] or 1)
+
+    def warm(experiment: Experiment, *rest: object) -> object:
+        cold(experiment)
+        return object()
+
+    def measure_round(round_: projection_rows.Round, running: dict[Experiment, object], *rest: object) -> list[Row]:
+        for experiment in running:
+            for _ in range(projection_rows.AT_LEAST):
+                cold(experiment)
+        return [
+            Row(section="projection", light="", method=each.name, samples=n, n_bands=round_.n_bands, milliseconds=1.0)
+            for each, n in running
+        ]
+
+    monkeypatch.setattr(projection_rows, "_cold", cold)
+    monkeypatch.setattr(projection_rows, "_warm", warm)
+    monkeypatch.setattr(projection_rows, "_measure_round", measure_round)
+    rows: list[Row] = []
+    rounds = projection_rows.plan([measured], (3, 5), (100, 1000, 10_000), ("fejer", "random"))
+    projection_rows.measure(rounds, lambda: seconds - now, 0, rows.extend, lambda what: None)
+    return rows, now
+
+
+def test_what_the_time_does_not_reach_is_the_largest_and_is_a_row_that_says_so(
+    green: MeasuredLight, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    everything, _ = limited(replace(green, needs={}), 1e6, monkeypatch)
+    assert all(row.measured for row in everything)
+    rows, _ = limited(replace(green, needs={}), 20.0, monkeypatch)
+    assert {row.key[2:] for row in rows} == {row.key[2:] for row in everything}
+    assert {row.samples for row in rows if row.measured} == {None, 100, 1000}
+    missing = [row for row in rows if not row.measured]
+    assert {(row.light, row.note, row.repeats, row.error) for row in missing} == {("green", "not measured", None, None)}
+    assert {row.samples for row in missing} == {1000, 10_000}
+
+
+@pytest.mark.parametrize("seconds", [0.5, 5.0, 20.0, 100.0, 250.0])
+def test_nothing_is_begun_that_is_known_not_to_fit(
+    green: MeasuredLight, seconds: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Times in proportion to the samples are foreseen from the smallest ones, which are tried: 0.1 s each."""
+    _, took = limited(replace(green, needs={}), seconds, monkeypatch)
+    assert took < seconds + 0.1
+
+
+def test_a_single_experiment_that_is_too_long_is_run_once_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    slow = measured_light(small_image(), ())
+    runs: list[str] = []
+    monkeypatch.setattr(projection_rows, "_cold", lambda experiment, *rest: runs.append(experiment[0].name) or 1e4)
+    rows: list[Row] = []
+    rounds = projection_rows.plan([slow], (3, 5), (100,), ("per-texel",))
+    projection_rows.measure(rounds, lambda: 30.0, 0, rows.extend, lambda what: None)
+    assert runs == [BEST, "per-texel"]
+    assert not any(row.measured for row in rows)
+
+
+def test_what_was_not_measured_is_listed_by_light_and_bands() -> None:
+    rows = [not_measured("projection", "jittered", light, n, 1_000_000) for light in ("b", "a") for n in (3, 5)]
+    rows += [not_measured("end to end", "start, --version", "", None), replace(rows[0], milliseconds=1.0)]
+    rows.append(not_measured("reconstruction", "CPU, map float32", "a", 9))
+    assert lines_not_measured(rows) == [
+        "jittered (paper) 1 000 000: a, 3 5 bands; b, 3 5 bands",
+        "start, --version",
+        "CPU, map float32: a, 9 bands",
+    ]
 
 
 def test_every_light_is_measured_once_and_two_of_a_name_are_told_apart(tmp_path: Path) -> None:
@@ -243,4 +316,4 @@ def test_every_light_is_measured_once_and_two_of_a_name_are_told_apart(tmp_path:
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "sky.toml").write_text(text)
     texts = [str(tmp_path / "a/sky.toml"), "green", "green", str(tmp_path / "b/sky.toml")]
-    assert [subject.name for subject in find_subjects(texts)] == ["sky", "green", texts[3]]
+    assert [measured.name for measured in find_measured_lights(texts)] == ["sky", "green", texts[3]]

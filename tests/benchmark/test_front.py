@@ -7,16 +7,14 @@ from dataclasses import replace
 import pytest
 
 from shviewer.benchmark.front import front_of, sentences
-from shviewer.benchmark.measurement import Measurement
-from shviewer.benchmark.subjects import Subject, subject_of
+from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
+from shviewer.benchmark.row import Row
 from shviewer.harmonics.metrics import pareto_front
 from shviewer.lights.find import find_light
 
 
-def row(
-    method: str, n_bands: int, ms: float, total: float, samples: int | None = None, spread: float = 0.01
-) -> Measurement:
-    return Measurement(
+def row(method: str, n_bands: int, ms: float, total: float, samples: int | None = None, spread: float = 0.01) -> Row:
+    return Row(
         section="projection",
         light="green",
         method=method,
@@ -31,7 +29,7 @@ def row(
 
 
 @pytest.fixture(scope="module")
-def green(green: Subject) -> Subject:
+def green(green: MeasuredLight) -> MeasuredLight:
     return replace(green, needs={0.05: green.needs[0.05]})
 
 
@@ -68,7 +66,7 @@ def test_rows_without_a_time_or_an_error_are_not_on_the_front() -> None:
     assert front_of(rows) == []
 
 
-def test_the_sentence_has_the_cheapest_way_and_what_the_paper_would_do(green: Subject) -> None:
+def test_the_sentence_has_the_cheapest_way_and_what_the_paper_would_do(green: MeasuredLight) -> None:
     rows = [row("best", 15, 0.2, 0.046), row("jittered", 15, 15.0, 0.0534, 10_000), row("best", 16, 0.19, 0.0411)]
     assert sentences(green, rows) == [  # 16 bands are more than it needs, though faster
         "for 5 % relative L2: 15 bands, closed form, 0.200 ms, which leaves 4.6 %; the paper's 10 000 jittered samples"
@@ -76,7 +74,7 @@ def test_the_sentence_has_the_cheapest_way_and_what_the_paper_would_do(green: Su
     ]
 
 
-def test_a_sampled_winner_is_compared_with_the_best_way(green: Subject) -> None:
+def test_a_sampled_winner_is_compared_with_the_best_way(green: MeasuredLight) -> None:
     rows = [row("best", 15, 0.4, 0.046), row("fejer", 15, 0.1, 0.048, 1000)]
     assert sentences(green, rows) == [
         "for 5 % relative L2: 15 bands, Fejer lat-long, 1 000 samples, 0.100 ms, which leaves 4.8 %;"
@@ -84,24 +82,24 @@ def test_a_sampled_winner_is_compared_with_the_best_way(green: Subject) -> None:
     ]
 
 
-def test_times_within_the_spread_are_not_called_different(green: Subject) -> None:
+def test_times_within_the_spread_are_not_called_different(green: MeasuredLight) -> None:
     rows = [row("best", 15, 1.0, 0.046, spread=0.3), row("jittered", 15, 1.2, 0.049, 10_000, spread=0.3)]
     assert sentences(green, rows)[0].endswith("take as long, within the spread and reach 4.9 %.")
 
 
-def test_the_best_way_is_named_before_another_that_is_as_fast(green: Subject) -> None:
+def test_the_best_way_is_named_before_another_that_is_as_fast(green: MeasuredLight) -> None:
     rows = [row("best", 15, 1.05, 0.046, spread=0.2), row("fejer", 15, 1.0, 0.048, 1000, spread=0.2)]
     assert sentences(green, rows) == ["for 5 % relative L2: 15 bands, closed form, 1.05 ms, which leaves 4.6 %."]
 
 
 def test_a_light_that_needs_too_many_bands_is_said_to() -> None:
-    sun = subject_of(find_light("sun-sky"), (0.05, 0.01))
+    sun = measured_light(find_light("sun-sky"), (0.05, 0.01))
     assert sentences(sun, []) == [
         "for 5 % relative L2 or less: this light needs more than 128 bands, whatever the method: 128 leave 95.7 %."
     ]
 
 
-def test_a_tolerance_that_no_row_reaches_is_not_made_up(green: Subject) -> None:
+def test_a_tolerance_that_no_row_reaches_is_not_made_up(green: MeasuredLight) -> None:
     assert sentences(green, [row("best", 9, 0.1, 0.11)]) == [
         "for 5 % relative L2: 15 bands, of which nothing that was measured is within it; give it a larger --budget."
     ]

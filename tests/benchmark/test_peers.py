@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shviewer.benchmark import peers
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.row import Row
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import degrees
 from shviewer.harmonics.quadrature import fibonacci
@@ -25,16 +25,25 @@ def test_a_peer_that_is_not_installed_is_named_and_left_out() -> None:
 
 def test_ours_is_measured_beside_whatever_peers_there_are() -> None:
     answer = peers.measure(["film_studio", "green"], [3], 2.0, 0)
-    rows = [Measurement.from_dict(row) for row in answer["rows"]]
+    rows = [Row.from_dict(row) for row in answer["rows"]]
     ours = [(row.light, row.method, row.samples) for row in rows if row.method.startswith(peers.OURS)]
     assert sorted(ours, key=str) == [
         ("film_studio", "shviewer f32", None),
         ("film_studio", "shviewer", 10_000),
         ("film_studio", "shviewer", None),
     ]
-    assert all(row.error is None and row.repeats >= 1 for row in rows)  # how many fit depends on the machine
+    assert all(row.error is None for row in rows)
+    assert all(row.repeats >= 1 if row.measured else row.note == "not measured" for row in rows)  # on the machine
     there = {row.method for row in rows} | {line.split(":")[0].split(",")[0] for line in answer["missing"]}
     assert there >= {*peers.IMAGE_PEERS, *peers.SAMPLE_PEERS}
+
+
+def test_what_is_too_slow_for_the_budget_is_a_row_that_says_so() -> None:
+    answer = peers.measure(["film_studio"], [3, 9], 1e-6, 0)
+    ours = [Row.from_dict(row) for row in answer["rows"] if row["method"] == peers.OURS]
+    assert [(row.n_bands, row.samples, row.note) for row in ours] == [
+        (n_bands, samples, "not measured") for n_bands in (3, 9) for samples in (None, 10_000)
+    ]
 
 
 def test_sphericart_on_samples_does_what_we_do() -> None:

@@ -13,20 +13,28 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from shviewer.benchmark.measurement import Measurement
-from shviewer.benchmark.page.plot_marks import DASHES, LOOKS, nice_ticks, plain, spread
-from shviewer.benchmark.page.plots import FLOOR, error_curves, frame_curves, make_plots, time_error_curves
+from shviewer.benchmark.experiments import METHODS
+from shviewer.benchmark.page.plot_marks import DASHES, INCHES, LOOKS, STYLE, nice_ticks, plain
+from shviewer.benchmark.page.plots import (
+    FLOOR,
+    draw_time_error,
+    error_curves,
+    frame_curves,
+    make_plots,
+    time_error_curves,
+)
 from shviewer.benchmark.reconstruction_rows import CACHED, DIRECT, PER_FRAME
+from shviewer.benchmark.row import Row
 
 
-def projected(method: str, milliseconds: float, error: float, light: str = "green") -> Measurement:
-    return Measurement(
+def projected(method: str, milliseconds: float, error: float, light: str = "green") -> Row:
+    return Row(
         section="projection", method=method, light=light, n_bands=9, milliseconds=milliseconds, total_error=error
     )
 
 
-def drawn(method: str, n_bands: int, milliseconds: float, truncation: float, light: str = "green") -> Measurement:
-    return Measurement(
+def drawn(method: str, n_bands: int, milliseconds: float, truncation: float, light: str = "green") -> Row:
+    return Row(
         section="reconstruction",
         method=method,
         light=light,
@@ -190,10 +198,23 @@ def test_a_number_on_an_axis_has_no_power_of_ten() -> None:
     assert [plain(value) for value in (1e-5, 0.30000000000000004, 12.5, 1e6)] == ["0.00001", "0.3", "12.5", "1000000"]
 
 
-def test_names_that_collide_move_apart_by_as_little_as_needed() -> None:
-    heights = [0.1, 0.5, 0.5, 0.52, 0.9]
-    moved = spread(heights, 0.08)
-    assert (np.diff(moved) >= 0.08 - 1e-12).all()
-    assert moved[0] == 0.1
-    assert moved[-1] == 0.9
-    assert abs(np.mean(moved[1:4]) - np.mean(heights[1:4])) < 1e-12
+def test_the_legend_names_every_curve_and_lies_outside_the_axes(matplotlib: Any) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    names = [method.words for method in METHODS]
+    rows = [projected(each.name, 2.0**k, 0.5 / (k + j + 1)) for j, each in enumerate(METHODS) for k in range(4)]
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=INCHES)
+        FigureCanvasAgg(figure)
+        draw_time_error(figure, "a name that is far too long for any margin", time_error_curves(rows, "green"))
+        figure.draw_without_rendering()
+    (legend,), (axes,) = figure.legends, figure.axes
+    assert [text.get_text() for text in legend.get_texts()] == [*names, "Pareto front"]
+    box, whole = legend.get_window_extent(), figure.bbox
+    assert not box.overlaps(axes.get_tightbbox())
+    assert whole.x0 <= box.x0 < box.x1 <= whole.x1
+    assert whole.y0 <= box.y0
+    assert axes.bbox.height > 0.45 * whole.height
+    title = figure.get_suptitle(), figure._suptitle.get_window_extent()
+    assert title[1].x1 <= whole.x1, title[0]

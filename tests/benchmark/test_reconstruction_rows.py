@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
 
 from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projections import BEST
+from shviewer.benchmark import reconstruction_rows as module
 from shviewer.benchmark.enough_bands import where_bands_stop_paying
 from shviewer.benchmark.hard_cases.shader import Shader
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
 from shviewer.benchmark.reconstruction_rows import (
     BASIS,
     CACHED,
@@ -23,7 +25,7 @@ from shviewer.benchmark.reconstruction_rows import (
     SCATTERED,
     reconstruction_rows,
 )
-from shviewer.benchmark.subjects import Subject, subject_of
+from shviewer.benchmark.row import Row
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
@@ -35,19 +37,34 @@ NO_OPENGL = "GraphicsError: no OpenGL here"
 SHADER, CPU = {DIRECT, CACHED}, {SCATTERED, BASIS, MAP_64, MAP_32}
 
 
-def by_name(rows: list[Measurement]) -> dict[tuple[str, int | None], Measurement]:
+def by_name(rows: list[Row]) -> dict[tuple[str, int | None], Row]:
     found = {(row.method, row.n_bands): row for row in rows}
     assert len(found) == len(rows)
     return found
 
 
-def test_without_opengl_the_rows_of_the_shader_are_absent_and_all_others_are_there(green: Subject) -> None:
+def test_without_opengl_the_rows_of_the_shader_are_absent_and_all_others_are_there(green: MeasuredLight) -> None:
     rows = by_name(reconstruction_rows(green, NO_OPENGL, budget=0, bands=(1, 5), at_least=1))
     assert set(rows) == {(method, n_bands) for method in CPU for n_bands in (1, 5)}
     assert all(row.milliseconds and row.repeats == 1 and row.note == PER_MILLION for row in rows.values())
 
 
-def test_what_the_bands_leave_out_is_what_the_window_says(green: Subject) -> None:
+@pytest.mark.parametrize(("seconds", "reached"), [(0.0, []), (4.0, [1]), (5.0, [1, 3]), (1e3, [1, 3, 9])])
+def test_band_counts_come_smallest_first_as_far_as_the_time_allows(
+    green: MeasuredLight, seconds: float, reached: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every look at the clock takes a second."""
+    ticks = count()
+    monkeypatch.setattr(module, "perf_counter", lambda: float(next(ticks)))
+    rows = module.reconstruction_rows(green, NO_OPENGL, budget=0, at_most=seconds, bands=(9, 1, 3), at_least=1)
+    assert [row.n_bands for row in rows if row.method == MAP_32 and row.measured] == reached
+    assert sorted((row.n_bands or 0, row.method) for row in rows) == [
+        (n, name) for n in (1, 3, 9) for name in sorted(CPU)
+    ]
+    assert {row.note for row in rows if not row.measured} <= {"not measured"}
+
+
+def test_what_the_bands_leave_out_is_what_the_window_says(green: MeasuredLight) -> None:
     errors = errors_of(green.light, *BEST)
     for row in reconstruction_rows(green, NO_OPENGL, budget=0, bands=(2, 9), at_least=1):
         assert row.n_bands is not None
@@ -56,7 +73,7 @@ def test_what_the_bands_leave_out_is_what_the_window_says(green: Subject) -> Non
         assert row.total_error == pytest.approx(np.hypot(row.truncation or 0.0, arithmetic), rel=1e-12)
 
 
-def test_the_cpu_is_as_exact_as_its_number_type(green: Subject) -> None:
+def test_the_cpu_is_as_exact_as_its_number_type(green: MeasuredLight) -> None:
     rows = by_name(reconstruction_rows(green, NO_OPENGL, budget=0, bands=(16,), at_least=1))
     assert rows[BASIS, 16].arithmetic_error is None  # the others are compared with it
     for method in (SCATTERED, MAP_64):
@@ -64,7 +81,7 @@ def test_the_cpu_is_as_exact_as_its_number_type(green: Subject) -> None:
     assert 1e-9 < (rows[MAP_32, 16].arithmetic_error or 0) < 1e-6  # float32 rounds to 6e-8
 
 
-def test_the_shader_is_as_exact_as_float32_at_every_band_count(green: Subject, renderer: Renderer) -> None:
+def test_the_shader_is_as_exact_as_float32_at_every_band_count(green: MeasuredLight, renderer: Renderer) -> None:
     rows = by_name(reconstruction_rows(green, Shader(renderer), budget=0, bands=(3, 33), at_least=1))
     assert {name for name in rows if name[0] in SHADER} == {(DIRECT, 3), (CACHED, 3), (CACHED, 33)}
     for (method, n_bands), row in rows.items():
@@ -75,10 +92,8 @@ def test_the_shader_is_as_exact_as_float32_at_every_band_count(green: Subject, r
             assert (row.set_up_milliseconds is not None) == (method == CACHED)
 
 
-def test_an_error_in_the_coefficients_drawn_is_seen(green: Subject, renderer: Renderer) -> None:
+def test_an_error_in_the_coefficients_drawn_is_seen(green: MeasuredLight, renderer: Renderer) -> None:
     """The shader's error is not the difference of two equal wrongs: one per cent more light is one per cent of error."""
-    from shviewer.benchmark import reconstruction_rows as module
-
     stage = module._Stage(green, 5)
     brighter = replace(stage.direct, drawn=DirectSum(1.01 * stage.coefficients))
     with offscreen(renderer, module.FRAME) as target:
@@ -90,23 +105,21 @@ def test_an_error_in_the_coefficients_drawn_is_seen(green: Subject, renderer: Re
 def test_the_arithmetic_error_of_any_radiance_is_relative_to_the_light() -> None:
     for radiance in (1e-20, 1.0, 1e20):
         light = LobeLight((Lobe(Gaussian(8.0), np.array([0.0, 0.6, 0.8]), np.full(3, radiance)),))
-        rows = by_name(reconstruction_rows(subject_of(light), NO_OPENGL, budget=0, bands=(9,), at_least=1))
+        rows = by_name(reconstruction_rows(measured_light(light), NO_OPENGL, budget=0, bands=(9,), at_least=1))
         assert 1e-9 < (rows[MAP_32, 9].arithmetic_error or 0) < 1e-6
 
 
 def test_a_black_light_has_rows_without_error() -> None:
     light = LobeLight((Lobe(Disc(0.5), np.array([0.0, 0.0, 1.0]), np.zeros(3)),))
-    for row in reconstruction_rows(subject_of(light), NO_OPENGL, budget=0, bands=(3,), at_least=1):
+    for row in reconstruction_rows(measured_light(light), NO_OPENGL, budget=0, bands=(3,), at_least=1):
         assert row.total_error == 0
 
 
-def made_up(
-    truncations: list[float], direct: list[float], cached: list[float], arithmetic: float = 1e-7
-) -> list[Measurement]:
+def made_up(truncations: list[float], direct: list[float], cached: list[float], arithmetic: float = 1e-7) -> list[Row]:
     """Rows of 1, 2, 4, ... bands, whose quartiles are 1 % around the times."""
 
-    def row(method: str, number: int, time: float) -> Measurement:
-        return Measurement(
+    def row(method: str, number: int, time: float) -> Row:
+        return Row(
             section="reconstruction",
             light="lamp",
             method=method,
@@ -148,11 +161,11 @@ def test_bands_stop_where_what_they_leave_out_is_lost_in_rounding() -> None:
 
 def test_a_constant_light_needs_one_band() -> None:
     light = LobeLight((Lobe(Constant(), np.array([0.0, 0.0, 1.0]), np.ones(3)),))
-    rows = reconstruction_rows(subject_of(light), NO_OPENGL, budget=0, bands=(1, 3), at_least=1)
+    rows = reconstruction_rows(measured_light(light), NO_OPENGL, budget=0, bands=(1, 3), at_least=1)
     assert "more than 1 band bring nothing" in where_bands_stop_paying(rows)
 
 
-def test_without_opengl_the_sentence_is_about_the_map(green: Subject) -> None:
+def test_without_opengl_the_sentence_is_about_the_map(green: MeasuredLight) -> None:
     rows = reconstruction_rows(green, NO_OPENGL, budget=0, bands=(1, 5), at_least=1)
     assert "up to the 5 measured, where 28 % is left out" in where_bands_stop_paying(rows)
     assert where_bands_stop_paying([]) == ""

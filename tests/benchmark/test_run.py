@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import count
@@ -11,13 +12,13 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.benchmark import budget, costs, projection_rows, sections, timing
+from shviewer.benchmark import budget, end_to_end, projection_rows, timing
 from shviewer.benchmark.budget import Clock, allot
-from shviewer.benchmark.measurement import COLUMNS, Measurement
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page import plots
-from shviewer.benchmark.page.document import Report, read_report
+from shviewer.benchmark.page.document import read_report
 from shviewer.benchmark.page.projection_tables import _matrix
+from shviewer.benchmark.row import COLUMNS, Row
 from shviewer.benchmark.run import write_report
 from shviewer.errors import LightError, OutputError, UsageError
 
@@ -32,7 +33,7 @@ def _on_any_machine() -> Iterator[None]:
     """Every look at a clock takes a millisecond, so that what a budget admits depends on no machine. And no plots."""
     ticks = count()
     with pytest.MonkeyPatch.context() as patch:
-        for module in (budget, costs, projection_rows, timing):
+        for module in (budget, projection_rows, timing):
             patch.setattr(module, "perf_counter", lambda: next(ticks) / 1000)
         patch.setattr(plots, "make_plots", lambda rows, folder: ((folder / "a-b.svg", folder / "a-b.png"), MESSAGE))
         yield
@@ -81,7 +82,7 @@ def test_plots_are_linked_and_the_line_that_installs_them_is_there(folder: Path)
 
 
 def test_many_bands_continue_in_a_second_table() -> None:
-    rows = [Measurement(section="projection", method="random", samples=10, n_bands=n, error=0.5) for n in range(1, 20)]
+    rows = [Row(section="projection", method="random", samples=10, n_bands=n, error=0.5) for n in range(1, 20)]
     lines = _matrix(rows, lambda row: f"{row.error:12}")
     assert max(map(len, lines)) <= 128
     assert lines.count("") == 2
@@ -89,16 +90,16 @@ def test_many_bands_continue_in_a_second_table() -> None:
 
 
 def test_an_interrupted_run_leaves_a_readable_partial_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    measure, calls = projection_rows._measure_group, 0
+    measure, calls = projection_rows._measure_round, 0
 
-    def interrupted(*arguments: object) -> list[Measurement]:
+    def interrupted(*arguments: object) -> list[Row]:
         nonlocal calls
         calls += 1
         if calls == 2:
             raise KeyboardInterrupt
         return measure(*arguments)
 
-    monkeypatch.setattr(projection_rows, "_measure_group", interrupted)
+    monkeypatch.setattr(projection_rows, "_measure_round", interrupted)
     with pytest.raises(KeyboardInterrupt):
         write_report(["green"], tmp_path, LITTLE)
     report = read_report(tmp_path / "report.json")
@@ -116,7 +117,7 @@ def test_a_light_that_fails_on_the_way_leaves_what_was_measured(
     def broken(*arguments: object) -> None:
         raise LightError("sky.py: gone")
 
-    monkeypatch.setattr(projection_rows, "_measure_group", broken)
+    monkeypatch.setattr(projection_rows, "_measure_round", broken)
     with pytest.raises(LightError, match="gone"):
         write_report(["green"], tmp_path, LITTLE)
     assert not read_report(tmp_path / "report.json").complete
@@ -183,33 +184,55 @@ def test_sections_that_are_not_wanted_give_their_time_to_projection() -> None:
     assert "peers" not in allot(everything | {"peers": False}, 100)
 
 
-def test_the_estimate_follows_the_pace_of_a_section(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_clock_tells_the_share_of_the_time_and_what_a_section_leaves_over_goes_to_the_next(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     now = 0.0
     monkeypatch.setattr("shviewer.benchmark.budget.perf_counter", lambda: now)
-    left: list[float] = []
-    clock = Clock({"first": 10.0, "second": 5.0}, lambda share, seconds, what: left.append(seconds))
+    told: list[tuple[float, float, str]] = []
+    clock = Clock({"first": 10.0, "second": 5.0, "third": 5.0}, lambda *what: told.append(what))
     clock.begin("first")
-    now = 8.0
-    clock.tell(0.4, "")
-    assert left == pytest.approx([15.0, 12.0 + 5.0])
-    now = 20.0
+    now = 4.0
+    clock.tell("one")
+    assert told == [(0.0, 20.0, "first"), (0.2, 16.0, "first: one")]
     clock.begin("second")
-    assert left[-1] == pytest.approx(5.0)
-    assert clock.pace() == 2.0
+    assert clock.left() == 11.0
+    assert told[-1] == (pytest.approx(4 / 14), 10.0, "second")  # likely, though it has longer
+    now = 17.0
+    clock.tell("late")
+    assert clock.left() == -2.0
+    assert told[-1] == (pytest.approx(17 / 22), 5.0, "second: late")
+    clock.begin("third")
+    assert clock.left() == 3.0  # what the second took too much
 
 
-def test_a_quick_run_begins_nothing_that_would_end_too_late(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = 0.0
-    monkeypatch.setattr("shviewer.benchmark.budget.perf_counter", lambda: now)
-    run = sections.Run.__new__(sections.Run)
-    run.options, run.clock = Options(quick=True), Clock({"projection": 4.0}, None)
-    run.report = Report(0, "", {}, {})
-    run.clock.begin("projection")
-    now = 5.0
-    run.clock.begin("reconstruction")
-    assert not run.late("pictures")
-    now = 11.0
-    assert run.late("pictures")
-    assert run.report.left_out == ["pictures: --quick was out of time"]
-    run.options = Options()
-    assert not run.late("pictures")
+def test_nothing_is_begun_after_the_time_is_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(end_to_end.subprocess, "run", lambda *rest, **options: pytest.fail("begun"))
+    options = Options(budget=1e-4, quick=True, sections=("projection", "end to end"), shader=False)
+    summary = write_report(["green"], tmp_path, options)
+    report = read_report(tmp_path / "report.json")
+    assert report.complete
+    assert summary.rows == 0
+    assert [row.method for row in report.rows if row.section == "end to end"] == [end_to_end.VERSION]
+    assert not any(row.measured for row in report.rows)
+    with (tmp_path / "report.csv").open() as file:
+        assert {row["note"] for row in csv.DictReader(file)} == {"not measured"}
+    assert "best way: green, 3 9 15 bands" in report.left_out
+    page = (tmp_path / "report.md").read_text()
+    assert (
+        "Not measured for want of time; a larger --budget measures more:\n\n- best way: green, 3 9 15 bands\n" in page
+    )
+    assert re.search(r"\| start, --version +\|.*\| not measured +\|", page)
+
+
+def test_a_run_of_the_same_seed_has_the_same_errors_however_far_it_comes(folder: Path, tmp_path: Path) -> None:
+    write_report(["green"], tmp_path, replace(LITTLE, budget=0.25))
+    some = {row.key: row for row in read_report(tmp_path / "report.json").rows if row.measured}
+    whole = {row.key: row for row in read_report(folder / "report.json").rows if row.measured}
+    assert 0 < len(some) < len(whole)
+    for key, row in some.items():
+        assert (row.error, row.error_low, row.error_high) == (
+            whole[key].error,
+            whole[key].error_low,
+            whole[key].error_high,
+        )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import platform
 import statistics
 import time
 from collections.abc import Callable, Mapping
@@ -47,6 +46,8 @@ def medians(
 
 
 def machine() -> str:
-    import numpy as np
+    """What everything was measured on and with, as the report says it."""
+    from shviewer.benchmark.machine import machine_line, versions
 
-    return f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, numpy {np.__version__}"
+    made_with = versions(["numpy"])
+    return f"{machine_line()}, Python {made_with['Python']}, numpy {made_with['numpy']}"

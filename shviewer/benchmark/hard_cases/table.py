@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import platform
 from collections.abc import Sequence
-from importlib import metadata
 from typing import Any
 
 from shviewer.benchmark.hard_cases.outcome import Outcome
 from shviewer.benchmark.hard_cases.views import SEED
-from shviewer.version import __version__
+from shviewer.benchmark.machine import machine_line, versions
 
 HEADINGS = ("", "case", "reference", "error", "bound", "float32", "bound")
 PACKAGES = ("numpy", "moderngl")
@@ -95,12 +92,4 @@ def _finite(value: float | None) -> float | None:
 
 
 def _made_with() -> dict[str, str]:
-    versions = {name: metadata.version(name) for name in PACKAGES}
-    machine = f"{platform.machine()}, {os.cpu_count()} processors, {platform.system()} {platform.release()}"
-    return {
-        "shviewer": __version__,
-        "Python": platform.python_version(),
-        **versions,
-        "machine": machine,
-        "seed": str(SEED),
-    }
+    return {**versions(PACKAGES), "machine": machine_line(), "seed": str(SEED)}

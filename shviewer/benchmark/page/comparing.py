@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shviewer.benchmark.front import alike
-from shviewer.benchmark.measurement import Measurement
 from shviewer.benchmark.page.document import Report
 from shviewer.benchmark.page.tables import error, milliseconds, table
+from shviewer.benchmark.row import Row
 from shviewer.words import grouped
 
 LEAST_RATIO = 1.25
@@ -22,8 +22,8 @@ ROUNDING = 1e-6, 1e-12
 class Change:
     """One row that is in both reports. Verdicts are "faster", "slower", "better", "worse" or "" for no difference."""
 
-    before: Measurement
-    after: Measurement
+    before: Row
+    after: Row
     time: str
     error: str
 
@@ -61,11 +61,11 @@ class Comparison:
 
 
 def compare(before: Report, after: Report) -> Comparison:
-    """Rows are matched by section, light, method, bands and samples."""
+    """Rows that were measured are matched by section, light, method, bands and samples."""
     different = _differences(before, after)
     ratio = _needed_ratio(before, after)
-    old = {row.key: row for row in before.rows}
-    new = {row.key: row for row in after.rows}
+    old = {row.key: row for row in before.rows if row.measured}
+    new = {row.key: row for row in after.rows if row.measured}
     changes = tuple(
         Change(old[key], row, "" if different else _time_verdict(old[key], row, ratio), _error_verdict(old[key], row))
         for key, row in new.items()
@@ -95,7 +95,7 @@ def _needed_ratio(before: Report, after: Report) -> float:
     return max(LEAST_RATIO, max(ends) / min(ends)) if ends else LEAST_RATIO
 
 
-def _time_verdict(before: Measurement, after: Measurement, ratio: float) -> str:
+def _time_verdict(before: Row, after: Row, ratio: float) -> str:
     if not before.milliseconds or not after.milliseconds or alike(before, after):
         return ""
     if after.milliseconds * ratio < before.milliseconds:
@@ -103,7 +103,7 @@ def _time_verdict(before: Measurement, after: Measurement, ratio: float) -> str:
     return "slower" if before.milliseconds * ratio < after.milliseconds else ""
 
 
-def _error_verdict(before: Measurement, after: Measurement) -> str:
+def _error_verdict(before: Row, after: Row) -> str:
     for name in ("error", "arithmetic_error", "total_error"):
         old, new = getattr(before, name), getattr(after, name)
         if old is None or new is None:
@@ -116,7 +116,7 @@ def _error_verdict(before: Measurement, after: Measurement) -> str:
     return ""
 
 
-def _spreads_meet(before: Measurement, after: Measurement) -> bool:
+def _spreads_meet(before: Row, after: Row) -> bool:
     """False where nothing is random."""
     ends = (before.error_low, before.error_high, after.error_low, after.error_high)
     if any(end is None for end in ends):
@@ -140,5 +140,5 @@ def _cells(change: Change) -> Sequence[str]:
     )
 
 
-def _shown_error(row: Measurement) -> float | None:
+def _shown_error(row: Row) -> float | None:
     return next((e for e in (row.error, row.arithmetic_error, row.total_error) if e is not None), None)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.row import Row
 from shviewer.errors import UsageError
 
 SCHEMA = "shviewer-report/1"
@@ -23,13 +23,19 @@ class Report:
     versions: dict[str, str]
     renderer: str | None = None
     """The OpenGL that drew; None where there was none."""
-    rows: list[Measurement] = field(default_factory=list)
+    rows: list[Row] = field(default_factory=list)
+    """Those of what was not measured for want of time among them: see Row.measured."""
     lights: dict[str, dict[str, Any]] = field(default_factory=dict)
     left_out: list[str] = field(default_factory=list)
+    """What was not measured for want of time, a line for each kind."""
     yardstick: dict[str, float] | None = None
     complete: bool = False
     extra: dict[str, Any] = field(default_factory=dict)
     """What a section has to say beside its rows, under the section's name."""
+
+    def measured(self, section: str) -> list[Row]:
+        """The rows of one section without those that the time did not allow."""
+        return [row for row in self.rows if row.section == section and row.measured]
 
     def as_json(self) -> str:
         page = {
@@ -80,7 +86,7 @@ def read_report(path: Path) -> Report:
             machine=dict(page["machine"]),
             versions=dict(page["versions"]),
             renderer=page["renderer"],
-            rows=[Measurement.from_dict(row) for row in page["rows"]],
+            rows=[Row.from_dict(row) for row in page["rows"]],
             lights=dict(page["lights"]),
             left_out=[str(line) for line in page["left_out"]],
             extra=dict(page["extra"]),

@@ -1,7 +1,7 @@
 """The report's plots, made of its rows alone: time against error, error against bands, frame time against bands.
 
 For a column of print: 86 mm wide, 8 pt, a colour, a marker and a dash for each curve (M. Okabe, K. Ito, "Color Universal
-Design", 2008), and its name beside it. Equal rows give equal bytes with one version of matplotlib.
+Design", 2008), and a legend below the axes. Equal rows give equal bytes with one version of matplotlib.
 """
 
 from __future__ import annotations
@@ -11,24 +11,23 @@ import math
 import statistics
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shviewer.benchmark import reconstruction_rows as reconstruction
 from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.measurement import Measurement
 from shviewer.benchmark.page.plot_marks import (
     INCHES,
     STYLE,
     Curve,
+    add_legend,
     draw_curves,
     log_axes,
-    name_ends,
     padded,
-    place_names,
     plain,
     shorten,
 )
 from shviewer.benchmark.projection_rows import SECTION as PROJECTION
+from shviewer.benchmark.row import Row
 from shviewer.files import write_atomically
 from shviewer.harmonics.metrics import pareto_front
 
@@ -47,9 +46,11 @@ BAND_FLOOR = 1e-3
 
 TOLERANCES = (0.1, 0.05, 0.01)
 SIXTY_HERTZ = 1000 / 60
+MARKED: dict[str, Any] = {"color": "0.45", "linewidth": 0.7, "linestyle": (0, (1, 2)), "zorder": 1}
+"""A level to be seen across the axes."""
 
 
-def make_plots(rows: Sequence[Measurement], folder: Path) -> tuple[tuple[Path, ...], str]:
+def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str]:
     """Write what the rows allow, each as .svg and .png; returns the files, and why there are none if matplotlib is missing.
 
     OutputError if a file cannot be written.
@@ -76,7 +77,7 @@ def make_plots(rows: Sequence[Measurement], folder: Path) -> tuple[tuple[Path, .
     return tuple(written), ""
 
 
-def _plots(rows: Sequence[Measurement]) -> dict[str, Callable[[Figure], None]]:
+def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
     """File stem -> what draws it."""
     plots: dict[str, Callable[[Figure], None]] = {}
     for light in _in_order(row.light for row in rows if row.section == PROJECTION):
@@ -94,7 +95,7 @@ def _plots(rows: Sequence[Measurement]) -> dict[str, Callable[[Figure], None]]:
     return plots
 
 
-def time_error_curves(rows: Sequence[Measurement], light: str) -> list[Curve]:
+def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:
     """(milliseconds, percent) of each method with all its band counts and samples, as far as it does not beat itself."""
     curves = []
     for look, method in enumerate(METHODS):
@@ -109,7 +110,7 @@ def time_error_curves(rows: Sequence[Measurement], light: str) -> list[Curve]:
     return curves
 
 
-def error_curves(rows: Sequence[Measurement]) -> list[Curve]:
+def error_curves(rows: Sequence[Row]) -> list[Curve]:
     """(bands, percent left out) of each light."""
     curves = []
     for look, light in enumerate(_in_order(row.light for row in rows if row.truncation is not None)):
@@ -122,7 +123,7 @@ def error_curves(rows: Sequence[Measurement]) -> list[Curve]:
     return [curve for curve in curves if len(curve.points) > 1]
 
 
-def frame_curves(rows: Sequence[Measurement]) -> list[Curve]:
+def frame_curves(rows: Sequence[Row]) -> list[Curve]:
     """(bands, milliseconds) of each way of drawing, and of making the map: medians over the lights, with their quartiles."""
     drawn = ("milliseconds", "low_quartile", "high_quartile")
     columns = (
@@ -132,7 +133,7 @@ def frame_curves(rows: Sequence[Measurement]) -> list[Curve]:
     )
     curves = []
     for look, (name, method, names) in enumerate(columns):
-        found: dict[int, list[Measurement]] = {}
+        found: dict[int, list[Row]] = {}
         for row in rows:
             known = all(getattr(row, column) for column in names)
             if row.section == reconstruction.SECTION and row.method == method and row.n_bands and known:
@@ -151,12 +152,19 @@ def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None
     everything = [point for curve in curves for point in curve.points]
     front = [everything[i] for i in pareto_front(everything)]
     x, y = padded(x for x, _ in everything), padded((y for _, y in everything), highest=115.0)
-    axes = log_axes(figure, f"{shorten(light)}: total error against the time to project", x, y)
-    axes.set_xlabel("milliseconds")
+    axes = log_axes(figure, f"{shorten(light)}: total error", x, y)
+    axes.set_xlabel("milliseconds to project")
     stairs = [(front[0][0], y[1]), *front, (x[1], front[-1][1])]
-    axes.step(*zip(*stairs, strict=True), where="post", color="0.85", linewidth=5, zorder=1, solid_joinstyle="miter")
     draw_curves(axes, curves)
-    place_names(axes, [*curves, Curve("Pareto front", tuple(stairs[1:]), -1)])
+    broad: dict[str, Any] = {
+        "color": "0.85",
+        "linewidth": 5,
+        "zorder": 1,
+        "solid_joinstyle": "miter",
+        "label": "Pareto front",
+    }
+    axes.step(*zip(*stairs, strict=True), where="post", **broad)
+    add_legend(figure)
 
 
 def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
@@ -168,9 +176,10 @@ def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
     axes.set_yticks(ticks, [f"{'< ' * (tick == 100 * BAND_FLOOR == lowest)}{plain(tick)} %" for tick in ticks])
     _band_axis(axes)
     for tolerance in TOLERANCES:
-        axes.axhline(100 * tolerance, color="0.45", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)
+        axes.axhline(100 * tolerance, **MARKED)
     draw_curves(axes, curves)
-    name_ends(axes, curves)
+    axes.plot([], [], **MARKED, label="tolerances")
+    add_legend(figure)
 
 
 def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
@@ -179,9 +188,9 @@ def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
     title = "milliseconds per frame of 1280 \N{MULTIPLICATION SIGN} 640"
     axes = log_axes(figure, title, _band_range(curves), y, unit="")
     _band_axis(axes)
-    axes.axhline(SIXTY_HERTZ, color="0.45", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)
     draw_curves(axes, curves)
-    name_ends(axes, [*curves, Curve("60 a second", ((axes.get_xlim()[1], SIXTY_HERTZ),), -1)])
+    axes.axhline(SIXTY_HERTZ, **MARKED, label="60 a second")
+    add_legend(figure)
 
 
 def _band_range(curves: Sequence[Curve]) -> tuple[float, float]:

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error, milliseconds, table, with_spread
 from shviewer.benchmark.projection_rows import SECTION
-from shviewer.benchmark.subjects import Subject
+from shviewer.benchmark.row import Row
 from shviewer.words import counted, grouped
 
 Experiment = tuple[str, int | None]
-Cell = Callable[[Measurement], str]
+Cell = Callable[[Row], str]
 
 __all__ = ["SECTION", "lines"]
 
 
-def lines(subjects: Sequence[Subject], rows: Sequence[Measurement]) -> list[str]:
+def lines(lights: Sequence[MeasuredLight], rows: Sequence[Row]) -> list[str]:
     """What the methods are, then three tables per light."""
     found = [
         "| method | what it is |",
@@ -25,16 +25,16 @@ def lines(subjects: Sequence[Subject], rows: Sequence[Measurement]) -> list[str]
         *(f"| {each.words} | {each.explanation} |" for each in METHODS),
         "",
     ]
-    for subject in subjects:
-        own = [row for row in rows if row.light == subject.name]
+    for measured in lights:
+        own = [row for row in rows if row.light == measured.name]
         if own:
-            found += [f"### {subject.name}: milliseconds", "", *_matrix(own, _time), ""]
-            found += [f"### {subject.name}: error of the coefficients", "", *_matrix(own, _error), ""]
-            found += [f"### {subject.name}: evaluations, set-up and memory", "", *_set_up(own), ""]
+            found += [f"### {measured.name}: milliseconds", "", *_matrix(own, _time), ""]
+            found += [f"### {measured.name}: error of the coefficients", "", *_matrix(own, _error), ""]
+            found += [f"### {measured.name}: evaluations, set-up and memory", "", *_set_up(own), ""]
     return found
 
 
-def _matrix(rows: Sequence[Measurement], cell: Cell) -> list[str]:
+def _matrix(rows: Sequence[Row], cell: Cell) -> list[str]:
     """A line per experiment and a column per band count; what is too wide continues below."""
     by_place = {(row.method, row.samples, row.n_bands): cell(row) for row in rows}
     experiments, bands = _experiments(rows), sorted({row.n_bands for row in rows if row.n_bands is not None})
@@ -57,7 +57,7 @@ def _matrix(rows: Sequence[Measurement], cell: Cell) -> list[str]:
     return found
 
 
-def _experiments(rows: Sequence[Measurement]) -> list[Experiment]:
+def _experiments(rows: Sequence[Row]) -> list[Experiment]:
     """In the order of the table of methods, then by samples."""
     order = [each.name for each in METHODS]
     return sorted({(row.method, row.samples) for row in rows}, key=lambda item: (order.index(item[0]), item[1] or 0))
@@ -68,15 +68,15 @@ def _label(experiment: Experiment) -> str:
     return words if experiment[1] is None else f"{words} {grouped(experiment[1])}"
 
 
-def _time(row: Measurement) -> str:
+def _time(row: Row) -> str:
     return with_spread(milliseconds(row.milliseconds), row.milliseconds, row.low_quartile, row.high_quartile)
 
 
-def _error(row: Measurement) -> str:
+def _error(row: Row) -> str:
     return with_spread(error(row.error), row.error, row.error_low, row.error_high)
 
 
-def _set_up(rows: Sequence[Measurement]) -> list[str]:
+def _set_up(rows: Sequence[Row]) -> list[str]:
     """At the most bands that each experiment was measured with."""
     body = []
     for experiment in _experiments(rows):

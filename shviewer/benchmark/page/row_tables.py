@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
-from shviewer.benchmark.measurement import Measurement
+from shviewer.benchmark.experiments import METHODS
 from shviewer.benchmark.page.tables import error, milliseconds, table, with_spread
+from shviewer.benchmark.row import Row
+from shviewer.words import grouped
 
-COLUMNS: dict[str, tuple[str, Callable[[Measurement], str]]] = {
+COLUMNS: dict[str, tuple[str, Callable[[Row], str]]] = {
     "set up": ("set-up ms", lambda row: milliseconds(row.set_up_milliseconds)),
     "left out": ("left out", lambda row: error(row.truncation)),
     "arithmetic": ("arithmetic", lambda row: error(row.arithmetic_error)),
@@ -15,7 +17,7 @@ COLUMNS: dict[str, tuple[str, Callable[[Measurement], str]]] = {
 }
 
 
-def rows_table(rows: Sequence[Measurement], columns: Sequence[str]) -> list[str]:
+def rows_table(rows: Sequence[Row], columns: Sequence[str]) -> list[str]:
     """Any rows: what was done, how long it took, and the columns that the section has to show."""
     shown = [COLUMNS[name] for name in columns]
     body = [
@@ -29,3 +31,21 @@ def rows_table(rows: Sequence[Measurement], columns: Sequence[str]) -> list[str]
         for row in rows
     ]
     return table(("light", "what", "bands", "ms", *(heading for heading, _ in shown)), body, left=2)
+
+
+def lines_not_measured(rows: Iterable[Row]) -> list[str]:
+    """A line for everything that the time did not allow: of which lights, with how many bands."""
+    words = {method.name: method.words for method in METHODS}
+    found: dict[str, dict[str, list[str]]] = {}
+    for row in rows:
+        if not row.measured:
+            what = words.get(row.method, row.method) + ("" if row.samples is None else f" {grouped(row.samples)}")
+            bands = found.setdefault(what, {}).setdefault(row.light, [])
+            bands += [] if row.n_bands is None else [str(row.n_bands)]
+    return [": ".join(filter(None, (what, "; ".join(_places(lights))))) for what, lights in found.items()]
+
+
+def _places(lights: dict[str, list[str]]) -> list[str]:
+    """Each light with its band counts, as far as there are any."""
+    parts = ((light, f"{' '.join(bands)} bands" if bands else "") for light, bands in sorted(lights.items()))
+    return [", ".join(filter(None, part)) for part in parts if any(part)]

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from shviewer.benchmark.front import front_of, name_of, sentences
-from shviewer.benchmark.measurement import COLUMNS, Measurement
+from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.page import projection_tables
 from shviewer.benchmark.page.document import Report
 from shviewer.benchmark.page.tables import bullet, error, milliseconds, table
-from shviewer.benchmark.subjects import Subject
+from shviewer.benchmark.row import COLUMNS, Row
 from shviewer.errors import OutputError
 from shviewer.files import write_atomically
 
@@ -22,16 +22,18 @@ FILES = ("report.md", "report.json", "report.csv")
 INTRODUCTION = """\
 How long it takes to project a light onto spherical harmonics, and how wrong the result is, measured together on one machine.
 
-A *time* is the median wall time of repeated runs that took turns with the others of the same light and band count; "±12%" is
-half the distance of its quartiles. An *error* is that of the coefficients, ||c - exact|| / ||exact||, against the light's
-closed form or exact texel integrals; where samples are random it is the median over several seeds, and "±" half of their
-range.
+A *time* is the median wall time of repeated runs that took turns with the others of the same light, band count and number of
+samples; "±12%" is half the distance of its quartiles. An *error* is that of the coefficients, ||c - exact|| / ||exact||,
+against the light's closed form or exact texel integrals; where samples are random it is the median over several seeds, and "±"
+half of their range.
 The *total* error adds what the bands left out hold: it is that of the picture, ||light - reconstruction|| / ||light||.
-A dash is something that was not measured."""
+A dash is something that was not measured. The smallest comes first, and what the time did not allow is left: another run may
+measure other rows, but the errors of those that both have are the same."""
 
 NOT_COVERED = (
     "Other machines: times hold for the one below. Ratios between rows of one table travel better.",
-    "Times of different tables: they did not take turns.",
+    "Times of different tables, band counts or numbers of samples: they did not take turns. The best way and the paper's 10 000"
+    " samples did.",
     "Graphics hardware, if the renderer below is software.",
     "Errors of the peers: texels are points to them and areas to us, which is not an error of theirs.",
     "How the pictures look: a relative L2 error says nothing about where it is.",
@@ -52,7 +54,7 @@ def make_folder(folder: Path) -> None:
 class Page:
     """What stands on the page beside the rows."""
 
-    subjects: Sequence[Subject]
+    lights: Sequence[MeasuredLight]
     hosted: dict[str, str] = field(default_factory=dict)
     """Markdown of further sections, by their titles."""
     plots: list[str] = field(default_factory=list)
@@ -68,7 +70,7 @@ def write(folder: Path, report: Report, page: Page) -> None:
     write_atomically(folder / "report.md", as_markdown(report, page).encode())
 
 
-def as_csv(rows: Sequence[Measurement]) -> str:
+def as_csv(rows: Sequence[Row]) -> str:
     """One header, one line per row, nothing between two commas where nothing was measured."""
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
@@ -79,6 +81,7 @@ def as_csv(rows: Sequence[Measurement]) -> str:
 
 def as_markdown(report: Report, page: Page) -> str:
     """The page, with what to use first."""
+    projections = report.measured(projection_tables.SECTION)
     lines = ["# Speed against error", ""]
     if not report.complete:
         lines += [
@@ -86,36 +89,34 @@ def as_markdown(report: Report, page: Page) -> str:
             "",
         ]
     lines += [INTRODUCTION, "", "## What to use", ""]
-    for subject in page.subjects:
-        lines += _what_to_use(subject, [row for row in report.rows if row.light == subject.name])
+    for measured in page.lights:
+        lines += _what_to_use(measured, [row for row in projections if row.light == measured.name])
     pictures = [name for name in page.plots if name.endswith(".svg")]
     if pictures or page.plot_message:
         lines += ["## Plots", "", *([f"{page.plot_message}\n"] if page.plot_message else [])]
         lines += [f"![{Path(name).stem.replace('-', ' ')}]({name})\n" for name in pictures]
-    rows = [row for row in report.rows if row.section == projection_tables.SECTION]
-    if rows:
-        lines += ["## Projection", "", *projection_tables.lines(page.subjects, rows)]
+    if projections:
+        lines += ["## Projection", "", *projection_tables.lines(page.lights, projections)]
     for title, text in page.hosted.items():
         lines += [f"## {title}", "", text.strip(), ""]
     lines += ["## What this report does not cover", "", *(bullet(line) for line in NOT_COVERED)]
     if report.renderer is None:
         lines.append("- Drawing: there was no OpenGL.")
     if report.left_out:
-        lines += ["", "Left out for want of time; a larger --budget measures more:", ""]
+        lines += ["", "Not measured for want of time; a larger --budget measures more:", ""]
         lines += [bullet(line) for line in report.left_out]
     return "\n".join([*lines, "", *_made_with(report)]) + "\n"
 
 
-def _what_to_use(subject: Subject, rows: Sequence[Measurement]) -> list[str]:
-    light = subject.light
-    projections = [row for row in rows if row.section == projection_tables.SECTION]
-    lines = [f"### {subject.name}", "", *([light.description, ""] if light.description else [])]
+def _what_to_use(measured: MeasuredLight, projections: Sequence[Row]) -> list[str]:
+    light = measured.light
+    lines = [f"### {measured.name}", "", *([light.description, ""] if light.description else [])]
     if not projections:
         return [*lines, "Not measured.", ""]
-    lines += [bullet(sentence) for sentence in sentences(subject, projections)]
+    lines += [bullet(sentence) for sentence in sentences(measured, projections)]
     front = [
         (
-            name_of(row, subject),
+            name_of(row, measured),
             str(row.n_bands),
             milliseconds(row.milliseconds),
             milliseconds(row.set_up_milliseconds),

@@ -1,4 +1,4 @@
-"""One measured row of the report. What was not measured is None, never 0."""
+"""One row of the report. What was not measured is None, never 0."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Key = tuple[str, str, str, int | None, int | None]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Measurement:
+class Row:
     """Times are wall milliseconds, errors relative L2 norms, memory is in MiB."""
 
     section: str
@@ -54,6 +54,11 @@ class Measurement:
     note: str = ""
 
     @property
+    def measured(self) -> bool:
+        """False for a row that the time did not allow: only what it would have been is known, and its note says so."""
+        return self.milliseconds is not None
+
+    @property
     def key(self) -> Key:
         """What makes two rows of different runs the same measurement."""
         return self.section, self.light, self.method, self.n_bands, self.samples
@@ -63,7 +68,7 @@ class Measurement:
         return {name: _finite(value) for name, value in asdict(self).items()}
 
     @classmethod
-    def from_dict(cls, columns: Mapping[str, Any]) -> Measurement:
+    def from_dict(cls, columns: Mapping[str, Any]) -> Row:
         """Back again. TypeError or ValueError for a column that is missing, unknown or of another type."""
         row = cls(**columns)
         for field in fields(cls):
@@ -79,11 +84,16 @@ class Measurement:
         return row
 
 
-COLUMNS = tuple(field.name for field in fields(Measurement))
+COLUMNS = tuple(field.name for field in fields(Row))
+
+
+def not_measured(section: str, method: str, light: str, n_bands: int | None, samples: int | None = None) -> Row:
+    """The row of something that the time did not allow."""
+    return Row(section=section, method=method, light=light, n_bands=n_bands, samples=samples, note="not measured")
 
 
 def timed(timing: Timing) -> dict[str, Any]:
-    """The four columns that a timing fills: Measurement(..., **timed(timing))."""
+    """The four columns that a timing fills: Row(..., **timed(timing))."""
     return {
         "milliseconds": timing.median,
         "low_quartile": timing.low_quartile,

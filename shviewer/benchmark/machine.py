@@ -1,10 +1,10 @@
-"""What a report was measured on and with, and a yardstick that says how steady the machine was."""
+"""What anything was measured on and with, and a yardstick that says how steady the machine was."""
 
 from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module, metadata
 from pathlib import Path
@@ -29,6 +29,11 @@ def processor() -> str:
     return names[0] if names else platform.processor() or platform.machine()
 
 
+def machine_line() -> str:
+    """In a few words."""
+    return f"{platform.machine()}, {os.cpu_count()} processors, {platform.system()} {platform.release()}"
+
+
 def machine_record() -> dict[str, Any]:
     """What has to be the same for two times to be compared."""
     return {
@@ -41,10 +46,10 @@ def machine_record() -> dict[str, Any]:
     }
 
 
-def versions() -> dict[str, str]:
-    """Of the program, of Python and of every package that is there."""
+def versions(packages: Sequence[str] = (*PACKAGES, *PEERS)) -> dict[str, str]:
+    """The program's, Python's and those of every package that is there."""
     found = {"shviewer": __version__, "Python": platform.python_version()}
-    for name in (*PACKAGES, *PEERS):
+    for name in packages:
         try:
             found[name] = metadata.version(name)
         except metadata.PackageNotFoundError:

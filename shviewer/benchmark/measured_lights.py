@@ -19,38 +19,38 @@ QUICK_TOLERANCES = (0.05,)
 
 
 @dataclass(frozen=True, eq=False)
-class Subject:
-    """A light and its exact answers."""
+class MeasuredLight:
+    """A light of the report and its exact answers."""
 
     name: str
     light: Light
     exact: Array
     """(MOST_BANDS**2, 3)."""
     products: Array
+    """The light's own, (3, 3)."""
     truncation: Array
-    """The relative L2 error of the exact coefficients with n = 1 ... MOST_BANDS bands."""
+    """The relative L2 error of the exact coefficients with n = 1 ... MOST_BANDS bands, (MOST_BANDS,)."""
     needs: dict[float, int | None]
     """Tolerance -> the smallest band count within it; None if none up to MOST_BANDS is."""
 
 
-def find_subjects(
+def find_measured_lights(
     lights: Sequence[str | Light], tolerances: Sequence[float] = TOLERANCES, reading: Reading = DEFAULT_READING
-) -> list[Subject]:
+) -> list[MeasuredLight]:
     """Every light once; of two files of one stem the second is called by its whole text. LightError if one is bad."""
-    subjects: dict[str, Subject] = {}
+    found: dict[str, MeasuredLight] = {}
     for number, text in enumerate(lights):
         if text in lights[:number]:
             continue
         light = find_light(text, reading) if isinstance(text, str) else text
-        name = (
-            light.name if light.name not in subjects else str(text) if isinstance(text, str) else f"light {number + 1}"
-        )
-        subjects[name] = subject_of(light, tolerances, name)
-    return list(subjects.values())
+        name = light.name if light.name not in found else str(text) if isinstance(text, str) else f"light {number + 1}"
+        found[name] = measured_light(light, tolerances, name)
+    return list(found.values())
 
 
-def subject_of(light: Light, tolerances: Sequence[float] = TOLERANCES, name: str = "") -> Subject:
+def measured_light(light: Light, tolerances: Sequence[float] = TOLERANCES, name: str = "") -> MeasuredLight:
+    """A light under its name or another, with its exact coefficients and what their first bands leave out."""
     exact, products = light.coefficients(MOST_BANDS), light.products()
     truncation = errors_by_band_count(products, exact, exact)
     needs = {tolerance: smallest_band_count(truncation, tolerance) for tolerance in tolerances}
-    return Subject(name or light.name, light, exact, products, truncation, needs)
+    return MeasuredLight(name or light.name, light, exact, products, truncation, needs)
