@@ -65,7 +65,7 @@ class Method:
     random: bool = False
     """Another seed gives another result."""
     points: Callable[[Light], int] = lambda light: 0
-    """Of a method without samples: how many it sums one by one; 0 where it is about as fast as the best way."""
+    """How many points a method without samples sums one by one; 0 where it is about as fast as the best way."""
 
     def words_for(self, light_best: str) -> str:
         """The best way is called what the light calls it."""
@@ -157,7 +157,7 @@ def _reduced(factor: int) -> Callable[[Light, int, int, int], Prepared]:
 
 
 def _means(texels: NDArray[np.float32], factor: int) -> NDArray[np.float32]:
-    """Of factor x factor texels; the rows first, which is the faster order."""
+    """Each of factor x factor texels; the rows first, which is the faster order."""
     height, width = texels.shape[:2]
     rows = texels.reshape(height // factor, factor, width * 3).sum(axis=1)
     columns = rows.reshape(height // factor, width // factor, factor, 3)

@@ -61,7 +61,7 @@ Contest = tuple[str, int | None]
 
 
 def texel_solid_angles(height: int, width: int) -> Array:
-    """Of a texel of each row, steradians, (height, 1)."""
+    """What a texel of each row covers, steradians, (height, 1)."""
     theta = np.pi * (np.arange(height) + 0.5) / height
     return np.asarray((2 * np.sin(theta) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width)[:, None])
 

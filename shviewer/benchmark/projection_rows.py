@@ -209,7 +209,7 @@ def forget_tables() -> None:
 
 @dataclass(frozen=True)
 class Errors:
-    """Of one projection, all relative: see Row."""
+    """What one projection is off by, all relative: see Row."""
 
     error: float
     truncation: float

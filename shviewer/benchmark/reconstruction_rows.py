@@ -37,7 +37,7 @@ SECTION = "reconstruction"
 BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
 FRAME = compose(1280, 640)
 MAP_SIZE = (1025, 2048)
-"""Of the maps that the CPU makes, and the largest that the shader draws from."""
+"""Height and width of the maps that the CPU makes, and the largest that the shader draws from."""
 
 
 DIRECT, CACHED = "shader, direct sum", "shader, cached map"
@@ -57,7 +57,7 @@ NEAREST_RIM = 0.2
 """Normals with less than this along the view are left out: there float32 does not know the normal itself to 1e-6."""
 
 MOST_DIRECTIONS, MOST_VALUES = 32_768, 2**20
-"""Of one timed run on the CPU: directions, and values of their basis."""
+"""In one timed run on the CPU: directions, and values of their basis."""
 
 BLOCK = 2048
 CHECKED = 512
@@ -182,7 +182,7 @@ class _Stage:
         return MAP_SIZE[0] * MAP_SIZE[1] if method in (MAP_64, MAP_32) else len(self.directions)
 
     def relative(self, mean_square: float) -> float:
-        """Of an error's square over the sphere, all channels together; infinite where a black light is not drawn black."""
+        """An error's mean square as a norm, over the light's; infinite where a black light is not drawn black."""
         return float(np.sqrt(mean_square)) / self.rms if self.rms else 0.0 if mean_square == 0 else float("inf")
 
     def errors(self) -> dict[str, float | None]:
@@ -277,7 +277,7 @@ class _Frame:
         return {method: self._error(stage, pictures[method]) for method in _shader_methods(stage.n_bands)}
 
     def _error(self, stage: _Stage, picture: Picture) -> float:
-        """Of the linear radiance read back from the right sphere, seen from the front and from behind."""
+        """That of the linear radiance read back from the right sphere, seen from the front and from behind."""
         azimuth, elevation = CAMERA_HOME
         total = weights = 0.0
         for place in ((azimuth, elevation), (azimuth + 180, -elevation)):

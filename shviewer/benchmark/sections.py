@@ -23,7 +23,7 @@ from shviewer.errors import UsageError
 PEER_BANDS = (3, 9, 16, 32)
 QUICK_RECONSTRUCTED = (3, 16)
 QUICK_REPEATS = 3
-"""Of what is slow, where five do not fit."""
+"""Where five repeats of what is slow do not fit."""
 
 AGAINST = "Against an older report"
 
@@ -119,11 +119,11 @@ def _reconstruction(run: Run, drawing: Shader | str, budget: float) -> None:
 
     quick = run.options.quick
     chosen = _representative(run.page.lights)[: 1 if quick else 2]
-    bands, at_least = (QUICK_RECONSTRUCTED, QUICK_REPEATS) if quick else (BANDS, 5)
+    bands = QUICK_RECONSTRUCTED if quick else BANDS
     for number, measured in enumerate(chosen):
         run.clock.tell(measured.name)
         filling, at_most = 0.5 * budget / len(chosen), run.clock.left() / (len(chosen) - number)
-        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=bands, at_least=at_least))
+        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=bands))
     rows = [row for row in run.report.rows if row.section == "reconstruction"]
     lines = [
         "What a band costs where the sum is evaluated, against what it brings. Where the arithmetic error reaches what the",

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 320, 160
 CENTRE = (240.5, 79.5)
-"""Of the right sphere, on the centre of a pixel: that one looks exactly along the view's z."""
+"""The right sphere's, on the centre of a pixel: that one looks exactly along the view's z."""
 
 RADIUS = 78.0
 BLOCK = 2048
@@ -92,7 +92,7 @@ def _sum(directions: Array, coefficients: Array) -> Array:
 
 
 def _peak(coefficients: Array) -> float:
-    """Of the whole sphere, seen on a grid of eight rows per band."""
+    """The largest value on the whole sphere, seen on a grid of eight rows per band."""
     from shviewer.harmonics.synthesis import Synthesis
 
     rows = 8 * count_bands(coefficients)

@@ -11,7 +11,7 @@ from shviewer.harmonics.basis import Array, degrees, evaluate_basis
 from shviewer.harmonics.zonal import Disc, orient
 
 SEED = 20_240_601
-"""Of everything random in the table."""
+"""The seed of everything random in the table."""
 
 SUN_AXIS = (0.36, -0.48, 0.8)
 SUN, SKY, SUN_HALF_ANGLE = 1.6e9, 1e3, 0.265
