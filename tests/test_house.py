@@ -25,7 +25,7 @@ ROOMS = (
 OWNERS = {
     "pyrr": {"viewer/camera.py"},
     "glfw": {"viewer/desktop/glfw_window.py", "viewer/desktop/window.py"},
-    "OpenEXR": {"lights/images/openexr_library.py", "viewer/picture_files.py"},
+    "OpenEXR": {"lights/images/openexr_library.py", "viewer/saving/picture_files.py"},
 }
 """Delicate libraries, and where they are tamed."""
 

@@ -28,7 +28,8 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.picture_files import metadata, write_png
+from shviewer.viewer.saving.picture_files import write_png
+from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import offscreen, render_rgb
 from shviewer.viewer.state import State, changed, state_of
 

@@ -10,7 +10,7 @@ from shviewer.cli.notes import print_notes, print_verdict
 from shviewer.errors import UsageError
 from shviewer.viewer.composition import compose
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.picture_files import compare_with_reference
+from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.screenshot import save_picture
 
 

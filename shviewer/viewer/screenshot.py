@@ -20,7 +20,8 @@ from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.marks import mark_layers
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.picture_files import metadata, write_exr, write_png
+from shviewer.viewer.saving.picture_files import write_exr, write_png
+from shviewer.viewer.saving.stamp import metadata
 
 
 def save_picture(

@@ -30,7 +30,7 @@ from shviewer.viewer.composition import compose
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.picture_files import metadata
+from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.state import State, state_of
 from shviewer.viewer.view import View
 

@@ -35,7 +35,8 @@ from shviewer.version import __version__
 from shviewer.viewer.composition import compose
 from shviewer.viewer.gl import shader_source
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.picture_files import compare_with_reference, write_numbered, write_png
+from shviewer.viewer.saving.picture_files import write_numbered, write_png
+from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.screenshot import render_rgb
 
 SHADERS = resources.resource_folder("shaders")

@@ -18,7 +18,7 @@ from shviewer.viewer.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.picture_files import metadata
+from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.state import changed, state_of
 
 

@@ -25,7 +25,8 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import ACTIONS
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.picture_files import write_exr
+from shviewer.viewer.saving.picture_files import write_exr
+from shviewer.viewer.saving.stamp import metadata, state_of_stamp
 from shviewer.viewer.screenshot import render_linear, render_rgb
 from shviewer.viewer.state import state_of
 
@@ -109,7 +110,15 @@ class Walk:
         if not isinstance(picture.drawn, Surfaces) and self.random.random() < 0.5:
             assert np.isfinite(render_linear(self.renderer, picture, composition)).all()
         self._point(picture, composition)
+        self._stamp(picture, composition)
         assert self.renderer.context.error == "GL_NO_ERROR"
+
+    def _stamp(self, picture: Picture, composition: Composition) -> None:
+        """What the picture says of itself is the state again; a light that is an object cannot be told."""
+        recipe = picture.state.recipe
+        light = None if isinstance(recipe.light, str) else recipe.light
+        read = state_of_stamp(metadata(picture, composition, self.renderer.version), light, recipe.compare)
+        assert (read.recipe, read.view) == (recipe, picture.state.view)
 
     def _point(self, picture: Picture, composition: Composition) -> None:
         x, y = self.random.uniform(0, composition.width), self.random.uniform(0, composition.height)

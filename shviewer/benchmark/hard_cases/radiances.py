@@ -26,7 +26,7 @@ from shviewer.limits import BRIGHTEST, DIMMEST
 
 def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
     """How many of: one NaN, +Inf or -Inf among 8192 texels are read, or refused without saying where. Bound: none."""
-    from shviewer.viewer.picture_files import write_exr
+    from shviewer.viewer.saving.picture_files import write_exr
 
     missed = 0
     with tempfile.TemporaryDirectory() as folder:

@@ -23,7 +23,7 @@ from shviewer.viewer.animation.encoders import encode_gif, encode_webp
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.picture_files import metadata
+from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import headless_renderer, render_rgb
 from shviewer.viewer.state import State, changed
 

@@ -21,7 +21,8 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.picture_files import metadata, write_numbered
+from shviewer.viewer.saving.picture_files import write_numbered
+from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import State, changed
 

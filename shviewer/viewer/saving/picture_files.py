@@ -1,0 +1,51 @@
+"""PNG and EXR files that carry a text, written whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from shviewer.errors import OutputError
+from shviewer.files import write_atomically
+from shviewer.version import __version__
+
+
+def write_png(path: Path, pixels: NDArray[np.uint8], text: str, *, exclusive: bool = False) -> None:
+    """A PNG with `text` under the key shviewer. OutputError if it cannot be written; FileExistsError if exclusive and taken."""
+    information = PngInfo()
+    information.add_itxt("shviewer", text)
+    information.add_text("Software", f"shviewer {__version__}")
+    buffer = io.BytesIO()
+    Image.fromarray(pixels).save(buffer, "PNG", compress_level=4, pnginfo=information)
+    write_atomically(path, buffer.getvalue(), exclusive=exclusive)
+
+
+def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
+    """Float32 RGB with `text` in the attribute shviewer. OutputError if it cannot be written or OpenEXR is missing."""
+    try:
+        import OpenEXR
+    except ImportError as error:
+        raise OutputError(f"{path}: writing EXR needs the package OpenEXR (pip install OpenEXR)") from error
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, "shviewer": text}
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "picture.exr"
+        OpenEXR.File(header, {"RGB": pixels}).write(str(file))
+        write_atomically(path, file.read_bytes())
+
+
+def write_numbered(stem: str, pixels: NDArray[np.uint8], text: str) -> Path:
+    """A PNG under the next free name stem-001.png, stem-002.png, ... in the current folder."""
+    for number in range(1, 10_000):
+        path = Path(f"{stem}-{number:03d}.png")
+        if not path.exists():
+            with suppress(FileExistsError):  # somebody else was faster
+                write_png(path, pixels, text, exclusive=True)
+                return path
+    raise OutputError(f"{stem}-001.png to {stem}-9999.png all exist; move some away")

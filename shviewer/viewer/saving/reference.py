@@ -1,0 +1,46 @@
+"""A picture against a reference: which share of the pixels differs, and where."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from shviewer.errors import UsageError
+from shviewer.viewer.saving.picture_files import write_png
+
+PIXEL_STEP = 2
+"""Two pixels differ if any channel does by more than this many of 255: rounding differs by 1 between drivers."""
+
+
+def compare_with_reference(pixels: NDArray[np.uint8], reference: Path, difference: Path, threshold: float) -> str:
+    """ "" if at most the share `threshold` of the pixels differs by more than PIXEL_STEP of 255, else what differs.
+
+    Then `difference` is written: the absolute difference, sixteen times as bright. UsageError if the reference is bad.
+    """
+    try:
+        with warnings.catch_warnings(action="error"), Image.open(reference) as image:
+            wanted = np.asarray(image.convert("RGB"))
+    except FileNotFoundError as error:
+        raise UsageError(f"{reference}: no such reference; make it with the same command, REF.png as OUT") from error
+    except (OSError, ValueError, Warning, Image.DecompressionBombError) as error:
+        raise UsageError(
+            f"{reference}: not a readable picture; make it with the same command, REF.png as OUT"
+        ) from error
+    if wanted.shape != pixels.shape:
+        return (
+            f"{reference} is {wanted.shape[1]} x {wanted.shape[0]}, the picture {pixels.shape[1]} x {pixels.shape[0]}"
+        )
+    distance = np.abs(wanted.astype(np.int16) - pixels)
+    share = float((distance.max(axis=2) > PIXEL_STEP).mean())
+    if share <= threshold:
+        return ""
+    write_png(difference, np.minimum(distance * 16, 255).astype(np.uint8), json.dumps({"reference": str(reference)}))
+    return (
+        f"{share:.4%} of the pixels differ from {reference} by more than {PIXEL_STEP}/255 (allowed {threshold:.4%}, "
+        f"largest {distance.max()}/255); see {difference}"
+    )
