@@ -12,9 +12,9 @@ from shviewer.analysis.options import whole
 from shviewer.analysis.recipe import Recipe
 from shviewer.api import LightLike, recipe_of, taken, with_options
 from shviewer.errors import UsageError
+from shviewer.viewer import screenshot as offscreen
 from shviewer.viewer.composition import compose
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.screenshot import headless_renderer, render_rgb
 from shviewer.viewer.state import State
 from shviewer.viewer.view import View
 
@@ -35,8 +35,8 @@ def screenshot(
     """
     state = _state(light, bands, options, size)
     picture = prepare(state)
-    with headless_renderer() as renderer:
-        return render_rgb(
+    with offscreen.headless_renderer() as renderer:
+        return offscreen.render_rgb(
             renderer, picture, compose(*size, state.view.zoom, n_spheres=state.view.n_spheres), overlay=overlay
         )
 
