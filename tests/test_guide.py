@@ -6,16 +6,21 @@ import argparse
 import csv
 import json
 import re
+import sys
 import tomllib
 from contextlib import nullcontext
 from pathlib import Path
+from types import FrameType
 
 import numpy as np
 import pytest
 from documents import GUIDE, PAGES, README, ROOT, anchors, code_blocks, commands, links, page, read
 from guide import PARSERS, written_anew
+from places import ASSETS
+from test_house import ROOMS
 
 import shviewer
+from shviewer.analysis.cache import MEMORY
 from shviewer.cli.from_options import state_from
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
@@ -266,3 +271,64 @@ def test_the_excerpt_of_the_report_is_in_the_report() -> None:
         rf"for 5 % relative L2: {said[1]}, .*?; the paper's {re.escape(said[2])}",
         whole.partition("### hemisphere")[0],
     )
+
+
+# Names of files
+
+
+@documents
+def test_every_source_file_that_is_named_exists(path: Path) -> None:
+    for name in re.findall(r"`((?:shviewer|tests)/[\w/]+\.py)`", read(path)):
+        assert (ROOT / name).is_file(), name
+
+
+def test_the_page_for_contributors_names_files_and_rooms_that_there_are() -> None:
+    text = page("contributing")
+    names = re.findall(r"`([\w/]+\.py)`", text)
+    assert len(names) > 30
+    for name in names:
+        assert (ROOT / "shviewer" / name).is_file() or (ROOT / name).is_file(), name
+    rooms = re.findall(r"^\| (`.*?) \|", text, flags=re.MULTILINE)
+    listed = [set(re.findall(r"`(\w+)(?:/|\.py)`", row)) for row in rooms]
+    assert listed == [set(line) - {"__main__", "__init__"} for line in ROOMS]
+
+
+def test_a_file_goes_through_the_functions_that_the_journey_names(tmp_path: Path) -> None:
+    """The steps of the page, in their order, as a profile of the command sees them for the first time."""
+    journey = page("contributing").partition("## From an .exr file")[2].partition("\n## ")[0]
+    files = [name for name in re.findall(r"`([\w/]+\.py)`", journey) if name not in ("cli/options.py",)]
+    seen: list[str] = []
+
+    def note(frame: FrameType, event: str, argument: object) -> None:
+        if event == "call" and "shviewer/" in frame.f_code.co_filename and frame.f_code.co_name != "<module>":
+            name = frame.f_code.co_filename.rpartition("shviewer/")[2]
+            if name in files and name not in seen:
+                seen.append(name)
+
+    image = str(ASSETS / "environments" / "film_studio.exr")
+    before = sys.getprofile()
+    MEMORY.clear()
+    sys.setprofile(note)
+    try:
+        assert main(["project", image, "-o", str(tmp_path / "studio.json")]) == 0
+    finally:
+        sys.setprofile(before)
+    assert set(files) <= set(seen)
+    assert [seen.index(name) for name in STAGES] == sorted(seen.index(name) for name in STAGES)
+
+
+STAGES = (
+    "cli/main.py",
+    "cli/project.py",
+    "cli/from_options.py",
+    "analysis/reconstruction.py",
+    "analysis/subjects.py",
+    "files.py",
+    "lights/images/radiance_files.py",
+    "lights/images/openexr.py",
+    "lights/layouts/recognise.py",
+    "analysis/projections.py",
+    "harmonics/projection.py",
+    "analysis/figures.py",
+    "coefficients/writing.py",
+)

@@ -11,7 +11,6 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 
 import moderngl
@@ -22,8 +21,8 @@ from shviewer.benchmark.hard_cases.shader import Shader
 from shviewer.benchmark.row import Row, not_measured, timed
 from shviewer.benchmark.timing import Timing, summarise, time_interleaved
 from shviewer.errors import GraphicsError
-from shviewer.viewer.actions import more_bands
 from shviewer.viewer.composition import compose
+from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import draw_overlay
@@ -129,11 +128,11 @@ def session_rows(
     start = state_of(text)
     works: dict[tuple[str, int], Work] = {}
     with offscreen(drawing.renderer, FRAME) as target, tempfile.TemporaryDirectory() as folder:
-        session = _Session(drawing.renderer, target)
-        works[PICTURE, start.recipe.n_bands] = lambda: session.show(start)
-        works[SAVED, start.recipe.n_bands] = lambda: session.save(start, Path(folder) / "out.png")
+        frames = _Frames(drawing.renderer, target)
+        works[PICTURE, start.recipe.n_bands] = lambda: frames.first(start)
+        works[SAVED, start.recipe.n_bands] = lambda: frames.save(start, Path(folder) / "out.png")
         for n_bands in key_bands:
-            works[NEW_KEY, n_bands + 1] = works[KNOWN_KEY, n_bands + 1] = partial(session.press_up, start, n_bands)
+            works[NEW_KEY, n_bands + 1] = works[KNOWN_KEY, n_bands + 1] = frames.press_up
 
         def before(work: tuple[str, int], repeat: int) -> None:
             if work[0] != KNOWN_KEY:
@@ -141,7 +140,7 @@ def session_rows(
             if work[0] == KNOWN_KEY:
                 prepare(changed(start, n_bands=work[1]))
             if work[0] in (NEW_KEY, KNOWN_KEY):
-                session.upload(changed(start, n_bands=work[1] - 1))
+                frames.open(changed(start, n_bands=work[1] - 1))
 
         times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least, before=before)
     MEMORY.clear()
@@ -169,30 +168,39 @@ def idle_row(seconds: int = IDLE_SECONDS, at_most: float = math.inf) -> Row | st
     return _row(IDLE, "green", Recipe.n_bands, summarise([1000 * share for share in shares]))
 
 
-class _Session:
-    """What a window does between an event and the picture, on a framebuffer of its size and format."""
+class _Frames:
+    """A session as a window has it, on a framebuffer of its size and format."""
 
     def __init__(self, renderer: Renderer, target: moderngl.Framebuffer) -> None:
         self.renderer = renderer
         self.target = target
         self.layers: tuple[Layer, ...] = ()
 
-    def upload(self, state: State) -> None:
-        picture = prepare(state)
-        self.renderer.show(picture)
-        self.layers = draw_overlay(picture, FRAME, timing=True).layers
+    def open(self, state: State) -> None:
+        self.session = Session(state)
+        self._upload()
 
-    def show(self, state: State) -> None:
-        self.upload(state)
-        self.renderer.draw(self.target, FRAME, self.layers)
-        self.renderer.context.finish()
+    def first(self, state: State) -> None:
+        self.open(state)
+        self._draw()
 
-    def press_up(self, start: State, n_bands: int) -> None:
-        self.show(more_bands(1)(changed(start, n_bands=n_bands)))
+    def press_up(self) -> None:
+        self.session.press("Up")
+        self.session.prepare()
+        self._upload()
+        self._draw()
 
     def save(self, state: State, out: Path) -> None:
         picture = prepare(state)
         write_png(out, render_rgb(self.renderer, picture, FRAME), metadata(picture, FRAME, self.renderer.version))
+
+    def _upload(self) -> None:
+        self.renderer.show(self.session.picture)
+        self.layers = draw_overlay(self.session.picture, FRAME, timing=True).layers
+
+    def _draw(self) -> None:
+        self.renderer.draw(self.target, FRAME, self.layers)
+        self.renderer.context.finish()
 
 
 def _process(*arguments: str) -> Work:
