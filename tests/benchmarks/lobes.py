@@ -35,6 +35,7 @@ SPHERE = COMPOSITION.spheres[0]
 
 MARCHING = """#version 330 core
 #include "lat_long.glsl"
+uniform sampler2D radiance_map;
 uniform vec2 centre;
 uniform float radius;
 uniform mat3 light_from_view;
@@ -49,7 +50,7 @@ float hit(vec2 p) {
         float angle = half_turn * (1.0 - 2.0 * float(i) / float(steps));
         vec3 direction = light_from_view * vec3(cos(angle) * p / distance_, sin(angle));
         vec2 size = vec2(textureSize(radiance_map, 0));
-        float value = textureLod(radiance_map, (map_position(direction).yx + 0.5) / size, 0.0).r;
+        float value = textureLod(radiance_map, (map_position(direction, size, true).yx + 0.5) / size, 0.0).r;
         covered = abs(value) * cos(angle) >= distance_ ? 1.0 : 0.0;
     }
     return covered;
@@ -73,12 +74,10 @@ class Marching:
         self.texture = context.texture((columns, rows), 1, values, dtype="f4")
         self.texture.repeat_y = False
         centre = (SPHERE.x, COMPOSITION.height - SPHERE.y)
-        scale = ((rows - 1) / np.pi, 0.0)
         for name, value in {
             "centre": centre,
             "radius": SPHERE.radius,
             "steps": 8 * n_bands,
-            "row_scale_offset": scale,
         }.items():
             self.program[name].value = value
         self.program["light_from_view"].write(VIEW.T.astype("f4").tobytes())
