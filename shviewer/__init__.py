@@ -8,8 +8,8 @@
     screenshot(light, bands) -> (height, width, 3)   the picture, without a window
     view(light, bands)                               the window
 
-They are imported when they are first used: `import shviewer` alone loads neither numpy nor OpenGL. What a user can put right
-raises ShviewerError.
+They are imported when they are first used: `import shviewer` alone loads neither numpy nor OpenGL. A mistake that a user can
+put right raises ShviewerError.
 """
 
 from __future__ import annotations

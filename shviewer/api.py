@@ -1,9 +1,9 @@
-"""The functions of `import shviewer`, each of which does what the command of its name does.
+"""The functions of `import shviewer`. A function with the name of a command does what the command does.
 
 A light is what `find_light` takes: a text that the command line would take for LIGHT, a path, a function of directions, an
 array, or a Light. `options` are those of the window, by their names in State; OPTIONS_HELP lists them.
 
-ShviewerError, with one line that says what to do, where an argument is out of range or a light is bad.
+They raise ShviewerError, with one line that says what to do, if an argument is out of range or a light is bad.
 """
 
 from __future__ import annotations
@@ -23,9 +23,7 @@ from shviewer.errors import UsageError
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
 
-if (
-    TYPE_CHECKING
-):  # each function imports what it needs: mathematics alone loads no light, and what is projected is not drawn
+if TYPE_CHECKING:  # each function imports what it needs: mathematics alone loads no light, and a projection no OpenGL
     from shviewer.analysis.projected import Projected
     from shviewer.benchmark.run import Summary
     from shviewer.lights.light import Light
@@ -36,11 +34,11 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 NAMED_ELSEWHERE = ("n_bands", "tolerance")
-"""Options that are an argument of their own, or none of these functions."""
+"""Options that the functions take as an argument of another name, or not at all."""
 
 
 def with_options(*holders: type) -> Callable[[_Function], _Function]:
-    """Decorator: the options of these dataclasses, which the function takes, stand at the end of its docstring."""
+    """Decorator: list the options of these dataclasses, which the function takes, at the end of its docstring."""
 
     def decorate(function: _Function) -> _Function:
         rows = [(row.name, row.help) for row in options_of(*holders).values() if row.name not in NAMED_ELSEWHERE]
@@ -78,12 +76,13 @@ def evaluate_basis(directions: ArrayLike, n_bands: int) -> Array:
 
 
 def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False, layout: str = "auto") -> Light:
-    """The light that `what` is.
+    """Find or make the light that `what` names, describes or holds.
 
     A text or a path is read as on the command line. A function takes unit directions (k, 3) and returns radiance (k, 3), or
-    (k,) for grey, linear RGB. An array (n**2, 3) is coefficients in our convention, one of (height, width, 3) a lat-long image
-    of linear radiance with +z on top and +x in the middle.
-    convention: of a file that does not say its own, such as "three"; sanitize, layout: of an image.
+    (k,) for grey, linear RGB. An array (n**2, 3) holds coefficients in our convention, an array (height, width, 3) a lat-long
+    image of linear radiance with +z on top and +x in the middle.
+    convention: that of a coefficient file that does not name one, such as "three". sanitize: repair bad values of an image.
+    layout: how an image covers the sphere.
     LightError if there is no such light or its file is bad.
     """
     from shviewer.lights import find
@@ -121,7 +120,7 @@ def _array_light(array: NDArray[np.generic]) -> Light:
 
 
 def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *others: type) -> Recipe:
-    """The recipe with these options; those of `others` are somebody else's. UsageError for one that nobody knows."""
+    """The recipe with these options; those of the dataclasses `others` are left out. UsageError for an unknown option."""
     from shviewer.analysis.comparison import as_the_file_holds
 
     known = [name for name in options_of(Recipe, *others) if name not in NAMED_ELSEWHERE] + ["compare"]
@@ -140,7 +139,7 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
 
 
 def taken(options: dict[str, Any], holder: type) -> dict[str, Any]:
-    """Those of the options that a dataclass holds, as it holds them. UsageError for a value of another type."""
+    """The options that belong to a dataclass, as it holds them. UsageError for a value of another type."""
     return {name: row.kind.taken(name, options[name]) for name, row in options_of(holder).items() if name in options}
 
 
@@ -161,7 +160,7 @@ def project(light: LightLike, bands: int | None = None, **options: Any) -> Proje
     """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
 
     `Projected.coefficients` is (bands**2, 3) float64 in the convention of harmonics/basis.py, row l(l+1) + m; `save` writes a
-    file and `numbers` converts, both for other programs, too. ShviewerError for whatever a caller can put right.
+    file and `numbers` converts, both for other programs, too. ShviewerError for a mistake that a caller can put right.
 
     """
     from shviewer.analysis.projected import project_recipe

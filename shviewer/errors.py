@@ -1,4 +1,4 @@
-"""What can go wrong in a way that the person at the keyboard can put right.
+"""The errors that the person at the keyboard can put right.
 
 A `ShviewerError` becomes one line on stderr and the exit code of its class; every other exception is a
 programming error and keeps its traceback. The codes are part of the interface (assets/guide/command-line.md).

@@ -1,4 +1,4 @@
-"""Files read and written safely: looked at before they are opened, written whole or not at all, and told apart by a look."""
+"""Files read and written safely: looked at before they are opened, written whole or not at all, with versions told apart."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from shviewer.limits import Limits
 
 @contextlib.contextmanager
 def naming(name: str) -> Iterator[None]:
-    """Errors begin with the name; quoted and escaped if it holds a line break or bytes that are no text."""
+    """Let the errors raised inside begin with `name`, quoted and escaped if it holds a line break or bytes that are no text."""
     shown = name if name.isprintable() else ascii(name)
     try:
         yield
@@ -46,7 +46,7 @@ def read_bytes(path: Path, limits: Limits) -> bytes:
 
 
 def _check_is_small_file(status: os.stat_result, limits: Limits) -> int:
-    """The size in bytes."""
+    """Return the size in bytes. LightError unless it is a regular file, not empty, and within the limits."""
     if stat.S_ISDIR(status.st_mode):
         raise LightError("a directory; name one image in it")
     if not stat.S_ISREG(status.st_mode):
@@ -71,7 +71,7 @@ def _reason(error: OSError | ValueError) -> str:
 
 
 class FileVersion(NamedTuple):
-    """What tells one content of a file from the next without reading it."""
+    """What tells a file from the same file edited, without reading it."""
 
     modified_ns: int
     size: int
@@ -79,7 +79,7 @@ class FileVersion(NamedTuple):
 
 
 def version_of(path: Path) -> FileVersion | None:
-    """The version of the file there at the moment; None where there is none."""
+    """The present version of the file at `path`; None where there is no file."""
     try:
         status = path.stat()
     except (OSError, ValueError):
@@ -88,7 +88,7 @@ def version_of(path: Path) -> FileVersion | None:
 
 
 def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> None:
-    """Write beside and move into place: `path` is what it was or whole. exclusive: FileExistsError if it exists."""
+    """Write a file beside and move it into place: `path` is never half written. exclusive: FileExistsError if it exists."""
     try:
         handle, name = tempfile.mkstemp(prefix=".shv-", suffix=".tmp", dir=path.parent)
         try:
@@ -111,7 +111,7 @@ def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> Non
 
 
 def check_place(path: Path) -> None:
-    """OutputError if nothing can be written there: to be asked before what is to be written is worked on for long."""
+    """OutputError if nothing can be written at `path`: a check to make before long work on what goes there."""
     try:
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
@@ -143,5 +143,5 @@ def _umask() -> int:
 
 
 def file_stem(name: str) -> str:
-    """What a light is called, fit for a file's name everywhere."""
+    """The name of a light, made fit for a file name on every system."""
     return re.sub(r"[^\w.+-]+", "-", name).strip("-.") or "light"

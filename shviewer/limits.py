@@ -1,4 +1,4 @@
-"""What is refused for its size: files and images before memory is taken, bands, and radiance that float32 cannot show."""
+"""Limits of size: of files and images, checked before memory is taken, of bands, and of radiance that float32 can show."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def check_radiance(largest: float, name: str) -> None:
 
 
 def check_brightness(radiance: float, name: str) -> None:
-    """LightError for a light that is known to reach more than float32 can show: asked where a light is made."""
+    """LightError for a radiance above what float32 can show: the check for a light that is only being made."""
     if radiance > BRIGHTEST:
         check_radiance(radiance, name)
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How large an image may be. side: texels; texels: of the whole image; file_bytes: of the file as it is stored.
+    """The largest image. side: texels along a side; texels: in the whole image; file_bytes: size of the file.
 
     Checked on the numbers a header claims, before anything of that size is made.
     """
@@ -45,7 +45,7 @@ class Limits:
     file_bytes: int = 512 * 2**20
 
     def check_file(self, size: int) -> None:
-        """Raises LightError for a file of more bytes."""
+        """Raises LightError for a file of more than `file_bytes` bytes."""
         if size > self.file_bytes:
             raise LightError(
                 f"{size} bytes; the limit is {self.file_bytes}: make the image smaller, or raise it (--max-file-mib)"

@@ -28,7 +28,7 @@ def screenshot(
     overlay: bool = True,
     **options: Any,
 ) -> NDArray[np.uint8]:
-    """The picture of the window: (height, width, 3) uint8, sRGB, top row first. size: width and height in pixels.
+    """The picture that the window would show: (height, width, 3) uint8, sRGB, top row first. size: (width, height) in pixels.
 
     overlay: with captions and figures. GraphicsError where there is no OpenGL 3.3.
 
@@ -57,7 +57,7 @@ def view(
 
 
 def _state(light: LightLike, bands: int | None, options: dict[str, Any], size: Any) -> State:
-    """The state of the window with these options. UsageError for one that is unknown or out of range."""
+    """The state of the window with these options. UsageError for an option that is unknown or out of range."""
     if not (isinstance(size, Sequence) and len(size) == 2):
         raise UsageError(f"size {size!r}: it must be width and height, such as (1280, 640)")
     width, height = whole(size[0], "width"), whole(size[1], "height")

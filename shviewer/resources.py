@@ -1,4 +1,4 @@
-"""Where shaders/ and assets/ are, in a checkout and in an installed package."""
+"""The places of shaders/ and assets/, in a checkout and in an installed package."""
 
 from __future__ import annotations
 

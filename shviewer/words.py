@@ -1,4 +1,4 @@
-"""How numbers, shares, angles, times and counts read, wherever they are said."""
+"""Numbers, shares, angles, times and counts as text, the same in every place that shows them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def theta_phi_degrees(direction: Iterable[float]) -> tuple[float, float]:
-    """The angle to +z and the azimuth from +x towards +y of a direction (x, y, z), for people; never a negative zero."""
+    """theta, the angle to +z, and phi, the azimuth from +x towards +y, of a direction (x, y, z); never a negative zero."""
     x, y, z = map(float, direction)
     return math.degrees(math.atan2(math.hypot(x, y), z)), math.degrees(math.atan2(y, x)) + 0.0
 
@@ -53,12 +53,12 @@ def percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
 
 
 def whole_percent(share: float) -> str:
-    """A share over its bar: a bar is as high as it is beside the highest, so a small one says that it is small."""
+    """A share of 1 in whole percent, as written over a bar; "<1" for one below half a percent that is not zero."""
     return f"{100 * share:.0f}" if share >= 0.005 or share == 0 else "<1"
 
 
 def radiance(value: float, peak: float) -> str:
-    """Three digits, with a power of ten where that is shorter; 0 below a millionth of the light's peak."""
+    """A radiance in three digits, with a power of ten where that is shorter; "0" below a millionth of the light's peak."""
     if abs(value) <= 1e-6 * peak:
         return "0"
     if 1e-3 <= abs(value) < 1e5:
@@ -68,17 +68,17 @@ def radiance(value: float, peak: float) -> str:
 
 
 def grouped(count: int) -> str:
-    """1000000 as 1 000 000."""
+    """A count in groups of three digits: 1000000 as "1 000 000"."""
     return f"{count:,}".replace(",", " ")
 
 
 def grouped_number(value: float) -> str:
-    """Two decimals below 10, none above."""
+    """A number with two decimals below 10, and above in groups of three digits with none."""
     return f"{value:.2f}" if value < 10 else grouped(round(value))
 
 
 def short_count(count: int) -> str:
-    """625, 2.5k, 160k, 1M."""
+    """A count in few letters: "625", "2.5k", "160k", "1M"."""
     for size, letter in ((1_000_000, "M"), (1000, "k")):
         if count >= size:
             return f"{count / size:.3g}{letter}"

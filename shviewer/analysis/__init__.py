@@ -1,1 +1,1 @@
-"""What is known of a light: projections, figures, comparisons, each computed once."""
+"""The analysis of a light: projections, figures and comparisons, each computed once."""

@@ -1,6 +1,6 @@
-"""What is known of the lights used last: a light is forgotten as a whole, with everything that was computed for it.
+"""The memory of the lights used last: a light is forgotten as a whole, with everything that was computed for it.
 
-A bound per function would keep a light, and its image, alive for as long as any result of any function is; here the bound
+A bound per function would keep a light, and its image, alive as long as one result of one function is kept; so the bound
 is on lights. The irradiance of a light belongs to that light, and so does what is left of it without its suns.
 """
 
@@ -18,19 +18,19 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 MOST_LIGHTS = 12
-"""Enough for all built-in lights and two of one's own."""
+"""How many lights are remembered: all built-in ones and two of one's own."""
 
 MOST_BYTES = 512 * 2**20
-"""In arrays of the lights but the one in use: about six images of 4096 x 2048 with what was computed for them."""
+"""The most bytes in arrays of lights not in use: about six images of 4096 x 2048, with what was computed for them."""
 
 SCALARS = {float, int, bool, str, type(None)}
 
 Results = OrderedDict[Hashable, Any]
-"""Of one function for one light and its irradiance, the one used longest ago first."""
+"""The results of one function for one light and its irradiance, the one used longest ago first."""
 
 
 class Memory:
-    """Lights by name, and results by light. Whatever is looked up counts as used; what was used longest ago goes first."""
+    """Lights by name, and results by light. A look-up counts as a use; the light used longest ago is forgotten first."""
 
     def __init__(self, most_lights: int = MOST_LIGHTS, most_bytes: int = MOST_BYTES) -> None:
         self.most_lights = most_lights
@@ -38,7 +38,7 @@ class Memory:
         self._known: OrderedDict[Light, dict[object, Results]] = OrderedDict()
         self._names: dict[Hashable, Light] = {}
         self._wholes: dict[Light, Light] = {}
-        """What a light that was made of another one is a part of."""
+        """Part -> whole: the light that another one was made from."""
 
     def __contains__(self, light: Light) -> bool:
         return self._source(light) in self._known
@@ -63,11 +63,11 @@ class Memory:
         self._use(light)
 
     def results(self, light: Light, function: object) -> Results:
-        """What is remembered of `function` for the light; to be added to."""
+        """The remembered results of `function` for the light; the caller may add to them."""
         return self._use(self._source(light)).setdefault(function, OrderedDict())
 
     def forget(self, light: Light) -> None:
-        """The light, its names and all results."""
+        """Forget the light, its names and all its results."""
         light = self._source(light)
         self._known.pop(light, None)
         self._wholes = {part: whole for part, whole in self._wholes.items() if whole is not light}
@@ -75,7 +75,7 @@ class Memory:
             del self._names[name]
 
     def forget_results(self, function: object) -> None:
-        """Those of one function, of every light."""
+        """Forget the results of one function for every light."""
         for results in self._known.values():
             results.pop(function, None)
 
@@ -95,7 +95,7 @@ class Memory:
         return self._known[light]
 
     def _make_room(self) -> None:
-        """For one more light. Sizes are taken now, when everything the others asked for has been computed."""
+        """Make room for one more light. Sizes are taken now, when all results of the others have been computed."""
         sizes = [array_bytes(light, entry) for light, entry in self._known.items()]
         while sizes and (len(sizes) >= self.most_lights or sum(sizes) > self.most_bytes):
             del sizes[0]
@@ -103,7 +103,7 @@ class Memory:
 
 
 MEMORY = Memory()
-"""The program's."""
+"""The memory that the program uses."""
 
 
 class Remembered(Generic[P, R]):

@@ -1,4 +1,4 @@
-"""What `shviewer info` says of a coefficient file beyond what it says of every light: its convention and its origin."""
+"""The lines of `shviewer info` that only a coefficient file has: its convention and its origin."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "mi
 
 @dataclass(frozen=True)
 class CoefficientInformation:
-    """About the numbers in a file."""
+    """The convention and the origin of the numbers in a file."""
 
     bands: int
     quantity: str
-    """What they are of, as the file has them: radiance, irradiance or irradiance-over-pi."""
+    """The quantity in the file: radiance, irradiance or irradiance-over-pi."""
     convention: str
     program: str
     basis: str
@@ -26,13 +26,13 @@ class CoefficientInformation:
     axes: str
     normalisation: str
     stamped: bool
-    """Whether the file says all this itself; else somebody named its convention."""
+    """Whether the file itself names its convention; if not, the user named it."""
     stamp: dict[str, str | int | float | None]
     """Everything the file says; empty for a bare list."""
 
 
 def describe_coefficients(about: About) -> CoefficientInformation | None:
-    """None for a light that is no coefficient file."""
+    """The information on a coefficient file; None for a light that is none."""
     if (file := about.file) is None:
         return None
     words = {key: str(value) for key, value in stamp_of(file.convention, file.quantity, file.n_bands).items()}
@@ -52,7 +52,7 @@ def describe_coefficients(about: About) -> CoefficientInformation | None:
 
 
 def coefficient_rows(found: CoefficientInformation) -> list[tuple[str, str]]:
-    """Lines for a person: label and text."""
+    """The lines to print: label and text."""
     said = "as the file says" if found.stamped else "as named on the command line; the file does not say"
     rows = [
         (

@@ -25,10 +25,10 @@ from shviewer.words import brief_percent
 
 
 def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple[Recipe, str]:
-    """The recipe, comparing with the coefficients in the file `text`, and which convention that was found to have, if any.
+    """The recipe with the coefficients in the file `text` to compare, and a line on the convention that was found, or "".
 
-    A bare list whose convention nobody names is read in the one that fits the recipe's light, or is nearest. LightError if the
-    file is bad or no coefficient file; option: what the caller calls it.
+    A bare list without a named convention is read in the convention that fits the recipe's light, or else the nearest.
+    LightError if the file is bad or no coefficient file. option: the name of the option in messages.
     """
     file = Path(text)
     if file.suffix.lower() not in COEFFICIENT_SUFFIXES:
@@ -48,9 +48,9 @@ def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple
 
 
 def _found(recipe: Recipe, numbers: NDArray[Any]) -> Found:
-    """By the radiance of what is projected."""
+    """The conventions in which the numbers fit the radiance of the light that is projected."""
     light = load_light(replace(recipe, quantity="radiance"))
-    most = min(MAX_BANDS, max(1, ceil(sqrt(numbers.size))))  # of a grey list; others have fewer
+    most = min(MAX_BANDS, max(1, ceil(sqrt(numbers.size))))  # the bands of a grey list; others have fewer
     return find_convention(numbers, project(light, *BEST, most).coefficients)
 
 

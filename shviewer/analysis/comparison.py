@@ -1,4 +1,4 @@
-"""Coefficients that are given: shown as what their file holds, or beside the light that they are said to be of."""
+"""Given coefficients: shown as their file holds them, or compared with the light that they should belong to."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ from shviewer.limits import MAX_BANDS
 from shviewer.words import brief_percent
 
 BAD = FITS
-"""Given coefficients that are farther off than this, relative to the light's own in the same bands, are looked into."""
+"""Given coefficients that are off by more than this share of the light's own, in the same bands, are examined."""
 
 FAINT = 1e-3
-"""Bands that hold less than this part of the strongest one are measured by that, and not by themselves."""
+"""The error of a band is divided by no less than this share of the strongest band."""
 
 LONGEST_NAME = 28
-"""Characters in a caption."""
+"""The most characters of a name in a caption."""
 
 EXACT = 1e-6
-"""What is no farther off is the same, up to six printed digits."""
+"""Numbers that are off by less are the same, printed with six digits."""
 
 EXPLAINED = 0.25
-"""A suspect is named if its error is at most this, and at most this part of the one without it."""
+"""A suspected mistake is named if the error without it is at most this, and at most this share of the error with it."""
 
 
 def as_the_file_holds(recipe: Recipe, *, quantity: bool, bands: bool) -> tuple[Recipe, str]:
-    """The recipe, showing the quantity and the bands of the coefficient file it compares with, or whose light it shows.
+    """The recipe with the quantity and the bands of the coefficient file that it compares with or shows, and a message.
 
-    quantity, bands: whether to follow the file; more bands than a compared file has are never shown, which is then said.
+    quantity, bands: whether to follow the file. A compared file's bands are all that is shown; the message says if fewer.
     LightError if the light is bad.
     """
     compared, said = recipe.compare, ""
@@ -55,7 +55,7 @@ def as_the_file_holds(recipe: Recipe, *, quantity: bool, bands: bool) -> tuple[R
 
 
 def caption(recipe: Recipe) -> str:
-    """Whose coefficients are shown, to stand before their number; "" for the light's own."""
+    """The name of the coefficients shown, to stand before their number; "" for the light's own."""
     if recipe.compare is None:
         return ""
     name = recipe.compare.name
@@ -64,7 +64,7 @@ def caption(recipe: Recipe) -> str:
 
 @remember(most=4)
 def verdict(light: Light, given: CoefficientLight) -> str:
-    """One line on given coefficients: how well they agree with the light's own, or by which usual mistake they would."""
+    """One line on given coefficients: how well they agree with the light's own, or which usual mistake explains that not."""
     exact = project(light, *BEST, given.n_bands).coefficients
     shown = project(light, given, 0, 0, given.n_bands).coefficients
     norm, off = float(np.linalg.norm(exact)), float(np.linalg.norm(exact - shown))
@@ -83,12 +83,12 @@ def verdict(light: Light, given: CoefficientLight) -> str:
 
 
 def agrees(said: str) -> bool:
-    """Whether a verdict is a good one."""
+    """Whether a verdict says that the coefficients agree."""
     return " agrees with the light's own " in said
 
 
 def _where(exact: Array, shown: Array) -> str:
-    """In which bands they disagree, relative to each band of the light's own; "" if it has only one band, or is black."""
+    """The bands that disagree, measured by the same bands of the light's own; "" if it has only one band, or is black."""
     starts = np.arange(count_bands(exact)) ** 2
     own = np.sqrt(np.add.reduceat((exact**2).sum(axis=1), starts))
     off = np.sqrt(np.add.reduceat(((exact - shown) ** 2).sum(axis=1), starts))
@@ -107,7 +107,7 @@ def _bad_bands(bad: NDArray[np.int64], worst: int) -> str:
 
 
 def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Array]:
-    """By how the numbers might have been meant, what they are then, of the quantity shown: other conventions and layouts."""
+    """Words for other conventions and layouts -> the coefficients, of the quantity shown, if the numbers were meant so."""
     numbers = given.given if given.file is None else given.file.numbers
     own = OURS if given.file is None else replace(given.file.convention, quantity=None)
     layouts: dict[tuple[str, ...], NDArray[np.generic]] = {(): numbers}
@@ -125,7 +125,7 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
             if same and not layout:
                 continue
             words = (*layout, *(() if same else (f"in the convention of {convention.name}",)))
-            with suppress(ValueError):  # complex numbers of no real function
+            with suppress(ValueError):  # complex numbers that belong to no real function
                 radiance = CoefficientLight.of_numbers(table, convention).given
                 found[words] = light.from_source(radiance)
     return found

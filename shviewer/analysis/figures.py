@@ -1,6 +1,6 @@
-"""What is known of a light and its reconstruction: figures, and the band counts that a tolerance needs.
+"""Figures of a light and its reconstruction, and the band counts that a tolerance needs.
 
-What is expensive is remembered (cache.py): a light is sampled once for its error figures.
+Expensive results are remembered (cache.py): a light is sampled once for its error figures.
 """
 
 from __future__ import annotations
@@ -41,38 +41,38 @@ MIN_ESTIMATE = 256
 """Fewer samples than this do not even tell how noisy they are."""
 
 HALF_SEED = 2**31
-"""Added to the seed for the second, independent set of samples."""
+"""The number added to the seed for the second, independent set of samples."""
 
 
 @dataclass(frozen=True)
 class Needs:
-    """How many bands are within a tolerance, for the radiance and for the irradiance of a light; None if no count is."""
+    """The fewest bands within a tolerance, for the radiance and for the irradiance of a light; None if no count is."""
 
     tolerance: float
     radiance: int | None
     irradiance: int | None
     best: float
-    """The relative L2 error, of the quantity shown, with as many bands as are best."""
+    """The least relative L2 error, of the quantity shown, that any number of bands reaches."""
     best_bands: int
     searched: int
-    """Up to how many bands the quantity shown was searched: fewer for samples, which are rarely good for more."""
+    """The number of bands up to which the quantity shown was searched: fewer for samples, which are rarely good for more."""
 
 
 @dataclass(frozen=True)
 class Figures:
-    """What the overlay and the metadata say. Radiance is linear."""
+    """The figures that the overlay and the metadata show. Radiance is linear."""
 
     channels: dict[str, ChannelFigures]
-    """Of "all" channels together, "red", "green", "blue" and "luminance"."""
+    """Figures of "all" channels together, and of "red", "green", "blue" and "luminance"."""
     irradiance_relative_l2: float
-    """The error that the same coefficients have where they shade a white Lambertian surface."""
+    """The relative L2 error of the irradiance: the error of the same coefficients if they shade a white Lambertian surface."""
     floor: float
-    """Relative L2 errors below this cannot be told from rounding, or from a quadrature's own error."""
+    """Relative L2 errors below this cannot be told from rounding or from the quadrature's own error."""
     extremes: Extremes
     energy_share: tuple[float, ...]
-    """Energy of each band over that of the light; as many bands as were projected exactly."""
+    """The energy of each band divided by that of the light, for all bands that were projected exactly."""
     factors: tuple[float, ...]
-    """What each band in use is multiplied with: the window, 0 if muted."""
+    """The factor of each band in use: the window's, or 0 if muted."""
 
     @property
     def relative_l2(self) -> float:
@@ -82,7 +82,7 @@ class Figures:
 def needs(recipe: Recipe) -> Needs:
     """How many bands the recipe's light needs for its tolerance, by the best way and for both quantities.
 
-    With a sampled method the answer for the quantity shown is that of the samples' own error.
+    With a sampled method, the answer for the quantity shown follows from the error of the samples.
     """
     answers = {}
     for quantity in QUANTITIES:
@@ -97,9 +97,9 @@ def needs(recipe: Recipe) -> Needs:
 
 
 def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
-    """What the recipe's number of jittered samples alone says, as if the light were not known otherwise.
+    """The bands needed, estimated from the recipe's jittered samples alone, as if the light were not known otherwise.
 
-    Two sets of half as many, drawn independently: the halves of one set would share its cells, and depend on each other.
+    Two sets of half as many are drawn independently: the halves of one set would share its cells and depend on each other.
     """
     light = load_light(recipe)
     halves = [jittered(max(recipe.samples // 2, 1), seed) for seed in (recipe.seed, recipe.seed + HALF_SEED)]
@@ -113,7 +113,7 @@ def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
 
 @remember(most=16)
 def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
-    """The relative L2 error for every band count that is searched, (MAX_BANDS,) or (MAX_DIRECT_BANDS,) of samples."""
+    """The relative L2 error for every band count searched: (MAX_BANDS,), or for samples (MAX_DIRECT_BANDS,)."""
     exact = project(light, *BEST, MAX_BANDS).coefficients
     n_bands = MAX_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
     shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
@@ -122,7 +122,7 @@ def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: 
 
 @remember(most=64)
 def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Array, Figures]:
-    """What is shown of a projection, (n_bands**2, 3), and how good it is."""
+    """The coefficients shown of a projection, (n_bands**2, 3), and their figures."""
     n_bands, muted, window_name, width = what
     exact = project(light, *BEST, projection.n_bands).coefficients
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
@@ -146,7 +146,7 @@ def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Arra
 
 
 def _window_factors(coefficients: Array, name: str, width: float | None) -> Array:
-    """The window's factor per band, (n,). UsageError where it cannot be had."""
+    """The window's factor per band, (n,). UsageError where there is none, as for deringing with too many bands."""
     n_bands = count_bands(coefficients)
     if name == "none":
         return np.ones(n_bands)
@@ -161,7 +161,7 @@ def _window_factors(coefficients: Array, name: str, width: float | None) -> Arra
 
 
 def grid_rows(n_bands: int) -> int:
-    """At least four rows per band, in few steps, so that a light is seldom looked at anew."""
+    """The rows of the error grid: at least four per band, in few steps, so that a light is seldom sampled anew."""
     return next(rows for bands, rows in ((16, 96), (32, 128), (64, 256), (MAX_BANDS, 512)) if n_bands <= bands)
 
 

@@ -1,4 +1,4 @@
-"""What a light is, in figures: `shviewer info`. They come from the functions that make the window's."""
+"""A light in figures, for `shviewer info`. The same functions make the window's figures."""
 
 from __future__ import annotations
 
@@ -29,31 +29,31 @@ from shviewer.words import theta_phi_degrees
 TOLERANCES = (0.10, 0.05, 0.01)
 SHOWN_BANDS = 9
 DARK_PERCENTILE = 0.01
-"""The dynamic range begins at this share of the lit sphere: a single dark texel does not make a range."""
+"""The dynamic range leaves out this darkest share of the lit sphere, so that no single dark texel makes the range."""
 
 BINS_PER_STOP = 32
 LOWEST_STOP, HIGHEST_STOP = -160, 140
-"""More than float32 holds."""
+"""The ends of the luminance histogram: more than float32 holds."""
 
 Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Values:
-    """Of the linear radiance over the sphere; a value is one channel in one place."""
+    """The values of the linear radiance over the sphere; a value is one channel in one place."""
 
     minimum: float
     maximum: float
     negative_values: int
     negative_or_black_area: float
-    """Share of the sphere whose Rec. 709 luminance is not above 0."""
+    """The share of the sphere with a Rec. 709 luminance not above 0."""
     darkest: float | None
-    """The luminance below which the darkest DARK_PERCENTILE of the sphere with luminance above 0 is; None if none is."""
+    """The DARK_PERCENTILE of luminance over the part of the sphere where it is above 0; None if there is no such part."""
     brightest_luminance: float
     dynamic_range_stops: float | None
-    """From `darkest` to `brightest_luminance`."""
+    """The range from `darkest` to `brightest_luminance`, in stops."""
     source: str
-    """What was looked at: "texels", or the size of a grid."""
+    """Where the values were taken: "texels", or the size of a grid."""
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,14 @@ class SunInformation:
     width_degrees: float
     radiance: Triple
     irradiance: Triple
-    """Of a surface that faces it."""
+    """The irradiance of a surface that faces it."""
     share_of_flux: float
-    """Of the light's, over the channels' mean."""
+    """Its part of the light's flux, both as the mean of the channels."""
 
 
 @dataclass(frozen=True)
 class Information:
-    """About one LIGHT."""
+    """Everything that `shviewer info` says about one LIGHT."""
 
     light_argument: str
     light: str
@@ -94,33 +94,33 @@ class Information:
     """Width and height of an image as it is stored."""
     layout: str | None
     refused: str | None
-    """Why the viewer does not show the image unless it is repaired; what follows is then said of the repaired one."""
+    """Why the viewer refuses the image unless it is repaired; the fields below then describe the repaired image."""
     notes: tuple[str, ...]
     values: Values
     mean: Triple
-    """Radiance, weighted by solid angle."""
+    """The mean radiance, weighted by solid angle."""
     mean_luminance: float
     peak: float
     """The radiance that is largest in magnitude in any channel, with its sign."""
     peak_direction: Triple
-    """In the light's own frame, as all directions here."""
+    """The direction of the peak, in the light's own frame like all directions here."""
     peak_theta_phi_degrees: tuple[float, float]
     irradiance_up: Triple
-    """On a surface that faces +z."""
+    """The irradiance of a surface that faces +z."""
     method: str
     energy_share: tuple[float, ...]
-    """Of each band, of the light's energy over the sphere."""
+    """The share of the light's energy in each band."""
     bands_needed: tuple[BandsNeeded, ...]
     suns: tuple[SunInformation, ...]
-    """What --split-sun takes out, the greatest flux first."""
+    """The suns that --split-sun takes out, the greatest flux first."""
     bands_needed_without_suns: tuple[BandsNeeded, ...]
-    """By the rest; none if there are no suns."""
+    """The bands that the rest needs; empty if there are no suns."""
     coefficients: CoefficientInformation | None = None
-    """Of a coefficient file, its convention and where it comes from."""
+    """The convention and origin of a coefficient file; None for other lights."""
 
 
 def describe(text: str, reading: Reading) -> Information:
-    """What is known of the light that `text` names. LightError if it cannot be shown.
+    """The information on the light that `text` names. LightError if it cannot be shown.
 
     An image that is refused for its values is described as `sanitize` repairs it, with the reason in `refused`.
     """
@@ -140,7 +140,7 @@ def as_json_object(information: Information) -> dict[str, object]:
 
 
 def as_text(information: Information) -> str:
-    """Aligned lines, one screen at most."""
+    """The information as aligned lines, one screen at most."""
     values, size, peak = information.values, information.size, information.peak_direction
     rows = [("file", f"{information.file}, {_bytes(information.file_bytes)}")]
     if information.encoding:
@@ -219,7 +219,7 @@ def _needed(recipe: Recipe) -> tuple[BandsNeeded, ...]:
 
 
 def _sun(sun: Sun, total: float) -> SunInformation:
-    """total: the light's flux, of the channels' mean."""
+    """A sun as `shviewer info` tells it. total: the light's flux, the mean of the channels."""
     return SunInformation(
         direction=_triple(sun.axis),
         theta_phi_degrees=theta_phi_degrees(sun.axis),
@@ -231,7 +231,7 @@ def _sun(sun: Sun, total: float) -> SunInformation:
 
 
 def _grid_values(light: Light) -> tuple[Values, Array]:
-    """Those of a light that is no image: on the window's grid, with the peak climbed to."""
+    """The values of a light that is no image, on the window's grid, and the direction of the peak, refined beyond the grid."""
     grid = error_grid(light, grid_rows(1))
     values = grid.original.transpose(0, 2, 1)
     n_rows, n_columns = values.shape[:2]
@@ -248,7 +248,7 @@ def _grid_values(light: Light) -> tuple[Values, Array]:
 
 
 def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
-    """blocks: radiance (k, 3) and solid angles (k,), which are 0 for extra places."""
+    """Gather the values of blocks: radiance (k, 3) and solid angles (k,), which are 0 for extra directions."""
     minimum, maximum, smallest, brightest = np.inf, -np.inf, np.inf, -np.inf
     negative, dark, lit = 0, 0.0, np.zeros((HIGHEST_STOP - LOWEST_STOP) * BINS_PER_STOP)
     for radiance, areas in blocks:

@@ -1,6 +1,7 @@
-"""What an option is: its kind, the rule for its values, and one line of help, told once beside the field that holds it.
+"""Options: the kind of each, the rule for its values, and one line of help, stated once, beside the field that holds it.
 
-Command line, Python, limits and the tables of the guide are made of these. Nothing here loads numpy, so that --help does not.
+The command line, the Python functions, the limits and the guide's tables are made from these. Nothing here loads numpy, so
+that --help does not.
 """
 
 from __future__ import annotations
@@ -20,30 +21,30 @@ class Kind(Protocol):
     """The values that an option may have."""
 
     def taken(self, name: str, value: Any) -> Any:
-        """A caller's value as the field holds it. UsageError, with name, value and rule, for one of another type."""
+        """A caller's value as the field holds it. UsageError, with name, value and rule, for a value of another type."""
 
     def check(self, name: str, value: Any) -> None:
         """UsageError, with name, value and rule, for a value out of range."""
 
 
 class Option(NamedTuple):
-    """One row of the table."""
+    """One option: a row of the guide's tables."""
 
     name: str
     default: Any
     kind: Kind
     help: str
     flag: str = ""
-    """On the command line; "" for what is told with another option."""
+    """Its name on the command line; "" if its value is given with another option."""
     metavar: str | tuple[str, ...] = ""
     const: Any = None
-    """What a flag without a value means; None for one that has a value."""
+    """The value that a flag without one stands for; None for an option that takes a value."""
 
 
 def option(
     default: T, kind: Kind, help: str, flag: str = "", metavar: str | tuple[str, ...] = "", const: T | None = None
 ) -> T:
-    """A field of a dataclass that is an option."""
+    """Declare a field of a dataclass as an option."""
     held: T = field(default=default, metadata={"option": (kind, help, flag, metavar, const)})
     return held
 
@@ -85,7 +86,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number within bounds; `says` puts it into words, `rule` says which."""
+    """A whole number within bounds; in messages `says` puts the number into words, `rule` the bounds."""
 
     least: int
     most: float
@@ -102,7 +103,7 @@ class Whole:
 
 @dataclass(frozen=True)
 class Number:
-    """A finite number within bounds, which belong to it if `closed`; None where it is not set, if the default is."""
+    """A finite number within bounds. closed: the bounds are allowed, too. optional: so is None."""
 
     least: float
     most: float
@@ -110,7 +111,7 @@ class Number:
     closed: bool = True
     optional: bool = False
     called: str = ""
-    """In messages, where it is not the field's name."""
+    """Its name in messages, if that is not the field's."""
 
     def taken(self, name: str, value: Any) -> Any:
         if value is None and self.optional:
@@ -129,7 +130,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Share(Number):
-    """A number that may be told in percent."""
+    """A number that may be given in percent."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ class Flag:
         return value
 
     def check(self, name: str, value: Any) -> None:
-        """Both are within its range."""
+        """Accept both values."""
 
 
 @dataclass(frozen=True)
@@ -162,7 +163,7 @@ class Bands:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two numbers, `what` with an example; whole ones if the field holds whole ones."""
+    """Two numbers, whole ones if `whole`; `what` names them in messages, with an example."""
 
     what: str
     whole: bool = False
@@ -176,11 +177,11 @@ class Pair:
         return tuple(whole(part, name) for part in value) if self.whole else tuple(map(float, value))
 
     def check(self, name: str, value: Any) -> None:
-        """Any two numbers are within its range."""
+        """Accept any two numbers."""
 
 
 def whole(value: object, name: str) -> int:
-    """UsageError unless it is a whole number of some integer type."""
+    """The value as an int. UsageError unless it is a whole number of some integer type."""
     try:
         if isinstance(value, bool):
             raise TypeError
@@ -190,7 +191,7 @@ def whole(value: object, name: str) -> int:
 
 
 def is_number(value: object) -> bool:
-    """Whether it is a finite number, of Python's or numpy's types."""
+    """Whether a value is a finite number, of Python's or numpy's types."""
     try:
         return not isinstance(value, str | bytes) and math.isfinite(value)  # type: ignore[arg-type]
     except TypeError:

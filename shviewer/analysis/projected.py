@@ -1,4 +1,4 @@
-"""What `shviewer project` writes: the coefficients of a recipe, in our convention, and everything that is known of them."""
+"""The result of `shviewer project`: the coefficients of a recipe, in our convention, with figures and origin."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from shviewer.version import __version__
 from shviewer.words import counted
 
 ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")
-"""Keys of the stamp that are figures."""
+"""Keys of the stamp that hold error figures."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,18 +42,18 @@ class Projected:
     about: dict[str, Value]
     name: str
     relative_l2_as: dict[str, float] = field(default_factory=dict)
-    """The error of "radiance" and of "irradiance", whichever of them the coefficients are of."""
+    """The relative L2 errors of "radiance" and of "irradiance", whichever the coefficients hold."""
     suns: tuple[Sun, ...] = ()
-    """Left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
+    """The suns left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
 
     @property
     def n_bands(self) -> int:
         return count_bands(self.coefficients)
 
     def numbers(self, convention: str = "shviewer") -> NDArray[np.generic]:
-        """What that program expects, (n**2, 3) float64, or complex128 for "scipy"; a text for `parse_convention`.
+        """The numbers that a program expects, (n**2, 3) float64, or complex128 for "scipy".
 
-        UsageError for an unknown or contradictory convention, or more bands than it has.
+        convention: as --convention takes it. UsageError if it is unknown or contradictory, or for more bands than it has.
         """
         try:
             return parse_convention(convention).from_ours(self.coefficients, self.quantity)
@@ -73,9 +73,9 @@ class Projected:
         write_atomically(out, self.encode(chosen, out.suffix.lower()[1:]))
 
     def encode(self, convention: Convention, kind: str) -> bytes:
-        """The bytes of such a file; kind: one of `coefficients.writing.FORMATS`.
+        """The bytes of a coefficient file; kind: one of `coefficients.writing.FORMATS`.
 
-        UsageError if the convention has not so many bands, cannot hold the quantity or not be written so.
+        UsageError if the convention has too few bands, cannot hold the quantity, or cannot be written as `kind`.
         """
         try:
             numbers = convention.from_ours(self.coefficients, self.quantity)
@@ -84,10 +84,10 @@ class Projected:
             raise UsageError(str(error)) from error
 
     def stamp(self, convention: Convention, n_bands: int) -> dict[str, Value]:
-        """What a file with these coefficients in that convention says of itself."""
+        """The stamp of a file with these coefficients in a convention."""
         about = {**stamp_of(convention, self.quantity, n_bands), "written-by": f"shviewer {__version__}", **self.about}
         written = str(about["quantity"]).removesuffix("-over-pi")
-        if written != self.quantity:  # errors of the one are none of the other
+        if written != self.quantity:  # the errors of one quantity are not those of the other
             about = {key: value for key, value in about.items() if key not in ERRORS}
             if written == IRRADIANCE:
                 about["relative-l2"] = float(self.figures.irradiance_relative_l2)
@@ -95,7 +95,7 @@ class Projected:
 
 
 def project_recipe(recipe: Recipe) -> Projected:
-    """The coefficients that the window shows by that recipe. LightError or UsageError, as in `reconstruction_of`."""
+    """The coefficients that the window shows for a recipe. LightError or UsageError, as in `reconstruction_of`."""
     found = reconstruction_of(recipe)
     shown, projection, figures = found.subject, found.projection, found.figures
     both = {"radiance": figures.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
@@ -146,6 +146,6 @@ def _errors(figures: Figures) -> dict[str, Value]:
 
 
 def _one_line(text: str) -> str:
-    """Fit for a comment: no line break could end it, and no `*/`."""
+    """A text made fit for a comment: without line breaks and `*/`, which could end it."""
     printable = "".join(character if character.isprintable() else " " for character in text)
     return " ".join(printable.replace("*/", "* /").split())

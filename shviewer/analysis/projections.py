@@ -1,6 +1,6 @@
-"""Lights projected by any method, timed, and what each way has cost in this session.
+"""Projections of lights by any method, timed, and what each way has cost in this session.
 
-A light is projected once per method to at least MAX_DIRECT_BANDS bands; a band key then costs a sum of what is there.
+A light is projected once per method, to at least MAX_DIRECT_BANDS bands; a band key then only takes more or fewer of them.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 
 BEST = ("best", 0, 0)
-"""Method, samples and seed of the best way, to which the last two do not matter."""
+"""Method, samples and seed of the best way, which does not depend on the last two."""
 
 MOST_MEASUREMENTS = 128
-"""Per light, quantity and bands: more than the keys reach, of at most 1 KiB each."""
+"""How many are kept per light, quantity and bands: more than the keys reach, at most 1 KiB each."""
 
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """Coefficients (n**2, 3) of all bands computed, by which method, from how many evaluations, in what time."""
+    """Coefficients (n**2, 3) of all bands computed, with the method, the number of evaluations, and the time taken."""
 
     coefficients: Array
     method: str
@@ -44,13 +44,13 @@ class Projection:
 
     @property
     def evaluation_noun(self) -> str:
-        """What its evaluations are called."""
+        """The noun for one of its evaluations."""
         return "samples" if self.method == "jittered" else "points"
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """What one way to project a light cost, and how good it is: a few numbers, kept longer than the projection itself."""
+    """The time and the errors of one way to project a light: a few numbers, kept longer than the projection itself."""
 
     method: str
     samples: int
@@ -69,15 +69,15 @@ class Measurement:
 
 
 def sampling_of(recipe: Recipe) -> tuple[str | CoefficientLight, int, int]:
-    """Method, samples and seed; the last two do not matter to the best way, which is then the same for all of them.
+    """Method, samples and seed of a recipe. The best way does not depend on the last two, so they are always the same for it.
 
-    Coefficients that are given are a method, too: that of the file they come from.
+    Given coefficients stand in place of the method.
     """
     return way_of(recipe) if recipe.compare is None else (recipe.compare, 0, 0)
 
 
 def way_of(recipe: Recipe) -> tuple[str, int, int]:
-    """The same by name; coefficients that are given are no way to project, and nothing is measured of them."""
+    """The same without given coefficients, which are no way to project: nothing is measured for them."""
     if recipe.compare is not None:
         return "given", 0, 0
     return BEST if recipe.method == "best" else (recipe.method, recipe.samples, recipe.seed)
@@ -86,7 +86,7 @@ def way_of(recipe: Recipe) -> tuple[str, int, int]:
 def project(light: Light, method: str | CoefficientLight, samples: int, seed: int, n_bands: int) -> Projection:
     """Project a light; the irradiance of a sampled light comes from the samples of the light itself.
 
-    method: "best", "jittered" or "gauss-legendre"; or given coefficients, which are taken instead.
+    method: "best", "jittered" or "gauss-legendre", or given coefficients, which are then used instead.
     """
     if not isinstance(method, str):
         return _given_projection(light, method, n_bands)
@@ -96,7 +96,7 @@ def project(light: Light, method: str | CoefficientLight, samples: int, seed: in
 
 
 def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
-    """What this session knows of the cost of projecting the light to `n_bands` bands, by method, samples and seed."""
+    """The measurements of this session for projecting the light to `n_bands` bands, by method, samples and seed."""
     return tuple(found for _, found in sorted(_known(light, n_bands).items())) if light in MEMORY else ()
 
 
@@ -106,7 +106,7 @@ def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Meas
 
 
 def _measure(light: Light, sampling: tuple[str, int, int], projection: Projection) -> None:
-    """Add to what is known of the cost of this way to project."""
+    """Measure a projection and keep the numbers; a repetition keeps the lesser time."""
     n_bands, shown = projection.n_bands, projection.coefficients
     exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
     errors = errors_by_band_count(light.products(), exact, shown)
@@ -130,14 +130,14 @@ def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Pr
 
 @remember(most=16)
 def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """A projection made, timed and measured."""
+    """Project, take the time, and keep the measurement."""
     projection = _timed_projection(light, method, samples, seed, n_bands)
     _measure(light, (method, samples, seed), projection)
     return projection
 
 
 def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """A projection made and timed."""
+    """Project and take the time."""
     start = perf_counter()
     if light is not light.source and method != "best":
         source = project(light.source, method, samples, seed, n_bands)

@@ -1,4 +1,4 @@
-"""Which numbers: everything that coefficients and their figures follow from, and nothing of how they are seen."""
+"""The recipe: everything that coefficients and their figures follow from, and nothing about how they are shown."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WINDOWS = ("none", "hann", "lanczos", "gauss", "dering")
 
 
 class Shown(NamedTuple):
-    """What of a projection is shown: the bands in use, those of them that are muted, the window and its width."""
+    """The part of a projection that is shown: the bands in use, the muted ones among them, the window and its width."""
 
     n_bands: int
     muted: tuple[int, ...] = ()
@@ -29,7 +29,7 @@ class Shown(NamedTuple):
 
 @dataclass(frozen=True)
 class Recipe:
-    """Equal recipes give equal numbers."""
+    """A light and all options that its numbers depend on. Equal recipes give equal numbers."""
 
     light: str | Light = "green"
     """A text that `find_light` takes, or a light."""
@@ -72,7 +72,7 @@ class Recipe:
     window_width: float | None = option(
         None,
         Number(0, float("inf"), "it must be positive and finite, in bands", closed=False, optional=True),
-        "of the window, in bands; as many as are shown unless given",
+        "width of the window in bands; as many as are shown unless given",
     )
     muted: frozenset[int] = option(frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3", "--mute", "L,L")
     method: str = option(
@@ -81,14 +81,14 @@ class Recipe:
     samples: int = option(
         10_000,
         Whole(1, MAX_SAMPLES, "{} samples", f"there must be 1 to {MAX_SAMPLES}"),
-        "of the sampled methods (default 10000)",
+        "number of samples of the sampled methods (default 10000)",
         "--samples",
         "K",
     )
     seed: int = option(
         0,
         Whole(0, float("inf"), "seed {}", "it must not be negative"),
-        "of the jittered samples (default 0)",
+        "seed of the jittered samples (default 0)",
         "--seed",
         "S",
     )
@@ -106,7 +106,7 @@ class Recipe:
 
     @property
     def projected_bands(self) -> int:
-        """How many bands are projected, so that a few more or fewer cost nothing."""
+        """The number of bands to project: more than are shown, so that a few more or fewer cost nothing."""
         return MAX_DIRECT_BANDS if self.n_bands <= MAX_DIRECT_BANDS else MAX_BANDS
 
     def check(self) -> None:
@@ -115,5 +115,5 @@ class Recipe:
 
 
 def light_name(light: str | Light) -> str:
-    """What a light is called where there is little room: the last part of its path."""
+    """The short name of a light: the last part of its path."""
     return light.replace("\\", "/").rpartition("/")[2] if isinstance(light, str) else light.name

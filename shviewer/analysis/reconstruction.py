@@ -1,4 +1,4 @@
-"""What a recipe gives: the coefficients and their figures, made by one call for whoever writes, says or draws them."""
+"""The reconstruction of a recipe: coefficients and figures, made by one call for all that write, print or draw them."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ class Reconstruction:
 
     recipe: Recipe
     subject: Subject
-    """The light, what of it is projected, and the suns that were split off."""
+    """The light, the part of it that is projected, and the suns that were split off."""
     projection: Projection
     coefficients: Array
     figures: Figures
 
 
 def reconstruction_of(recipe: Recipe) -> Reconstruction:
-    """LightError for a light that cannot be read or shown, UsageError for a recipe out of range."""
+    """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range."""
     recipe.check()
     found = subject(recipe)
     projection = project(found.light, *sampling_of(recipe), recipe.projected_bands)

@@ -1,4 +1,4 @@
-"""Which light a recipe shows, which of it is projected, and which file it came from. A light named by text is read once."""
+"""The light that a recipe shows, the part of it that is projected, and its file. A light named by text is read once."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from shviewer.lights.suns.sun import Sun
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """What is shown as the original, and what is projected: the same, unless suns are split off."""
+    """The light shown as the original (`whole`) and the one projected (`light`): the same, unless suns are split off."""
 
     whole: Light
     light: Light
-    """What the figures are of."""
+    """The light that is projected and that the figures are computed for."""
     suns: tuple[Sun, ...] = ()
     refusal: str = ""
     """Why nothing was split off although it was asked for."""
 
 
 def subject(recipe: Recipe) -> Subject:
-    """Of the recipe's light, or of its irradiance; a light named by text is read once."""
+    """The subject of a recipe: its light or, for that quantity, the irradiance of its light."""
     light = recipe.light
     if isinstance(light, str):
         light = MEMORY.named(_name(recipe)) or read_again(recipe)
@@ -46,13 +46,13 @@ def load_light(recipe: Recipe) -> Light:
 
 
 def read_again(recipe: Recipe) -> Light:
-    """The light that the recipe names, read anew. LightError leaves what was known of it as it was.
+    """The light that the recipe names, read anew. After a LightError the light read before stays.
 
-    A light that is not named by a text is what it is.
+    A light that is not named by a text is returned unchanged.
     """
     if not isinstance(recipe.light, str):
         return recipe.light
-    read = file_version(recipe.light)  # before: what is written during the reading is a later change
+    read = file_version(recipe.light)  # asked first: a change during the reading is a later version
     safe = recipe.light in built_in_lights()
     light = find_light(recipe.light, replace(recipe.reading, isolated=False) if safe else recipe.reading)
     MEMORY.name(_name(recipe), light)
@@ -79,7 +79,7 @@ def _name(recipe: Recipe) -> Hashable:
 
 @remember(most=1)
 def _split(light: Light) -> Split | str:
-    """The light and its suns apart, or why it has none."""
+    """The light and its suns apart, or the reason why nothing can be split off."""
     try:
         split = light.split_suns()
     except LightError as error:
@@ -90,5 +90,5 @@ def _split(light: Light) -> Split | str:
 
 @remember(most=4)
 def irradiance_of(light: Light) -> Light:
-    """Asked of the whole and of its rest, and of the irradiance of each, which is its own."""
+    """The irradiance of a light, remembered with it; an irradiance is its own."""
     return light.irradiance()

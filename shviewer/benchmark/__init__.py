@@ -1,1 +1,1 @@
-"""Speed against error on the machine at hand: what is measured, the hard cases, and the page made of them."""
+"""Speed against error on the machine at hand: the measurements, the hard cases, and the report made from them."""

@@ -1,4 +1,4 @@
-"""The seconds of a run: how many each section gets, what is left of them, and how long it will still take."""
+"""The time of a run: the seconds that each section gets, those that are left, and those that the run still takes."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping
 from time import perf_counter
 
 Progress = Callable[[float, float, str], object]
-"""Told the share of the time that has passed, 0 to 1, the seconds that are left at most, and what comes next."""
+"""A function that is told the share of the time passed, 0 to 1, the most seconds left, and the next step."""
 
 SHARES = {"projection": 0.55, "reconstruction": 0.2, "end to end": 0.15, "peers": 0.1}
 STABILITY_SECONDS = 15.0
-"""Beside the budget: the hard cases are what they are."""
+"""The time of the hard cases, which comes on top of the budget: all of them are always run."""
 
 
 def allot(wanted: Mapping[str, bool], budget: float) -> dict[str, float]:
-    """Seconds of every section that is wanted, `budget` in all; projection gets the shares of those that are not."""
+    """Seconds for every section that is wanted, `budget` in all; projection gets the shares of sections not wanted."""
     shares = {name: share for name, share in SHARES.items() if wanted.get(name)}
     if "projection" in shares:
         shares["projection"] += 1 - sum(shares.values())
@@ -24,7 +24,7 @@ def allot(wanted: Mapping[str, bool], budget: float) -> dict[str, float]:
 class Clock:
     """Tells each section how much time it has left, and the user how much the run has.
 
-    seconds: of each section. What one of them leaves over, or takes too much, is added to or taken from the next.
+    seconds: the time of each section. What one leaves over is added to the next, what it overruns is taken from the next.
     """
 
     def __init__(self, seconds: Mapping[str, float], progress: Progress | None) -> None:
@@ -34,7 +34,7 @@ class Clock:
         self.current = ""
 
     def begin(self, section: str) -> None:
-        """Section by section, in any order; each once."""
+        """Begin a section; each may begin once, in any order."""
         own = self.waiting.pop(section)
         self.current = section
         self.deadline += own
@@ -46,7 +46,7 @@ class Clock:
         return self.deadline - perf_counter()
 
     def tell(self, what: str) -> None:
-        """What the present section does next."""
+        """Tell the user what the present section does next."""
         if self.progress is None:
             return
         now = perf_counter()

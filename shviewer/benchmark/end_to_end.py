@@ -1,6 +1,6 @@
-"""What a user waits for: from LIGHT to a picture, from a key to the next one, and what an idle window costs.
+"""The times that a user waits: from LIGHT to a picture, and from a key to the next picture; and the cost of an idle window.
 
-Cold is a new process, Python's start included; warm is a process that has drawn, but has forgotten every light.
+Cold means a new process, Python's start included; warm means a process that has drawn, but has forgotten every light.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from shviewer.viewer.state import State, changed, state_of
 SECTION = "end to end"
 FRAME = compose(1280, 640)
 KEY_BANDS = (5, 32)
-"""Band counts from which Up is pressed: the first one, and the one from which it leaves the direct sum."""
+"""Band counts at which Up is pressed: the default, and the last one of the direct sum."""
 
 VERSION, SCREENSHOT = "start, --version", "LIGHT to PNG, new process"
 PICTURE, SAVED = "LIGHT to picture, warm", "LIGHT to PNG, warm"
@@ -54,7 +54,7 @@ NOTES = {
 
 IDLE_SECONDS = 4
 PATIENCE = 60.0
-"""Seconds that a process may take to start, draw or end."""
+"""The most seconds that a process may take to start, draw or end."""
 
 WATCHED_WINDOW = """
 import _thread, signal, sys, threading, time
@@ -62,7 +62,7 @@ from shviewer.errors import GraphicsError
 from shviewer.viewer.desktop import window
 from shviewer.viewer.state import State
 
-signal.signal(signal.SIGINT, signal.default_int_handler)  # which a background job is started without
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job is started without it
 
 def watch():
     time.sleep(0.5)
@@ -94,9 +94,9 @@ Work = Callable[[], object]
 def process_rows(
     text: str, name: str, drawing: Shader | str, *, budget: float, at_most: float = math.inf, at_least: int = 5
 ) -> list[Row]:
-    """New processes: `--version`, the floor of all, and a screenshot of the LIGHT `text`, which the rows call `name`.
+    """Rows of new processes: `--version`, the floor of all, and a screenshot of the LIGHT `text`, which the rows call `name`.
 
-    drawing: what draws; a text says why nothing does, and then the screenshot is absent. budget: seconds. at_most: seconds
+    drawing: the shader, or why nothing can be drawn, and then the screenshot is absent. budget: seconds. at_most: seconds
     beyond which nothing is measured.
     """
     with tempfile.TemporaryDirectory() as folder:
@@ -118,7 +118,7 @@ def session_rows(
     key_bands: Sequence[int] = KEY_BANDS,
     at_least: int = 5,
 ) -> list[Row]:
-    """In this process: the LIGHT `text` to its first picture, and Up to the next one. Every light is forgotten on the way.
+    """Rows of this process: from the LIGHT `text` to its first picture, and from Up to the next. It forgets every light.
 
     A picture is done when OpenGL says so, in the window's size and format, overlay included. No rows where nothing draws.
     budget: seconds. at_most: seconds beyond which nothing is measured.
@@ -148,9 +148,9 @@ def session_rows(
 
 
 def idle_row(seconds: int = IDLE_SECONDS, at_most: float = math.inf) -> Row | str:
-    """Milliseconds of CPU time per second in which nothing happens to a window; a text says why there is none.
+    """The row of an idle window, in milliseconds of CPU time per second; or a text that says why there is none.
 
-    at_most: seconds; a window is not opened if it is watched for longer.
+    at_most: seconds; no window is opened if watching it would take longer.
     """
     if at_most < seconds:
         return _row(IDLE, "green", Recipe.n_bands, None)
@@ -204,7 +204,7 @@ class _Frames:
 
 
 def _process(*arguments: str) -> Work:
-    """A run of the program. GraphicsError where it fails."""
+    """A run of the program, to be timed. GraphicsError if it fails."""
     command = [sys.executable, "-m", "shviewer", *arguments]
 
     def run() -> None:
@@ -218,7 +218,7 @@ def _process(*arguments: str) -> Work:
 
 
 def _environment() -> dict[str, str]:
-    """An installed program is compiled once, not at every start."""
+    """The environment of the new processes, which may cache bytecode: a program is not compiled at every start."""
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 

@@ -1,4 +1,4 @@
-"""Where more bands stop paying: one sentence per light, made of its reconstruction rows."""
+"""The number of bands beyond which more do not pay: one sentence per light, made from its reconstruction rows."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from shviewer.harmonics.metrics import PARSEVAL_FLOOR
 
 
 def where_bands_stop_paying(rows: Sequence[Row]) -> str:
-    """One sentence on the rows of one light; "" where there are none.
+    """One sentence on the rows of one light; "" if there are none.
 
-    More bands stop paying where what they leave out falls below what the arithmetic adds; and, in the direct sum, where
-    every further step costs a larger factor in time, beyond the quartiles, than it takes off the error.
+    More bands stop paying where the truncation error falls below the arithmetic error; and, in the direct sum, where every
+    further step multiplies the time by more, beyond the quartiles, than it divides the error.
     """
     rows = [row for row in rows if row.section == SECTION]
     drawn = {method: [row for row in rows if row.method == method] for method in (DIRECT, CACHED)}
@@ -38,7 +38,7 @@ def where_bands_stop_paying(rows: Sequence[Row]) -> str:
 
 
 def _direct_sum(direct: list[Row]) -> list[str]:
-    """Up to where the direct sum pays."""
+    """The words on how far more bands pay in the direct sum."""
     steps = list(pairwise(direct))
     paying = [_number(a.total_error) > _slowdown(a, b) * _number(b.total_error) for a, b in steps]
     stop = max((number + 1 for number, pays in enumerate(paying) if pays), default=0)
@@ -53,13 +53,13 @@ def _direct_sum(direct: list[Row]) -> list[str]:
 
 
 def _slowdown(a: Row, b: Row) -> float:
-    """How many times as long b takes; 1 where the quartiles overlap."""
+    """How many times as long as a b takes; 1 if the quartiles overlap."""
     apart = _number(b.low_quartile) > _number(a.high_quartile)
     return _number(b.milliseconds) / _number(a.milliseconds) if apart else 1.0
 
 
 def _crossing(direct: list[Row], cached: list[Row]) -> list[str]:
-    """From where on the cached map is the faster one."""
+    """The words on the band count from which the cached map is faster."""
     by_bands = {row.n_bands: row for row in cached}
     faster = [row for row in direct if _slowdown(by_bands[row.n_bands], row) > 1]
     if not faster:
@@ -76,7 +76,7 @@ def _bands(row: Row) -> str:
 
 
 def _floor(row: Row) -> float:
-    """Below this, what is left out cannot be told from rounding."""
+    """The truncation error below which it cannot be told from rounding."""
     return max(_number(row.arithmetic_error), PARSEVAL_FLOOR)
 
 
@@ -85,5 +85,5 @@ def _number(value: float | None) -> float:
 
 
 def _percent(value: float | None) -> str:
-    """Two digits, never in powers of ten."""
+    """A share in percent, two digits, without powers of ten."""
     return f"{np.format_float_positional(100 * _number(value), 2, unique=False, fractional=False, trim='-')} %"

@@ -1,4 +1,4 @@
-"""The ways to project a light, declared once: what each is called, where it applies, and how it is set up and run."""
+"""The ways to project a light, declared once: the name of each, where it applies, and how it is set up and run."""
 
 from __future__ import annotations
 
@@ -31,49 +31,49 @@ from shviewer.lights.lobes import LobeLight
 SAMPLES = (100, 1_000, 10_000, 100_000, 1_000_000)
 BANDS = (3, 5, 9, 16, 32)
 LIGHTS = ("green", "hemisphere", "sun-sky", "film_studio", "venice_sunset")
-"""An edge in the slope, an edge, a source too small for any sampling, and two photographs."""
+"""The default lights: an edge in the slope, an edge, a source too small for any sampling, and two photographs."""
 
 QUICK_SAMPLES, QUICK_BANDS, QUICK_LIGHTS = (100, 10_000), (3, 9), ("green", "film_studio")
 
 PAPER_SAMPLES = 10_000
-"""What the paper projects with."""
+"""The number of samples in the paper."""
 
 BEST, PAPER = "best", "jittered"
 
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A projection whose samples exist: what is timed is `project`() -> (n_bands**2, 3)."""
+    """A projection that has been set up; `project`() -> (n_bands**2, 3) is timed."""
 
     project: Callable[[], Array]
     evaluations: int | None
-    """How often the light is evaluated; None where that is not known."""
+    """How often the light is evaluated; None if that is not known."""
 
 
 @dataclass(frozen=True, eq=False)
 class Method:
-    """One way to project. `prepare` takes a light, samples asked for, seed and bands; what does not apply is ignored."""
+    """One way to project. `prepare` takes light, number of samples, seed and bands, and ignores those it does not need."""
 
     name: str
-    """In the files and on the command line."""
+    """The name in the files and on the command line."""
     words: str
-    """In tables."""
+    """The name in tables."""
     explanation: str
     prepare: Callable[[Light, int, int, int], Prepared]
     applies: Callable[[Light], bool] = lambda light: True
     takes_samples: bool = True
     random: bool = False
-    """Another seed gives another result."""
+    """Whether another seed gives another result."""
     points: Callable[[Light], int] = lambda light: 0
-    """How many points a method without samples sums one by one; 0 where it is about as fast as the best way."""
+    """How many points a method without samples sums one by one; 0 if it is about as fast as the best way."""
 
     def words_for(self, light_best: str) -> str:
-        """The best way is called what the light calls it."""
+        """The name in tables; for the best way, the light's own name for it."""
         return light_best if self.name == BEST else self.words
 
 
 def _best(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
-    """From nothing, though a light remembers what it has projected: every run gets a light that remembers nothing."""
+    """The best way from scratch: every run gets a copy of the light that remembers no projection."""
     if isinstance(light, EnvironmentLight):
         return Prepared(lambda: light.layout.project(light.pixels, n_bands), texel_count(light))
     if isinstance(light, FunctionLight):
@@ -84,14 +84,14 @@ def _best(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
 
 
 def texel_count(light: Light) -> int:
-    """How many texels of an image show something."""
+    """The number of an image's texels that show something."""
     assert isinstance(light, EnvironmentLight)
     solid_angles = light.layout.solid_angles()
     return int(np.count_nonzero(solid_angles) * (light.pixels.shape[1] // solid_angles.shape[1]))
 
 
 def _function_evaluations(light: FunctionLight, n_bands: int) -> int:
-    """Counted, not guessed: one projection with a function that counts."""
+    """The number of evaluations in a projection, counted by a function that counts its calls."""
     count = 0
 
     def counting(directions: Array) -> ArrayLike:
@@ -125,12 +125,12 @@ def _is_image(light: Light) -> bool:
 
 
 def lat_long_texels(light: Light) -> NDArray[np.float32] | None:
-    """(height, width, 3) of a light that is a lat-long image."""
+    """The texels (height, width, 3) of a lat-long image; None for another light."""
     return light.pixels if isinstance(light, EnvironmentLight) and isinstance(light.layout, LatLongLayout) else None
 
 
 def _per_texel(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
-    """What most code does: every texel is a sample at its centre, weighted by the texel's solid angle."""
+    """The way of most programs: every texel is a sample at its centre, weighted by the texel's solid angle."""
     assert isinstance(light, EnvironmentLight)
     solid_angles = np.broadcast_to(light.layout.solid_angles(), light.pixels.shape[:2])
     rows, columns = np.nonzero(solid_angles)
@@ -146,7 +146,7 @@ def _per_texel(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
 
 
 def _reduced(factor: int) -> Callable[[Light, int, int, int], Prepared]:
-    """The means of factor x factor texels first, which is part of the time, then the exact integrals of those."""
+    """Take means of factor x factor texels, which is part of the time, then their exact integrals."""
 
     def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
         texels = lat_long_texels(light)
@@ -157,7 +157,7 @@ def _reduced(factor: int) -> Callable[[Light, int, int, int], Prepared]:
 
 
 def _means(texels: NDArray[np.float32], factor: int) -> NDArray[np.float32]:
-    """Each of factor x factor texels; the rows first, which is the faster order."""
+    """Means of blocks of factor x factor texels; over rows first, which is faster."""
     height, width = texels.shape[:2]
     rows = texels.reshape(height // factor, factor, width * 3).sum(axis=1)
     columns = rows.reshape(height // factor, width // factor, factor, 3)
@@ -235,7 +235,7 @@ METHODS: tuple[Method, ...] = (
 
 
 def method(name: str) -> Method:
-    """UsageError for a name that is not in the table."""
+    """The method of a name. UsageError for a name that is not in the table."""
     found = {each.name: each for each in METHODS}
     if name not in found:
         raise UsageError(f"unknown method {name!r}; there is: {', '.join(found)}")

@@ -1,4 +1,4 @@
-"""What to use: per light the Pareto front of time and error, and a sentence per tolerance, made of measured rows only."""
+"""Advice per light: the Pareto front of time and error, and a sentence per tolerance, made from measured rows only."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def front_of(rows: Sequence[Row], accuracy: float = 0.0) -> list[Row]:
     """The front of one light's projections: milliseconds against the total error.
 
     Errors that rounding or the reference's own accuracy cannot tell apart count as equal, and so do times whose quartiles
-    overlap: what is more accurate then stands for both.
+    overlap: the more accurate row then stands for both.
     """
     floor = max(PARSEVAL_FLOOR, accuracy)
     known = [
@@ -29,7 +29,7 @@ def front_of(rows: Sequence[Row], accuracy: float = 0.0) -> list[Row]:
 
 
 def sentences(measured: MeasuredLight, rows: Sequence[Row]) -> list[str]:
-    """One per tolerance: what reaches it at the least cost, and what the paper's samples do there.
+    """One sentence per tolerance: the method that reaches it in the least time, and how the paper's samples do there.
 
     rows: the projections of this light. Tolerances that no number of bands reaches share a sentence.
     """
@@ -77,7 +77,7 @@ def _sentence(measured: MeasuredLight, tolerance: float, needed: int, rows: Sequ
 
 
 def _times(row: Row, other: Row) -> str:
-    """How many times as long; nothing where the quartiles of the two overlap."""
+    """How many times as long a row takes as another, in words; no factor if their quartiles overlap."""
     if row.milliseconds is None or not other.milliseconds:
         return "an unknown time"
     if alike(row, other):
@@ -87,7 +87,7 @@ def _times(row: Row, other: Row) -> str:
 
 
 def alike(first: Row, second: Row) -> bool:
-    """Whether the quartiles of two times overlap. Times without quartiles are taken at their word."""
+    """Whether the quartiles of two times overlap. A time without quartiles counts as exact."""
     ends = (first.low_quartile, first.high_quartile, second.low_quartile, second.high_quartile)
     if any(end is None for end in ends):
         return first.milliseconds == second.milliseconds

@@ -1,4 +1,4 @@
-"""What anything was measured on and with, and a yardstick that says how steady the machine was."""
+"""The machine and the versions that measurements were made with, and a yardstick of how steady the machine was."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PEERS = ("scipy", "ducc0", "shtns", "pyshtools", "sphericart")
 
 
 def processor() -> str:
-    """The model, where the system says so."""
+    """The model of the processor, if the system tells it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -30,12 +30,12 @@ def processor() -> str:
 
 
 def machine_line() -> str:
-    """In a few words."""
+    """The machine in a few words."""
     return f"{platform.machine()}, {os.cpu_count()} processors, {platform.system()} {platform.release()}"
 
 
 def machine_record() -> dict[str, Any]:
-    """What has to be the same for two times to be compared."""
+    """The facts that must be equal before two times can be compared."""
     return {
         "processor": processor(),
         "architecture": platform.machine(),
@@ -47,7 +47,7 @@ def machine_record() -> dict[str, Any]:
 
 
 def versions(packages: Sequence[str] = (*PACKAGES, *PEERS)) -> dict[str, str]:
-    """The program's, Python's and those of every package that is there."""
+    """The versions of the program, of Python and of every package installed."""
     found = {"shviewer": __version__, "Python": platform.python_version()}
     for name in packages:
         try:
@@ -58,7 +58,7 @@ def versions(packages: Sequence[str] = (*PACKAGES, *PEERS)) -> dict[str, str]:
 
 
 def blas() -> str:
-    """What multiplies matrices: the build, and its kernel where threadpoolctl can tell."""
+    """The library that multiplies matrices: its build, and its kernel if threadpoolctl can tell."""
     build: Any = np.show_config(mode="dicts")
     names = build.get("Build Dependencies", {}).get("blas", {}) if isinstance(build, Mapping) else {}
     text = f"{names.get('name', 'unknown')} {names.get('version', '')}".strip()
@@ -67,7 +67,7 @@ def blas() -> str:
 
 
 def blas_threads() -> int | str:
-    """How many, where threadpoolctl can tell; else what the environment asks for."""
+    """The number of its threads if threadpoolctl can tell, else the number that the environment asks for."""
     threads = [int(pool["num_threads"]) for pool in _pools() if pool.get("user_api") == "blas"]
     if threads:
         return max(threads)
@@ -86,7 +86,7 @@ def _pools() -> list[dict[str, Any]]:
 
 @dataclass
 class Yardstick:
-    """A fixed piece of work, timed all along: how much its time moves is how much the machine moves."""
+    """A fixed piece of work, timed throughout a run: its time changes as much as the machine's speed does."""
 
     times: list[float] = field(default_factory=list)
 
@@ -100,7 +100,7 @@ class Yardstick:
         self.times += [wall_milliseconds(work) for _ in range(3)]
 
     def record(self) -> dict[str, float] | None:
-        """Milliseconds; None if it was never measured."""
+        """A summary of the times, in milliseconds; None if it was never measured."""
         if not self.times:
             return None
         timing = summarise(self.times)

@@ -1,4 +1,4 @@
-"""The lights that a report is about, with what is known of each before anything is timed."""
+"""The lights of a report, with their exact coefficients and band counts, found before anything is timed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from shviewer.lights.light import Light
 from shviewer.lights.reading import DEFAULT_READING, Reading
 
 MOST_BANDS = 128
-"""Up to how many bands a count for a tolerance is searched."""
+"""The number of bands up to which the count for a tolerance is searched."""
 
 TOLERANCES = (0.1, 0.05, 0.01)
 QUICK_TOLERANCES = (0.05,)
@@ -25,9 +25,9 @@ class MeasuredLight:
     name: str
     light: Light
     exact: Array
-    """(MOST_BANDS**2, 3)."""
+    """The exact coefficients, (MOST_BANDS**2, 3)."""
     products: Array
-    """The light's own, (3, 3)."""
+    """The light's products (harmonics/metrics.py), (3, 3)."""
     truncation: Array
     """The relative L2 error of the exact coefficients with n = 1 ... MOST_BANDS bands, (MOST_BANDS,)."""
     needs: dict[float, int | None]
@@ -37,7 +37,7 @@ class MeasuredLight:
 def find_measured_lights(
     lights: Sequence[str | Light], tolerances: Sequence[float] = TOLERANCES, reading: Reading = DEFAULT_READING
 ) -> list[MeasuredLight]:
-    """Every light once; of two files of one stem the second is called by its whole text. LightError if one is bad."""
+    """Measure every light, once. If two files have the same stem, the second is called by its whole text. LightError."""
     found: dict[str, MeasuredLight] = {}
     for number, text in enumerate(lights):
         if text in lights[:number]:
@@ -49,7 +49,7 @@ def find_measured_lights(
 
 
 def measured_light(light: Light, tolerances: Sequence[float] = TOLERANCES, name: str = "") -> MeasuredLight:
-    """A light under its name or another, with its exact coefficients and what their first bands leave out."""
+    """A light under its own or another name, with its exact coefficients and the error of their first bands."""
     exact, products = light.coefficients(MOST_BANDS), light.products()
     truncation = errors_by_band_count(products, exact, exact)
     needs = {tolerance: smallest_band_count(truncation, tolerance) for tolerance in tolerances}

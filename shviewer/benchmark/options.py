@@ -1,4 +1,4 @@
-"""What `shviewer report` can be asked for."""
+"""The options of `shviewer report`."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from shviewer.errors import UsageError
 from shviewer.lights.reading import DEFAULT_READING, Reading
 
 DEFAULT_BUDGET, QUICK_BUDGET = 120.0, 11.0
-"""Seconds of measuring. Starting, reading lights, drawing plots and writing come on top: with the latter 15 s in all."""
+"""Seconds of measuring. Starting, reading lights, drawing plots and writing come on top: a quick report takes 15 s."""
 
 SECTIONS = ("projection", "reconstruction", "end to end")
 
 
 @dataclass(frozen=True)
 class Options:
-    """What `shviewer report` was asked for. UsageError for a value out of its range."""
+    """The options of one report. UsageError for a value out of its range."""
 
     budget: float = DEFAULT_BUDGET
-    """Seconds."""
+    """Seconds of measuring."""
     quick: bool = False
     against: Path | None = None
     stability: bool = False
     peers: bool = False
     seed: int = 0
     methods: tuple[str, ...] = ()
-    """Names of experiments.METHODS; none for all. The best way is always among them: it is the reference."""
+    """Names of experiments.METHODS; empty for all. The best way, the reference, is always added."""
     sections: tuple[str, ...] = SECTIONS
     reading: Reading = DEFAULT_READING
     """How images are read; the peers read them as they are."""
     shader: bool = True
-    """False: nothing is drawn."""
+    """Whether anything is drawn."""
     command: str = ""
-    """What was typed; made up from the arguments of the process if empty."""
+    """The command line; if empty, made from the arguments of the process."""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.budget) and self.budget > 0):

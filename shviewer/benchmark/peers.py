@@ -1,10 +1,10 @@
 """The same projections by other libraries, where they are installed: the extra `bench`.
 
 All start from the same image, interleaved RGB in float32, or from the same jittered samples, and end with the coefficients of
-three channels. What a peer has to copy or convert for that is part of its time. Texels are points to the peers, at the centres
-and weighted by their solid angle, so that their error against our areas is not theirs alone and is not given.
+three channels. Copies and conversions that a peer needs for that are part of its time. To the peers, texels are points at their
+centres, weighted by solid angle; so their error against our areas is not their own fault and is not given.
 
-Threads are counted when a library is loaded. The rows are therefore measured by a process of its own with one thread:
+A library sets its number of threads when it is loaded. The rows are therefore measured by another process, with one thread:
     python -m shviewer.benchmark.peers '{"lights": ["film_studio"], "bands": [9], "budget": 10, "seed": 0}' rows.json
 """
 
@@ -38,14 +38,14 @@ SECTION = "peers"
 OURS = "shviewer"
 ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL", "RAYON", "VECLIB_MAXIMUM", "BLIS")}
 SLOWING = ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE")
-"""May be set in the environment and slow numpy, which would be unfair to nobody but us."""
+"""Environment variables that would slow numpy, and so be unfair to us alone; they are removed."""
 
 SPHERICART_BLOCK = 2**22
-"""Basis values at a time."""
+"""How many basis values are held at a time."""
 
 SCATTERED_SAMPLES = 10_000
 SPHERICART_DEGREES = 87
-"""Beyond this its float64 is wrong."""
+"""The degree beyond which sphericart's float64 is wrong."""
 
 INSTALL = "pip install 'shviewer[bench]'"
 
@@ -53,15 +53,15 @@ ImagePeer = Callable[[NDArray[np.float32], int], object]
 """Image (height, width, 3), bands -> anything that holds the coefficients."""
 
 SamplePeer = Callable[[DirectionSet, Array, int], object]
-"""Samples, radiance (k, 3), bands -> the same."""
+"""Samples, radiance (k, 3), bands -> anything that holds the coefficients."""
 
 
 Contest = tuple[str, int | None]
-"""Whose projection, and of how many samples; None for the image."""
+"""The library that projects, and the number of samples; None for the image."""
 
 
 def texel_solid_angles(height: int, width: int) -> Array:
-    """What a texel of each row covers, steradians, (height, 1)."""
+    """The solid angle of a texel in each row, steradians, (height, 1)."""
     theta = np.pi * (np.arange(height) + 0.5) / height
     return np.asarray((2 * np.sin(theta) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width)[:, None])
 
@@ -110,7 +110,7 @@ def pyshtools_peer() -> ImagePeer:
 
 
 def sphericart_peer(share: int = 1) -> ImagePeer:
-    """Basis by sphericart and a matrix product, block by block, over every `share`-th block of rows."""
+    """The basis by sphericart and a matrix product, block by block, over every `share`-th block of rows."""
     sphericart = import_module("sphericart")
 
     @cache
@@ -174,7 +174,7 @@ SAMPLE_PEERS: dict[str, Callable[[], SamplePeer]] = {
 
 
 def available(makers: dict[str, Callable[[], Any]], missing: Callable[[str, str], object]) -> dict[str, Any]:
-    """Those that are installed; `missing` is told the name and the module of every other."""
+    """The peers that are installed; `missing` is told the name and the module of every other one."""
     found = {}
     for name, make in makers.items():
         try:
@@ -185,7 +185,7 @@ def available(makers: dict[str, Callable[[], Any]], missing: Callable[[str, str]
 
 
 def peer_rows(lights: Sequence[str], bands: Sequence[int], budget: float, seed: int) -> tuple[list[Row], list[str]]:
-    """Rows measured by a process with one thread, and what was missing. Lights are named by text.
+    """Rows measured by a process with one thread, and lines on what was missing. Lights are named by text.
 
     UsageError if the process fails.
     """
@@ -203,7 +203,7 @@ def peer_rows(lights: Sequence[str], bands: Sequence[int], budget: float, seed: 
 
 
 def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: int) -> dict[str, list[Any]]:
-    """In this process, with however many threads it has: {"rows": as dictionaries, "missing": lines}."""
+    """Measure in this process, with however many threads it has: {"rows": dictionaries, "missing": lines}."""
     from shviewer.harmonics.quadrature import jittered
     from shviewer.lights.find import find_light
 
@@ -230,7 +230,7 @@ def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: in
                     continue
                 try:
                     first[contest] = wall_milliseconds(work)
-                except Exception as error:  # whatever a peer says to a size that it does not take
+                except Exception as error:  # a peer may raise anything for a size that it does not take
                     missing.append(f"{where}: {type(error).__name__}: {error}")
                     del works[contest]
                     continue
@@ -259,7 +259,7 @@ def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: in
 def _on_samples(
     samples: DirectionSet, radiance: Array, n_bands: int, peers: dict[str, SamplePeer]
 ) -> dict[Contest, Callable[[], object]]:
-    """Ours and the peers' on scattered samples whose radiance is known."""
+    """Our projection and the peers' for scattered samples whose radiance is known."""
     if n_bands > SPHERICART_DEGREES:
         return {}
     count = len(samples.weights)
@@ -270,7 +270,7 @@ def _on_samples(
 
 
 def _on_image(light: Light, n_bands: int, peers: dict[str, ImagePeer]) -> dict[Contest, Callable[[], object]]:
-    """Ours, in both precisions, and the peers' on a lat-long image; nothing for another light."""
+    """Our projection, in both precisions, and the peers' for a lat-long image; empty for another light."""
     texels = lat_long_texels(light)
     if texels is None:
         return {}

@@ -26,13 +26,13 @@ from shviewer.lights.light import Light
 SECTION = "projection"
 SEEDS = 5
 AT_LEAST = 5
-"""Repeats. Each experiment is run twice more: cold, and for its memory."""
+"""The fewest repeats. Each experiment is run twice more: cold, and for its memory."""
 
 SET_UPS, SHORT = 3, 50.0
-"""Setting up is timed so often, if all but the last take less than so many milliseconds."""
+"""The most times that setting up is timed, and the milliseconds in all after which it is not timed again."""
 
 FILLING = 0.1
-"""Seconds that a round may spend on more repeats of what is fast."""
+"""Seconds that a round may spend on more repeats of fast experiments."""
 
 Experiment = tuple[Method, int | None]
 Add = Callable[[list[Row]], object]
@@ -40,7 +40,7 @@ Add = Callable[[list[Row]], object]
 
 @dataclass(frozen=True, eq=False)
 class Round:
-    """A light, a number of bands, and what takes turns: methods with one number of samples."""
+    """A light, a number of bands, and the experiments that take turns: methods with one number of samples."""
 
     measured: MeasuredLight
     n_bands: int
@@ -50,10 +50,10 @@ class Round:
 def plan(
     lights: Sequence[MeasuredLight], bands: Sequence[int], samples: Sequence[int], methods: Sequence[str] = ()
 ) -> list[Round]:
-    """Every experiment, smallest first: by samples, then by bands, then light by light.
+    """The rounds with every experiment, smallest first: by samples, then by bands, then light by light.
 
-    Each light has its own band counts for the tolerances added, there to PAPER_SAMPLES at most. methods: names, to which
-    BEST is added; none for all.
+    To the bands, each light adds its own counts for the tolerances, with at most PAPER_SAMPLES samples. methods: names, to
+    which BEST is added; empty for all.
     """
     chosen = [method for method in METHODS if not methods or method.name in (BEST, *methods)]
     rounds: dict[tuple[int, int, int], Round] = {}
@@ -72,7 +72,7 @@ def plan(
 
 
 def _size(method: Method, light: Light, samples: int | None) -> int:
-    """Points to be summed. The paper's take their turns with the best way, which they are compared with first of all."""
+    """The number of points to sum. The paper's samples are in one round with the best way, for the main comparison."""
     if samples is None:
         return method.points(light)
     return 0 if (method.name, samples) == (PAPER, PAPER_SAMPLES) else samples
@@ -86,12 +86,11 @@ def measure(
     tell: Callable[[str], object],
     filling: float = FILLING,
 ) -> None:
-    """Run the rounds while there is time; `add` gets the rows of each, and those of what was not measured, as soon as they are
-    there.
+    """Run the rounds while there is time; `add` gets the rows of each round, with those not measured, as soon as it is done.
 
-    left: says how many seconds there still are. filling: seconds that a round may spend on repeats beyond AT_LEAST. An
-    experiment is begun if it fits into what is left should it take as long as the next smaller one of its method and light,
-    in proportion to the samples; one that has none is run once to know.
+    left: tells the seconds that are left. filling: seconds that a round may spend on repeats beyond AT_LEAST. An experiment
+    is begun if it fits into the time left, estimated from the next smaller one of its method and light in proportion to the
+    samples; if there is no smaller one, it is run once to know.
     """
     known: dict[tuple[str, Experiment, int], float] = {}
     for round_ in rounds:
@@ -118,7 +117,7 @@ def measure(
 def _expected(
     known: dict[tuple[str, Experiment, int], float], light: str, experiment: Experiment, n_bands: int
 ) -> float:
-    """Seconds; 0 where nothing smaller has been run."""
+    """The seconds that an experiment should take; 0 if nothing smaller has been run."""
     method, samples = experiment
     smaller = [
         seconds * ((samples or 1) / (count or 1))
@@ -137,7 +136,7 @@ class _Running:
     """Milliseconds of setting up and projecting once."""
     peak_mib: float
     found: list[Array] = field(default_factory=list)
-    """Coefficients of the first repeats; one is enough where nothing is random."""
+    """Coefficients of the first repeats; of one repeat if nothing is random."""
 
 
 def _measure_round(round_: Round, running: dict[Experiment, _Running], filling: float, seed: int) -> list[Row]:
@@ -169,7 +168,7 @@ def _measure_round(round_: Round, running: dict[Experiment, _Running], filling: 
 
 
 def _cold(experiment: Experiment, light: Light, n_bands: int, seed: int) -> float:
-    """Milliseconds of one run with samples and tables made anew. This is the warm-up, too."""
+    """Milliseconds of one run with samples and tables made anew. It serves as the warm-up, too."""
     method, samples = experiment
     cold: list[float] = []
     while len(cold) < (SET_UPS if sum(cold) < SHORT else 1):
@@ -185,7 +184,7 @@ def _cold(experiment: Experiment, light: Light, n_bands: int, seed: int) -> floa
 
 
 def _warm(experiment: Experiment, light: Light, n_bands: int, seed: int, cold: float) -> _Running:
-    """Once more, for the memory."""
+    """Run once more, to measure the memory."""
     method, samples = experiment
     tracemalloc.start()
     try:
@@ -209,7 +208,7 @@ def forget_tables() -> None:
 
 @dataclass(frozen=True)
 class Errors:
-    """What one projection is off by, all relative: see Row."""
+    """The relative errors of one projection: see Row."""
 
     error: float
     truncation: float
@@ -217,7 +216,7 @@ class Errors:
 
 
 def errors_of(measured: MeasuredLight, coefficients: Array) -> Errors:
-    """Coefficients (n_bands**2, 3) against the light's own, by the metrics of the window."""
+    """The errors of coefficients (n_bands**2, 3) against the light's own, by the metrics of the window."""
     norm, exact = measured.products.diagonal(), measured.exact[: len(coefficients)]
     left_out, added = squared_error(norm, exact, coefficients)
     return Errors(relative(added, (exact**2).sum(axis=0)), relative(left_out, norm), relative(left_out + added, norm))

@@ -1,7 +1,7 @@
-"""What a band costs where the sum is evaluated, against what it brings: in the shader, from a map, and on the CPU.
+"""The cost of a band where the sum is evaluated, against its use: in the shader, from a map, and on the CPU.
 
-Two errors stand beside each time: truncation, what the bands left out hold, and what the arithmetic of the evaluation adds.
-Both are relative to the norm of the light, so that they compare: where they meet, more bands are of no use.
+Each time has two errors beside it: the truncation error, from the bands left out, and the arithmetic error of the evaluation.
+Both are relative to the norm of the light and so can be compared: where they meet, more bands are of no use.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ SCATTERED, BASIS = "CPU, scattered", "CPU, basis matrix"
 MAP_64, MAP_32 = "CPU, map float64", "CPU, map float32"
 CPU = (SCATTERED, BASIS, MAP_64, MAP_32)
 MAKING = "making the map"
-"""Not a row: the set-up of CACHED, uploading included."""
+"""The set-up of CACHED, uploading included; it has no row of its own."""
 
 PER_FRAME = "per frame of 1280 x 640, both spheres"
 PER_MILLION = "per million directions"
@@ -57,11 +57,11 @@ NEAREST_RIM = 0.2
 """Normals with less than this along the view are left out: there float32 does not know the normal itself to 1e-6."""
 
 MOST_DIRECTIONS, MOST_VALUES = 32_768, 2**20
-"""In one timed run on the CPU: directions, and values of their basis."""
+"""The most directions, and the most values of their basis, in one timed run on the CPU."""
 
 BLOCK = 2048
 CHECKED = 512
-"""Directions in which Synthesis is compared with the basis matrix."""
+"""The number of directions in which Synthesis is compared with the basis matrix."""
 
 SEED = 20_240_602
 
@@ -78,12 +78,12 @@ def reconstruction_rows(
     bands: Sequence[int] = BANDS,
     at_least: int = 3,
 ) -> list[Row]:
-    """Every evaluation of the light at every band count. LightError if it is too dim or too bright to be drawn.
+    """Rows of every evaluation of the light at every band count. LightError if it is too dim or too bright to be drawn.
 
-    drawing: what draws; a text says why nothing does, and then the rows of the shader are absent. budget: seconds for all
-    timings, passed only to reach `at_least` runs of each; the errors, which warm everything up, take a few seconds more.
-    at_most: seconds for everything. Band counts come smallest first, and one is not begun, and its rows are not measured, if
-    it does not fit into them should it take as long as the one before.
+    drawing: the shader, or why nothing can be drawn, and then its rows are absent. budget: seconds for all timings, exceeded
+    only to reach `at_least` runs of each; the errors, which warm everything up, take a few seconds more. at_most: seconds for
+    everything. Band counts come smallest first; a count is not measured if the time of the one before does not fit into the
+    rest.
     """
     begun = perf_counter()
     stages: dict[int, _Stage] = {}
@@ -128,7 +128,7 @@ def _shader_methods(n_bands: int) -> tuple[str, ...]:
 
 
 def _with_times(rows: dict[Name, Row], stages: dict[int, _Stage], times: dict[Name, Timing]) -> list[Row]:
-    """By band count, then by method."""
+    """The rows with their times, sorted by band count, then by method."""
     done = []
     for (method, n_bands), row in sorted(rows.items(), key=lambda item: item[0][1]):
         timing = times[method, n_bands]
@@ -140,7 +140,7 @@ def _with_times(rows: dict[Name, Row], stages: dict[int, _Stage], times: dict[Na
 
 
 class _Stage:
-    """One light with one band count: what is evaluated, on the CPU and how exactly."""
+    """One light with one band count: its evaluations on the CPU and their errors."""
 
     def __init__(self, measured: MeasuredLight, n_bands: int) -> None:
         picture = prepare(state_of(measured.light, n_bands=n_bands))
@@ -160,7 +160,7 @@ class _Stage:
         return self.synthesis.pole_to_pole(*MAP_SIZE)
 
     def on_a_map(self) -> Picture:
-        """Drawn from a map, however few bands."""
+        """The picture drawn from a map, however few bands it has."""
         splines = self.synthesis.spline_map(*MAP_SIZE)
         return replace(self.direct, drawn=SplineMap(splines))
 
@@ -168,7 +168,7 @@ class _Stage:
         return self.synthesis.on_rows(np.linspace(0, np.pi, MAP_SIZE[0]), MAP_SIZE[1])
 
     def sum_at(self, directions: Array) -> Array:
-        """(k, 3) -> (k, 3) by Synthesis, in blocks."""
+        """The sum by Synthesis, in blocks: directions (k, 3) -> (k, 3)."""
         return _in_blocks(
             lambda part: self.synthesis.at(*angles_from_directions(part)),
             directions,
@@ -178,15 +178,15 @@ class _Stage:
         return _in_blocks(lambda d: evaluate_basis(d, self.n_bands) @ self.coefficients, directions)
 
     def directions_of(self, method: str) -> int:
-        """How many one timed run evaluates."""
+        """The number of directions in one timed run."""
         return MAP_SIZE[0] * MAP_SIZE[1] if method in (MAP_64, MAP_32) else len(self.directions)
 
     def relative(self, mean_square: float) -> float:
-        """An error's mean square as a norm, over the light's; infinite where a black light is not drawn black."""
+        """The norm of an error, from its mean square, over the light's; infinite if a black light is not drawn black."""
         return float(np.sqrt(mean_square)) / self.rms if self.rms else 0.0 if mean_square == 0 else float("inf")
 
     def errors(self) -> dict[str, float | None]:
-        """By method, against the basis matrix in float64, which is compared with nothing itself."""
+        """Method -> error against the basis matrix in float64, which has none itself."""
         some = self.directions[:CHECKED]
         scattered = ((self.sum_at(some) - self.sum_by_basis(some)) ** 2).sum(axis=1).mean()
         theta, exact = np.linspace(0, np.pi, MAP_SIZE[0]), self.rows_of_map().transpose(0, 2, 1)
@@ -200,7 +200,7 @@ class _Stage:
         }
 
     def _texel_error(self, exact: Array) -> float:
-        """Mean square over CHECKED random texels, each row as often as its solid angle asks for."""
+        """The mean square error over CHECKED random texels, whose rows are drawn in proportion to solid angle."""
         random = np.random.default_rng(SEED)
         rows = np.rint(np.arccos(random.uniform(-1, 1, CHECKED)) * (MAP_SIZE[0] - 1) / np.pi).astype(np.int64)
         columns = random.integers(0, MAP_SIZE[1], CHECKED)
@@ -210,7 +210,7 @@ class _Stage:
         return float(((exact[rows, columns] - self.sum_by_basis(directions)) ** 2).sum(axis=1).mean())
 
     def works(self) -> dict[str, Work]:
-        """By method, what is timed."""
+        """Method -> the work to time."""
         return {
             SCATTERED: lambda: self.sum_at(self.directions),
             BASIS: lambda: self.sum_by_basis(self.directions),
@@ -219,7 +219,7 @@ class _Stage:
         }
 
     def row(self, method: str, arithmetic_error: float | None) -> Row:
-        """Without its times."""
+        """The row of a method, still without times."""
         return Row(
             section=SECTION,
             method=method,
@@ -239,7 +239,7 @@ class _Frame:
         self.renderer = renderer
         self.target = target
         self.cached: _Stage | None = None
-        """Whose map is shown."""
+        """The stage whose map is shown."""
         sphere = FRAME.spheres[1]
         right, up = np.meshgrid(
             (np.arange(0, FRAME.width, STRIDE) + 0.5 - sphere.x) / sphere.radius,
@@ -254,7 +254,7 @@ class _Frame:
         return works | dict.fromkeys(_shader_methods(stage.n_bands), self.draw)
 
     def be_ready_for(self, method: str, stage: _Stage) -> None:
-        """Show what is going to be drawn, which is not timed."""
+        """Upload the picture to draw, which is not timed."""
         if method == DIRECT:
             self.cached = None
             self.renderer.show(stage.direct)
@@ -272,12 +272,12 @@ class _Frame:
         self.renderer.context.finish()
 
     def errors(self, stage: _Stage) -> dict[str, float]:
-        """By method."""
+        """Method -> arithmetic error."""
         pictures = {CACHED: stage.on_a_map(), DIRECT: stage.direct}
         return {method: self._error(stage, pictures[method]) for method in _shader_methods(stage.n_bands)}
 
     def _error(self, stage: _Stage, picture: Picture) -> float:
-        """That of the linear radiance read back from the right sphere, seen from the front and from behind."""
+        """The error of the linear radiance read back from the right sphere, seen from the front and from behind."""
         azimuth, elevation = CAMERA_HOME
         total = weights = 0.0
         for place in ((azimuth, elevation), (azimuth + 180, -elevation)):

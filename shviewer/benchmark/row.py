@@ -20,10 +20,10 @@ class Row:
     """"projection", "reconstruction", "end to end" or "peers"."""
     method: str
     light: str = ""
-    """Empty where none is concerned."""
+    """Empty if no light is concerned."""
     n_bands: int | None = None
     samples: int | None = None
-    """How many were asked for."""
+    """The number of samples asked for."""
     evaluations: int | None = None
     """How often the light was really evaluated; 0 for a closed form."""
 
@@ -33,43 +33,43 @@ class Row:
     high_quartile: float | None = None
     repeats: int | None = None
     set_up_milliseconds: float | None = None
-    """What comes before and is kept: samples and tables."""
+    """The time to make samples and tables, which are kept."""
 
     error: float | None = None
     """||c - exact|| / ||exact|| of the coefficients; for random methods the median over seeds. None for the reference."""
     error_low: float | None = None
-    """The smallest and the largest over the seeds; None where nothing is random."""
+    """The smallest error over the seeds, and then the largest; None if nothing is random."""
     error_high: float | None = None
     reference_accuracy: float | None = None
-    """How far the reference itself may be off; 0 where it is exact."""
+    """How far the reference itself may be off; 0 if it is exact."""
     truncation: float | None = None
-    """||what the bands left out|| / ||light||."""
+    """||light - its first n bands|| / ||light||."""
     total_error: float | None = None
     """||light - reconstruction|| / ||light||: total^2 = truncation^2 + error^2 (1 - truncation^2)."""
     arithmetic_error: float | None = None
-    """What rounding adds where the sum is evaluated, over the light's L2 norm, as the errors beside it."""
+    """The error of rounding in the evaluation of the sum, over the light's L2 norm like the other errors."""
 
     peak_mib: float | None = None
-    """The most memory held at once, samples and result included, by a run of its own."""
+    """The most memory held at once, samples and result included, measured in a run of its own."""
     note: str = ""
 
     @property
     def measured(self) -> bool:
-        """False for a row that the time did not allow: only what it would have been is known, and its note says so."""
+        """Whether it was measured; False for a row that there was no time for, as its note says."""
         return self.milliseconds is not None
 
     @property
     def key(self) -> Key:
-        """What makes two rows of different runs the same measurement."""
+        """The fields that are equal for the same measurement in different runs."""
         return self.section, self.light, self.method, self.n_bands, self.samples
 
     def as_dict(self) -> dict[str, Any]:
-        """Every column; what is not finite is None, too, since JSON has no word for it."""
+        """Every column; numbers that are not finite become None, since JSON has no word for them."""
         return {name: _finite(value) for name, value in asdict(self).items()}
 
     @classmethod
     def from_dict(cls, columns: Mapping[str, Any]) -> Row:
-        """Back again. TypeError or ValueError for a column that is missing, unknown or of another type."""
+        """The inverse of `as_dict`. TypeError or ValueError for a column that is missing, unknown or of another type."""
         row = cls(**columns)
         for field in fields(cls):
             value = getattr(row, field.name)
@@ -88,7 +88,7 @@ COLUMNS = tuple(field.name for field in fields(Row))
 
 
 def not_measured(section: str, method: str, light: str, n_bands: int | None, samples: int | None = None) -> Row:
-    """The row of something that the time did not allow."""
+    """A row for which there was no time."""
     return Row(section=section, method=method, light=light, n_bands=n_bands, samples=samples, note="not measured")
 
 

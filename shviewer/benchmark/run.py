@@ -1,4 +1,4 @@
-"""The report from the first light to the last file. Whatever ends it early leaves what was measured, and says so."""
+"""The run of a report, from the first light to the last file. If it ends early, the part measured is kept and marked."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from shviewer.lights.light import Light
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run came to. rows: how many were measured. text: some lines for the terminal."""
+    """The result of a run. rows: how many were measured. text: some lines for the terminal."""
 
     folder: Path
     files: tuple[str, ...]
@@ -38,8 +38,8 @@ def write_report(
 ) -> Summary:
     """Measure `lights`, or experiments.LIGHTS if there are none, and write report.md, .json and .csv and plots into `folder`.
 
-    OutputError, LightError or UsageError before anything is measured where that cannot be. An interrupt is raised again,
-    after what was measured has been written as a partial report.
+    OutputError, LightError or UsageError, before anything is measured, if that is impossible. An interrupt is raised again
+    after the rows measured have been written as a partial report.
     """
     options = options or Options()
     before = None if options.against is None else read_report(options.against)
@@ -73,7 +73,7 @@ def write_report(
 
 
 def _plots(run: Run) -> None:
-    """Pictures where matplotlib is installed, else the line that installs it."""
+    """Draw the plots if matplotlib is installed; else the page has the line that installs it."""
     from shviewer.benchmark.page.plots import make_plots
 
     paths, message = make_plots(run.report.rows, run.folder)

@@ -1,4 +1,4 @@
-"""The sections of a report: what each measures, and its part of the page."""
+"""The sections of a report: the measurements of each, and its part of the page."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from shviewer.errors import UsageError
 PEER_BANDS = (3, 9, 16, 32)
 QUICK_RECONSTRUCTED = (3, 16)
 QUICK_REPEATS = 3
-"""Where five repeats of what is slow do not fit."""
+"""The repeats in a quick report, in which five of the slow ones do not fit."""
 
 AGAINST = "Against an older report"
 
 
 @dataclass
 class Run:
-    """A report while it is made. Every section adds to it and is written at once."""
+    """A report in the making. Every section adds to it and is written at once."""
 
     options: Options
     folder: Path
@@ -44,7 +44,7 @@ class Run:
     stability_failed: bool = False
 
     def add(self, rows: Sequence[Row]) -> None:
-        """Rows of what was measured and of what was not."""
+        """Add rows, measured and not measured."""
         self.report.rows += rows
         if any(row.measured for row in rows):
             self.yardstick.measure()

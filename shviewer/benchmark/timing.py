@@ -1,4 +1,4 @@
-"""Wall time: medians with their quartiles, of runs that take turns, since the machine drifts."""
+"""Wall time: medians and quartiles of runs that take turns, since the machine drifts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Work = Callable[[], object]
 
 @dataclass(frozen=True)
 class Timing:
-    """Milliseconds: the median and the quartiles of so many repeats."""
+    """The median and the quartiles of a number of repeats, in milliseconds."""
 
     median: float
     low_quartile: float
@@ -27,7 +27,7 @@ class Timing:
 
 
 def summarise(milliseconds: list[float]) -> Timing:
-    """ValueError for no times at all."""
+    """Median and quartiles of times. ValueError if there are none."""
     if not milliseconds:
         raise ValueError("no times")
     low, middle, high = np.quantile(milliseconds, (0.25, 0.5, 0.75))
@@ -49,12 +49,12 @@ def time_interleaved(
     warm_up: bool = True,
     before: Callable[[Name, int], object] | None = None,
 ) -> dict[Name, Timing]:
-    """The times of all: A B C A B C ..., so that a slow moment of the machine hits all of them.
+    """Time all works in turn, A B C A B C ..., so that a slow moment of the machine hits all of them.
 
-    `budget`: seconds for all together, passed only to reach `at_least` repeats; each gets an equal share, so that fast work
-    is repeated more often, up to MOST_REPEATS. `before`(name, repeat) prepares a run and is not timed; repeat counts
-    from 0, warm-ups have -1. `at_most`: seconds for everything; work that by its warm-up does not fit into them `at_least`
-    times is left out, and is not even begun where those before it leave no time.
+    `budget`: seconds for all together, exceeded only to reach `at_least` repeats; each gets an equal share, so that fast work
+    is repeated more often, up to MOST_REPEATS. `before`(name, repeat) prepares a run and is not timed; repeats are counted
+    from 0, warm-ups have -1. `at_most`: seconds for everything; work that by its warm-up does not fit in `at_least` times is
+    left out, and is not even begun if no time is left.
     """
     start, turn = perf_counter(), 0.0
     waiting = {} if warm_up else dict(works)

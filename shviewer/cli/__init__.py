@@ -1,1 +1,1 @@
-"""The command line: flags and help, one file a mode."""
+"""The command line: options and help, and one file for each mode."""

@@ -1,4 +1,4 @@
-"""From the options of a command line to how files are read and what is shown."""
+"""The options of a command line made into a reading, a recipe and a state."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 
 def chosen_of(options: argparse.Namespace, holder: type) -> dict[str, Any]:
-    """The options of a dataclass that are given, by the names of its fields."""
+    """The given options that belong to a dataclass, by the names of its fields."""
     given = vars(options)
     return {name: given[name] for name in options_of(holder) if given.get(name) is not None}
 
 
 def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
-    """The recipe that the options ask for, of LIGHT, and what there is to say of it; "" if nothing.
+    """The recipe that the options ask for, with LIGHT, and a message about it or "".
 
     UsageError for an option out of range, before the light is read if that does not depend on it.
     """
@@ -54,7 +54,7 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
 
 
 def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
-    """The state that the options ask for. UsageError for one out of range."""
+    """The state that the options ask for. UsageError for an option out of range."""
     from shviewer.lights.find import built_in_lights
     from shviewer.viewer.actions import open_light
     from shviewer.viewer.camera import towards
@@ -68,7 +68,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     if options.camera:
         chosen["camera"] = options.camera[0] % 360, options.camera[1]
     if options.basis:
-        chosen |= {"basis": None, "lobe_view": True}  # as soon as its bands are known
+        chosen |= {"basis": None, "lobe_view": True}  # checked as soon as its bands are known
     if options.rotate_light:
         chosen["light_rotation"] = towards(*options.rotate_light)
     view = View(**chosen)
@@ -82,7 +82,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
 
 
 def _error_range(options: argparse.Namespace) -> float | None:
-    """A radiance; of the relative error a share of 1, which may be said in percent."""
+    """The error range: a radiance, or for the relative error a share of 1, which may be given in percent."""
     text = options.error_range
     if text is None:
         return None
@@ -96,7 +96,7 @@ def _error_range(options: argparse.Namespace) -> float | None:
 
 
 def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
-    """As many bands as the tolerance needs, said on stderr; where none are enough, the best there is."""
+    """The recipe with as many bands as the tolerance needs, or if none are enough, the best count; stderr says which."""
     from shviewer.analysis.figures import estimate_from_samples, needs
 
     if options.n_bands is not None:
@@ -119,7 +119,7 @@ def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
 
 
 def reading_from(options: argparse.Namespace) -> Reading:
-    """How images are read. UsageError for an unknown layout."""
+    """The reading that the options ask for. UsageError for an unknown layout or convention."""
     from shviewer.lights.reading import Reading
     from shviewer.limits import Limits
 
@@ -140,7 +140,7 @@ def reading_from(options: argparse.Namespace) -> Reading:
 
 
 def _input_convention(options: argparse.Namespace) -> str:
-    """UsageError for one that is not known."""
+    """The convention of bare lists; "" if none is named. UsageError for an unknown one."""
     text: str = options.input_convention
     if text:
         from shviewer.coefficients.programs import parse_convention
@@ -154,7 +154,7 @@ def _input_convention(options: argparse.Namespace) -> str:
 
 
 def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
-    """UsageError for a convention that nothing is read in."""
+    """UsageError for a convention if no file is given that it could apply to."""
     from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
     from shviewer.lights.find import split_light
 
@@ -164,7 +164,7 @@ def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
         return
     name = "--input-convention" if "convention" in given else "--convention"
     raise UsageError(
-        f"{name} {convention}: it is of a coefficient file, and {lights[0]} is none; name one as LIGHT"
+        f"{name} {convention}: it applies to a coefficient file, and {lights[0]} is none; name one as LIGHT"
         + ("" if name == "--input-convention" else " or with --compare")
     )
 

@@ -1,4 +1,4 @@
-"""`shviewer info LIGHT [LIGHT ...]`: what lights are, in figures."""
+"""`shviewer info LIGHT [LIGHT ...]`: lights in figures."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The command line. What a mode needs is imported in its branch: --help and --version load neither numpy nor OpenGL.
+"""The command line. Each mode is imported in its own branch: --help and --version load neither numpy nor OpenGL.
 
-numpy's matrix products get one thread, unless the environment says otherwise: ours are too small for more, and threads that
-wait for each other on a busy machine take ten times as long.
+numpy's matrix products get one thread, unless the environment says otherwise: they are too small here for more, and threads
+that wait for each other on a busy machine take ten times as long.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return error.exit_code
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # nobody reads on, as in `shviewer --list-lights | head -1`
+    except BrokenPipeError:  # the reader has stopped, as in `shviewer --list-lights | head -1`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 
@@ -55,13 +55,13 @@ _PARSERS = {
     "project": project_parser,
     "report": report_parser,
 }
-"""Of each mode, whose code is the function `run` of the file of its name."""
+"""Mode -> its parser. The mode's code is the function `run` in the file of its name."""
 
 MODES = tuple(mode for mode in _PARSERS if mode != "view")
 
 
 def _meant(arguments: list[str]) -> list[str]:
-    """The arguments; "help" is --help. UsageError for a first one that is nearly a mode, and no file."""
+    """The arguments, "help" as --help. UsageError if the first is nearly the name of a mode, and no file."""
     first = arguments[0] if arguments else ""
     if first == "help":
         return ["--help", *arguments[1:]]

@@ -1,4 +1,4 @@
-"""What is said of a light on stderr: what was done to it, and how well coefficients that are compared agree."""
+"""Notes on stderr: what was done to a light, and how well compared coefficients agree with it."""
 
 from __future__ import annotations
 
@@ -17,6 +17,6 @@ def print_notes(subject: Subject) -> None:
 
 
 def print_verdict(recipe: Recipe) -> None:
-    """How well coefficients that are compared agree, or by which usual mistake they are off."""
+    """Print how well compared coefficients agree, or by which usual mistake they are off."""
     if recipe.compare:
         print(f"shviewer: {verdict(load_light(recipe), recipe.compare)}", file=sys.stderr)

@@ -20,22 +20,22 @@ LIGHT_HELP = (
 
 
 TEXTS = ("window", "error_range")
-"""A window with its width, and a radiance or a share in percent."""
+"""Options kept as text and parsed later: a window with its width, and a radiance or a share in percent."""
 
 
 LARGE = ("samples",)
-"""Counts that may be told as 1e6."""
+"""Counts that may be given as 1e6."""
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """argparse, but a mistake is one line on stderr and not the usage, too."""
+    """An argparse parser that reports a mistake in one line on stderr, without the usage."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"shviewer: {' '.join(message.split())}; see {self.prog} --help\n")
 
 
 def add_view_options(parser: OneLineParser) -> None:
-    """LIGHT, and everything that a picture of it depends on."""
+    """Add LIGHT and every option that its picture depends on."""
     parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
     add_table(parser, Recipe)
     add_picture_options(parser)
@@ -43,7 +43,7 @@ def add_view_options(parser: OneLineParser) -> None:
 
 
 def add_table(parser: OneLineParser, holder: type, names: Container[str] = ()) -> None:
-    """The options that a dataclass holds, or those of these names. What is not given is None."""
+    """Add the options that a dataclass holds, or only those in `names`. An option that is not given is None."""
     for row in options_of(holder).values():
         if row.flag and (not names or row.name in names):
             takes = {"action": "store_const", "const": row.const} if row.const is not None else _values(row)
@@ -51,7 +51,7 @@ def add_table(parser: OneLineParser, holder: type, names: Container[str] = ()) -
 
 
 def _values(row: Option) -> dict[str, Any]:
-    """What argparse has to know of the values. Two options are texts that are taken apart later."""
+    """The arguments of `add_argument` about an option's values. Those in TEXTS are parsed later."""
     if row.name in TEXTS:
         return {"metavar": row.metavar}
     readers: dict[type, Callable[[str], object]] = {Whole: int, Share: _tolerance, Number: finite, Bands: _band_list}
@@ -62,8 +62,8 @@ def _values(row: Option) -> dict[str, Any]:
 
 
 def add_picture_options(parser: OneLineParser) -> None:
-    """What is drawn of a light beside what is in the table: coefficients to compare, a turn of the light, a size."""
-    from shviewer.viewer.view import View  # what draws nothing loads nothing of the viewer
+    """Add the options of a picture that no dataclass holds: coefficients to compare, a turn of the light, a size."""
+    from shviewer.viewer.view import View  # modes that draw nothing load nothing of the viewer
 
     parser.add_argument(
         "--compare",
@@ -85,13 +85,13 @@ def add_picture_options(parser: OneLineParser) -> None:
 
 
 def add_reading_options(parser: OneLineParser, convention: str = "--convention") -> None:
-    """How an image is read, and coefficients that do not say their convention."""
+    """Add the options that say how to read images, and coefficients that do not name their convention."""
     parser.add_argument(
         convention,
         metavar="C",
         dest="input_convention",
         default="",
-        help="of a bare list of coefficients: shviewer, filament, three, unity, unreal, ambix, sphericart or scipy",
+        help="convention of a bare list of coefficients: shviewer, filament, three, unity, unreal, ambix, sphericart or scipy",
     )
     parser.add_argument(
         "--sanitize",

@@ -105,12 +105,12 @@ def sweep_parser() -> OneLineParser:
     parser.add_argument(
         "--turntable", action="store_true", help="turn the camera once round instead, with --bands N bands"
     )
-    parser.add_argument("--frames", metavar="K", type=int, help="of --turntable, 2 to 720 (default 72)")
+    parser.add_argument("--frames", metavar="K", type=int, help="frames of --turntable, 2 to 720 (default 72)")
     parser.add_argument(
         "--seconds",
         metavar="S",
         type=finite,
-        help="that a frame is shown, 0.02 to 60 (default 0.7, the last band three times as long; --turntable 0.08)",
+        help="time of a frame, 0.02 to 60 (default 0.7, the last band three times as long; --turntable 0.08)",
     )
     parser.add_argument("--no-overlay", action="store_true", help="the spheres alone")
     add_view_options(parser)
@@ -118,7 +118,7 @@ def sweep_parser() -> OneLineParser:
 
 
 def info_parser() -> OneLineParser:
-    """shviewer info LIGHT [LIGHT ...]: what lights are, in figures."""
+    """shviewer info LIGHT [LIGHT ...]: lights in figures."""
     parser = OneLineParser(
         prog="shviewer info",
         description="Say what each LIGHT is: its file, size and range, its mean and peak, the energy of its bands, and how many"
@@ -153,8 +153,8 @@ def project_parser() -> OneLineParser:
         "--convention",
         metavar="C",
         default="shviewer",
-        help="whose: shviewer (default), filament, three, unity, unreal, ambix, sphericart or scipy; after commas what differs,"
-        " such as shviewer,no-phase,4pi",
+        help="convention to write: shviewer (default), filament, three, unity, unreal, ambix, sphericart or scipy; after"
+        " commas what differs, such as shviewer,no-phase,4pi",
     )
     parser.add_argument(
         "--axes",
@@ -186,10 +186,10 @@ def report_parser() -> OneLineParser:
         "--budget",
         metavar="SECONDS",
         type=finite,
-        help="of measuring (default 120), smallest first; what they do not reach is not measured",
+        help="time for measuring (default 120), smallest first; what it does not reach is not measured",
     )
     parser.add_argument("--methods", metavar="M,M", help="only these ways to project, and the best way of each light")
-    parser.add_argument("--seed", metavar="S", type=int, default=0, help="of all random samples (default 0)")
+    parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of all random samples (default 0)")
     parser.add_argument(
         "--against",
         metavar="OLD.json",

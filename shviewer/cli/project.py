@@ -1,4 +1,4 @@
-"""`shviewer project`: one light into one file or onto stdout, or many into a folder, where one that fails stops no other."""
+"""`shviewer project`: one light into a file or onto stdout, or several into a folder, where a failure stops no other."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ STDOUT = "-"
 BATCH_FAILED = 1
 
 ROUNDING = 1e-6
-"""A minimum that is no farther below zero than this part of the largest coefficient is called zero."""
+"""A minimum below zero by no more than this share of the largest coefficient counts as zero."""
 
 RecipeOf = Callable[[str], Recipe]
-"""The recipe that the options ask for, of one LIGHT. It raises what reading the light raises."""
+"""LIGHT -> the recipe that the options ask for. It raises the errors of reading the light."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """Of the summary: what became of one light."""
+    """A row of the summary: what became of one light."""
 
     light: str
     file: str
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
-    """What --convention, --axes, --no-phase and --for ask for together. UsageError if they contradict each other."""
+    """The convention that --convention, --axes, --no-phase and --for name together. UsageError if they contradict."""
     try:
         convention = parse_convention(",".join([text, *([axes] if axes else []), *(["no-phase"] if no_phase else [])]))
     except ValueError as error:
@@ -86,7 +86,7 @@ def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str
 
 
 def check_tolerance(recipe: Recipe, convention: Convention) -> None:
-    """UsageError if the recipe's tolerance needs more bands than the program has: what its bands give, and what may help."""
+    """UsageError if the tolerance needs more bands than the program has; it says what those reach, and what may help."""
     most = convention.most_bands
     if most is None or recipe.n_bands <= most:
         return
@@ -108,7 +108,7 @@ def project_lights(
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None = None,
 ) -> int:
-    """Project and write; the exit code. status: shows what is at work, "" clears it.
+    """Project and write; return the exit code. status: shows a line of progress, or clears it for "".
 
     One light: `out` is a file, a folder that exists, or "-". Several: `out` is a folder, made if need be; the code is
     BATCH_FAILED if any of them failed. ShviewerError for one light that fails, or arguments that fit no light.
@@ -176,7 +176,7 @@ def _batch(
 def _one_of_many(
     light: str, folder: Path, kind: str, convention: Convention, recipe_of: RecipeOf, taken: set[str]
 ) -> Row:
-    """One light of a batch, written under a name of its own."""
+    """Project one light of a batch and write it under a name of its own; return its row of the summary."""
     try:
         projected = _noted(light, recipe_of, convention)
         stem = file_stem(projected.name)
@@ -191,7 +191,7 @@ def _one_of_many(
 
 
 def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected:
-    """Projected; what was done to the light, and what became of its suns, is said on stderr."""
+    """Project a light; stderr says what was done to it and what became of its suns."""
     recipe = recipe_of(light)
     projected = project_recipe(recipe)
     shown = subject(recipe)
@@ -202,7 +202,7 @@ def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected
 
 
 def _warn_below_zero(projected: Projected) -> None:
-    """On stderr, of what has been written and is below zero by more than rounding."""
+    """Say on stderr if the reconstruction that was written is below zero by more than rounding."""
     minimum = projected.figures.extremes.minimum
     if minimum >= -ROUNDING * float(np.abs(projected.coefficients).max()):
         return
@@ -212,7 +212,7 @@ def _warn_below_zero(projected: Projected) -> None:
 
 
 def _kind_of(path: Path, kind: str | None) -> str:
-    """By the suffix, which must not contradict `kind`."""
+    """The format by the suffix, which must not contradict `kind`."""
     suffix = path.suffix.lower()[1:]
     if kind is None and suffix not in FORMATS:
         raise UsageError(f"{path}: FILE must end in .{', .'.join(FORMATS)}, or name a format: --format json")

@@ -1,4 +1,4 @@
-"""What is at work, on one line of the terminal."""
+"""A line of progress on the terminal."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from contextlib import contextmanager
 
 
 def bar(done: float) -> str:
-    """done: 0 to 1."""
+    """A bar of 24 characters, filled to the share `done`, 0 to 1."""
     filled = round(24 * done)
     return f"[{'#' * filled}{'.' * (24 - filled)}]"
 
 
 class StatusLine:
-    """What is at work, on one line of the terminal."""
+    """One line on stderr that is overwritten again and again."""
 
     def show(self, text: str) -> None:
         print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
 
     def fraction(self, done: float, seconds_left: float, what: str) -> None:
-        """done: 0 to 1."""
+        """Show the share `done`, 0 to 1, the time left and the step at work."""
         self.show(f"{bar(done)} {seconds_left:4.0f} s left  {what[:60]}")
 
     def clear(self) -> None:
@@ -29,7 +29,7 @@ class StatusLine:
 
 @contextmanager
 def status_line() -> Iterator[StatusLine | None]:
-    """One on stderr where that is a terminal, wiped at the end whatever happens; else none."""
+    """A status line if stderr is a terminal, wiped at the end whatever happens; else None."""
     line = StatusLine() if sys.stderr.isatty() else None
     try:
         yield line

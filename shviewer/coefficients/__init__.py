@@ -1,1 +1,1 @@
-"""Lists of numbers and what they mean: conventions of programs, and coefficient files, read and written."""
+"""Lists of coefficients and their meaning: the conventions of programs, and coefficient files, read and written."""

@@ -1,4 +1,4 @@
-"""Coefficients in NumPy's files. Nothing pickled is loaded, and what a header claims is checked before memory is taken."""
+"""Coefficients in NumPy's files. Nothing pickled is loaded, and sizes in a header are checked before memory is taken."""
 
 from __future__ import annotations
 

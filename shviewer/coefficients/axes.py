@@ -1,7 +1,7 @@
 """Other programs' axes: signed permutations of ours, and what they do to coefficients.
 
 A direction with our components s has M s in the other program, M with one +1 or -1 in each row and column: 24 rotations and 24
-reflections. The function stays what it is, so that its coefficients there are those of g(s') = f(M^T s'). Turns about z and
+reflections. The function stays the same, so that its coefficients there are those of g(s') = f(M^T s'). Turns about z and
 mirrors only change signs and swap m with -m, which is exact; axes that move z mix the orders of a degree (rotation.py).
 """
 
@@ -22,12 +22,12 @@ NAMED_AXES = {"z-up": "+x+y+z", "y-up": "+x+z-y", "z-up-left": "+x-y+z", "y-up-l
 """z-up and y-up are right-handed, the others left-handed. Ours, +x, stays x in all of them."""
 
 NOISE = 1e-15
-"""What is smaller than this part of its degree's norm is taken for the rounding of a zero."""
+"""A coefficient smaller than this share of its degree's norm counts as the rounding of a zero."""
 
 
 @dataclass(frozen=True)
 class Axes:
-    """text: which of our axes the other program's x, y and z are, such as "+x+z-y". ValueError if it is no such text."""
+    """Another program's axes. text: our axes that are its x, y and z, such as "+x+z-y". ValueError if it is no such text."""
 
     text: str = "+x+y+z"
 
@@ -38,7 +38,7 @@ class Axes:
 
     @classmethod
     def named(cls, text: str) -> Axes:
-        """A name of NAMED_AXES, or the axes themselves."""
+        """The axes of a name of NAMED_AXES, or of a text such as "+x+z-y"."""
         return cls(NAMED_AXES.get(text, text))
 
     @cached_property
@@ -59,7 +59,7 @@ class Axes:
         return cls("".join("+-"[int(row[at] < 0)] + "xyz"[at] for row, at in zip(matrix, places, strict=True)))
 
     def then(self, other: Axes) -> Axes:
-        """First these axes, then the other program's."""
+        """The axes that result if `other` is applied after these."""
         return Axes.from_matrix(other.matrix @ self.matrix)
 
     @property
@@ -68,7 +68,7 @@ class Axes:
 
     @property
     def words(self) -> str:
-        """ "x y z are our +x +z -y; y up, right-handed" """
+        """The axes in words: "x y z are our +x +z -y; y up, right-handed"."""
         ours = " ".join(re.findall("..", self.text))
         sign, up = self.text[self.text.index("z") - 1], "xyz"[self.text.index("z") // 2]
         hand = "right" if self.right_handed else "left"
@@ -76,7 +76,7 @@ class Axes:
 
 
 def all_axes() -> list[Axes]:
-    """All 48, our own first."""
+    """All 48 axes, our own first."""
     return [
         Axes("".join(sign + axis for sign, axis in zip(signs, names, strict=True)))
         for names in permutations("xyz")
@@ -92,7 +92,7 @@ def turn(coefficients: Array, axes: Axes) -> Array:
         matrix, turned = -matrix, turned * alternating(degrees(n_bands))  # Y(l, m)(-s) = (-1)^l Y(l, m)(s)
     if matrix[2, 2] == 0:
         return _without_noise(turned, rotate(turned, matrix))
-    if matrix[2, 2] < 0:  # half a turn about x: z and y change sign
+    if matrix[2, 2] < 0:  # a half-turn about x: y and z change sign
         matrix = matrix * np.array([1.0, -1.0, -1.0])
         turned = (
             turned * alternating(degrees(n_bands) + orders(n_bands)) * np.where(orders(n_bands) < 0, -1, 1)[:, None]
@@ -117,7 +117,7 @@ def mirrored_orders(n_bands: int) -> NDArray[np.int64]:
 
 
 def _about_z(coefficients: Array, matrix: Array, n_bands: int) -> Array:
-    """A turn about z by a multiple of 90 degrees: cos(m phi) becomes cos(m (phi - angle)), and alike for sin."""
+    """Turn about z by a multiple of 90 degrees: cos(m phi) becomes cos(m (phi - angle)), and so with sin."""
     quarters = next(
         k for k in range(4) if np.array_equal(matrix[:2, 0], np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][k]))
     )

@@ -1,12 +1,12 @@
-"""What a list of spherical-harmonic coefficients has to say of itself before anybody can use it, and conversions of it.
+"""Conventions: what one has to know of a list of spherical-harmonic coefficients to use it, and conversions.
 
 Ours (basis.py): orthonormal, Condon-Shortley phase kept, z polar and up, right-handed, index l(l+1) + m. With c(l, m) our
 coefficients of a function, those of another program are, step by step,
-    quantity   times A(l) for irradiance (filters.py), and that over pi where the program does not divide by pi itself;
+    quantity   times A(l) for irradiance (filters.py), then over pi where the program does not divide by pi itself;
     axes       the same function in the program's axes (axes.py);
     phase      times (-1)^m where the program's basis has no Condon-Shortley phase;
     scale      times f(l, m) of SCALES, since the program's basis functions are ours over f;
-    order      c(l, m) at the index l(l+1) + m, or at l(l+1) - m;
+    index      c(l, m) at the index l(l+1) + m, or at l(l+1) - m;
     complex    c(l, +-m) of both signs of m as one complex number and its partner (SciPy).
 """
 
@@ -23,12 +23,12 @@ from shviewer.harmonics.basis import Array, count_bands, degrees, normalisation
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 
 RADIANCE, IRRADIANCE, OVER_PI = QUANTITIES = ("radiance", "irradiance", "irradiance-over-pi")
-"""What coefficients are of. The last is the radiance of a white Lambertian surface that faces a direction."""
+"""The quantities that coefficients can hold. The last is the radiance of a white Lambertian surface."""
 
 POLYNOMIAL_BANDS = 3
 
 UNREAL = 1e-6
-"""How far complex coefficients may be from those of a real function, relative to the largest."""
+"""How far complex coefficients may be from those of a real function, relative to the largest of them."""
 
 
 def _orthonormal(n_bands: int) -> Array:
@@ -36,17 +36,17 @@ def _orthonormal(n_bands: int) -> Array:
 
 
 def _four_pi(n_bands: int) -> Array:
-    """The mean square of each basis function is 1: they are sqrt(4 pi) times ours."""
+    """The factors for basis functions of mean square 1, which are sqrt(4 pi) times ours."""
     return np.full(n_bands**2, 1 / np.sqrt(4 * np.pi))
 
 
 def _sn3d(n_bands: int) -> Array:
-    """What ambisonics encodes: integrals of the function with SN3D functions, which are ours times sqrt(4 pi/(2l+1))."""
+    """The factors for ambisonics: integrals of the function with SN3D functions, which are ours times sqrt(4 pi/(2l+1))."""
     return np.sqrt(4 * np.pi / (2 * degrees(n_bands) + 1))
 
 
 def _polynomial(n_bands: int) -> Array:
-    """Factors of 1, y, z, x, xy, yz, 3z^2-1, xz and x^2-y^2: the constant in front of each is in the coefficient.
+    """The factors for 1, y, z, x, xy, yz, 3z^2-1, xz and x^2-y^2: the coefficient holds the constant in front of each.
 
     ValueError for more than three bands.
     """
@@ -65,28 +65,28 @@ SCALES: dict[str, Callable[[int], Array]] = {
     "sn3d": _sn3d,
     "polynomial": _polynomial,
 }
-"""Normalisation -> the factor from our coefficients to theirs, (n_bands**2,)."""
+"""Normalisation -> the factors from our coefficients to theirs, (n_bands**2,)."""
 
 
 @dataclass(frozen=True)
 class Convention:
-    """One program's. The defaults are ours."""
+    """The convention of one program. The defaults are ours."""
 
     name: str = "shviewer"
     program: str = "shviewer"
-    """Who reads it, in words."""
+    """The program that reads it, in words."""
     phase: bool = True
     """Whether the basis keeps the Condon-Shortley phase (-1)^m."""
     axes: Axes = field(default_factory=Axes)
     scale: str = "orthonormal"
     quantity: str | None = None
-    """One of QUANTITIES; None if the program takes any, or the file has to say."""
+    """One of QUANTITIES; None if the program takes any, or if the file has to say."""
     mirrored: bool = False
-    """c(l, m) is stored at l(l+1) - m."""
+    """Whether c(l, m) is stored at l(l+1) - m."""
     complex: bool = False
     most_bands: int | None = None
     filled_up: bool = False
-    """The program always has `most_bands`: fewer are filled up with zeros."""
+    """Whether the program always has `most_bands` bands, so that fewer are filled up with zeros."""
     layout: str = "rows of red, green, blue"
     """How the program itself arranges the numbers."""
 
@@ -116,10 +116,9 @@ class Convention:
             raise ValueError(f"{n_bands} bands: {self.name} takes 1 to {self.most_bands}; use fewer")
 
     def from_ours(self, coefficients: Array, quantity: str = RADIANCE) -> NDArray[np.generic]:
-        """Ours, (n**2, k) of `quantity`, "radiance" or "irradiance" -> the program's, float64, or complex128.
+        """Our coefficients (n**2, k) of `quantity`, "radiance" or "irradiance" -> the program's, float64 or complex128.
 
-        ValueError for too many bands, or if the program wants radiance and has to be made from irradiance of which a degree is
-        zero.
+        ValueError for too many bands, or if the program wants radiance and the irradiance given tells nothing of some degree.
         """
         n_bands = count_bands(coefficients)
         self.check_bands(n_bands)
@@ -136,9 +135,9 @@ class Convention:
         return to_complex(found) if self.complex else found + 0.0  # no negative zeros
 
     def to_ours(self, numbers: NDArray[np.generic]) -> Array:
-        """The program's, (n**2, k) -> ours, of the same quantity but for "irradiance-over-pi", which becomes irradiance.
+        """The program's numbers (n**2, k) -> our coefficients of the same quantity; "irradiance-over-pi" becomes irradiance.
 
-        ValueError for too many bands, or complex numbers that no real function has.
+        ValueError for too many bands, or complex numbers that belong to no real function.
         """
         n_bands = count_bands(numbers)
         self.check_bands(n_bands)
@@ -152,7 +151,7 @@ class Convention:
         return found * np.pi if self.quantity == OVER_PI else found
 
     def basis_factors(self, n_bands: int) -> Array:
-        """What the program multiplies Y(l, m) with in its own axes, (n**2,), in our order.
+        """The program's basis functions over Y(l, m) in its own axes, (n**2,), by our index.
 
         ValueError for complex coefficients.
         """
@@ -166,7 +165,7 @@ class Convention:
 
 
 def to_quantity(coefficients: Array, held: str, wanted: str) -> Array:
-    """Ours of `held` -> ours of `wanted`, both of QUANTITIES. ValueError where A(l) = 0 hides the radiance."""
+    """Our coefficients of one quantity -> those of another. ValueError where A(l) = 0 hides the radiance."""
     n_bands = count_bands(coefficients)
     if held != RADIANCE and wanted == RADIANCE:
         factors = irradiance_factors(n_bands)
@@ -181,9 +180,9 @@ def to_quantity(coefficients: Array, held: str, wanted: str) -> Array:
 
 
 def recovered_radiance(irradiance: Array) -> tuple[Array, list[int]]:
-    """Ours of irradiance (n**2, k) -> ours of a radiance with that irradiance, and the degrees of which it tells nothing.
+    """Our coefficients of irradiance (n**2, k) -> those of a radiance with that irradiance, and the degrees that are lost.
 
-    Those are the odd ones from 3 on, where A(l) = 0; they are zero in what is returned.
+    Lost are the odd degrees from 3 on, where A(l) = 0; their coefficients are returned as zero.
     """
     n_bands = count_bands(irradiance)
     lost = list(range(3, n_bands, 2))
@@ -193,7 +192,7 @@ def recovered_radiance(irradiance: Array) -> tuple[Array, list[int]]:
 
 
 def to_complex(coefficients: Array) -> NDArray[np.complex128]:
-    """Those of the complex functions of which sqrt(2) times the real and the imaginary part are Y(l, m) and Y(l, -m), m > 0."""
+    """Coefficients of complex functions: Y(l, m) and Y(l, -m), m > 0, are sqrt(2) times their real and imaginary parts."""
     n_bands = count_bands(coefficients)
     m, partner = orders(n_bands)[:, None], coefficients[mirrored_orders(n_bands)]
     positive = np.where(m > 0, coefficients - 1j * partner, partner + 1j * coefficients) / np.sqrt(2)

@@ -1,4 +1,4 @@
-"""Which convention a bare list of numbers has, when the light that it is of is known."""
+"""Finding the convention of a bare list of numbers by comparing it with a known light."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 
 FITS = 0.02
-"""Coefficients that are no farther off than this, relative to the light's own in the same bands, are taken for them."""
+"""Coefficients fit if they are off by no more than this share of the light's own in the same bands."""
 
 MODIFIER_OF = {
     frozenset((NO_PHASE,)): "no-phase",
@@ -40,12 +40,12 @@ MODIFIER_OF = {
     frozenset((SN3D, TIMES_ROOT)): "sn3d",
     frozenset((OVER_ROOT,)): "4pi",
 }
-"""What was done to our numbers -> the modifier of a convention that does so; the longer ones first."""
+"""A change to our numbers, in words -> the modifier of a convention that makes it; the longer words first."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A file read in a convention, a text for parse_convention, and its relative L2 error, of whichever quantity it holds."""
+    """A file read in a convention (`text`, for parse_convention), and its relative L2 error, in the quantity it holds."""
 
     text: str
     file: CoefficientFile
@@ -54,7 +54,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class Found:
-    """The convention that fits best, or is nearest; and whether it fits, and which others do so as well."""
+    """The convention that fits best or is nearest, whether it fits, and the others that fit as well."""
 
     best: Fit
     fits: bool
@@ -62,7 +62,7 @@ class Found:
 
 
 def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
-    """The convention of a bare list as it was read. exact: the light's radiance in our convention, of at least as many bands.
+    """The convention of a bare list as it was read. exact: the light's radiance in our convention, with at least its bands.
 
     The programs' own conventions come first, then ours with modifiers. LightError if the numbers are no table in any of them.
     """
@@ -74,13 +74,13 @@ def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
     best = min(fits, key=lambda fit: max(fit.error, TINY))
     if best.error > FITS:
         bent = list(_fits(numbers, exact, _bent(numbers, exact)))
-        best = min([best, *bent], key=lambda fit: max(fit.error, TINY))  # of equal ones the simplest, which comes first
+        best = min([best, *bent], key=lambda fit: max(fit.error, TINY))  # of equals the simplest, which comes first
     same = [fit.text for fit in fits if fit is not best and fit.error <= max(ALIKE * best.error, TINY)]
     return Found(best, best.error <= FITS, tuple(same) if best.error <= FITS else ())
 
 
 def _fits(numbers: NDArray[Any], exact: Array, conventions: list[str]) -> Iterator[Fit]:
-    """The numbers in each convention that can have them."""
+    """The numbers read in each convention that can hold them."""
     for text in conventions:
         with suppress(LightError):
             file = interpreted(numbers, {}, text)
@@ -92,7 +92,7 @@ def _fits(numbers: NDArray[Any], exact: Array, conventions: list[str]) -> Iterat
 
 
 def _bent(numbers: NDArray[Any], exact: Array) -> list[str]:
-    """Our convention, bent as the usual suspects say, where a convention can be."""
+    """Our convention with modifiers for the changes that the usual suspects name, as far as there are modifiers."""
     found = []
     for base in ("shviewer", "shviewer,polynomial"):
         with suppress(LightError):
@@ -105,7 +105,7 @@ def _bent(numbers: NDArray[Any], exact: Array) -> list[str]:
 
 
 def modifiers_of(changes: tuple[str, ...]) -> list[str] | None:
-    """The modifiers of a convention that does all this to our numbers; None if there is none."""
+    """The modifiers of a convention that makes all these changes to our numbers; None if there is none."""
     left, found = set(changes), []
     for change in changes:
         if change.startswith("in axes "):

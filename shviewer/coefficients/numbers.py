@@ -1,7 +1,7 @@
 """The numbers of a coefficient file as a table of n**2 rows and three channels, whatever its text looks like.
 
-A list of n**2 rows of three, three rows of n**2 (one per channel), 3 n**2 numbers in a row (red, green, blue of each
-coefficient), or n**2 numbers, which are grey. No two of them can be mistaken for each other: 3 n**2 is no square.
+The text may hold n**2 rows of three, three rows of n**2 (one per channel), 3 n**2 numbers in one list (red, green, blue of
+each coefficient), or n**2 numbers, which are grey. The last two cannot be confused: 3 n**2 is no square.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from shviewer.errors import LightError
 from shviewer.limits import MAX_BANDS
 
 MAX_NUMBERS = 6 * MAX_BANDS**2
-"""Real and imaginary parts of three channels."""
+"""The most numbers in a file: real and imaginary parts of three channels."""
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|#[^\n]*", flags=re.DOTALL)
 _PUNCTUATION = re.compile(r"[\s,;(){}\[\]]+")
 
 
 def plain_numbers(text: str) -> NDArray[np.float64]:
-    """All numbers of a text (k,), between commas, semicolons, brackets and spaces; comments of C, GLSL and Python do not count.
+    """All numbers of a text, (k,), separated by commas, semicolons, brackets and spaces, without those in comments.
 
-    LightError for anything else in it, with its line.
+    Comments are those of C, GLSL and Python. LightError, with the line, for anything else in the text.
     """
     bare = _COMMENT.sub(lambda found: "\n" * found[0].count("\n"), text)
     words = [word for word in _PUNCTUATION.split(bare) if word]
@@ -52,7 +52,7 @@ def _is_number(word: str) -> bool:
 
 
 def as_table(numbers: NDArray[np.generic], *, complex_pairs: bool = False) -> NDArray[np.generic]:
-    """(n**2, 3) float64, or complex128 if `complex_pairs`: then real and imaginary parts take turns, or are one number.
+    """The numbers as a table (n**2, 3), float64. complex_pairs: complex128, from complex numbers or pairs of real ones.
 
     LightError for a length that fits no n, more than MAX_BANDS bands, or a value that is not finite.
     """

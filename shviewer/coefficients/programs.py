@@ -94,10 +94,10 @@ MODIFIERS = ("phase", "no-phase", "m-swapped", *QUANTITIES, *SCALES, *NAMED_AXES
 
 
 def parse_convention(text: str) -> Convention:
-    """A name of CONVENTIONS and modifiers after commas, such as "three,z-up" or "shviewer,no-phase,4pi,irradiance".
+    """The convention of a text: a name and modifiers, such as "three,z-up" or "shviewer,no-phase,4pi,irradiance".
 
-    Modifiers are those of MODIFIERS, or axes such as "+x+z-y". ValueError for an unknown one, and for one that contradicts
-    the program or another one.
+    Names are those of CONVENTIONS, modifiers those of MODIFIERS, or axes such as "+x+z-y". ValueError for an unknown one, and
+    for a modifier that contradicts the program or another modifier.
     """
     name, *modifiers = (part.strip() for part in text.split(","))
     if name not in CONVENTIONS:
@@ -111,7 +111,7 @@ def parse_convention(text: str) -> Convention:
 
 
 def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
-    """What the modifier is about, and the convention with it."""
+    """The aspect that the modifier changes, and the convention changed."""
     if modifier in QUANTITIES:
         fixed = CONVENTIONS[convention.name].quantity
         if fixed not in (None, modifier):
@@ -131,7 +131,7 @@ def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
 
 
 def _if_free(convention: Convention, modifier: str, field: str, value: object) -> Convention:
-    """Only our own convention may be bent; another program's is what it is."""
+    """Our own convention with a field changed. ValueError for another program's, which is fixed."""
     if convention.name != OURS.name and getattr(convention, field) != value:
         raise ValueError(f"{modifier} contradicts {convention.name}: it would not be what that program expects")
     changes: dict[str, object] = {field: value}

@@ -1,6 +1,6 @@
 """Reading coefficient files: those that `shviewer project` wrote, and bare lists of numbers whose convention is named.
 
-Nothing of a file is run: an .npz with pickled objects is refused unread, and sizes are checked before memory is taken.
+Nothing in a file is run: an .npz with pickled objects is refused unread, and sizes are checked before memory is taken.
 """
 
 from __future__ import annotations
@@ -29,26 +29,26 @@ from shviewer.harmonics.basis import Array, count_bands
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
 MAX_FILE_BYTES = 8 * 2**20
-"""128 bands of three complex channels, each number with 24 characters and much punctuation, take 3 MiB."""
+"""The most bytes of a file. 128 bands of three complex channels, with 24 characters a number, take 3 MiB."""
 
 LARGEST = 1e100
-"""Beyond it conversions and squares could leave float64; what is drawn ends at 1e30."""
+"""The largest coefficient: beyond it, conversions and squares could leave float64. Lights that are drawn end at 1e30."""
 
 TABLE_BEGINS, TABLE_ENDS = "coefficients begin", "coefficients end"
-"""Between comments with these words stand the numbers of a .h or .glsl file, and nothing else."""
+"""The words of two comments in a .h or .glsl file; between them stand the numbers, and nothing else."""
 
 CHANNELS = ("red", "green", "blue")
 
 
 @dataclass(frozen=True, eq=False)
 class CoefficientFile:
-    """numbers: as the file has them, (n**2, 3), float64 or complex128. coefficients: the same in our convention."""
+    """A file that was read. numbers: as it has them, (n**2, 3), float64 or complex128. coefficients: in our convention."""
 
     numbers: NDArray[np.generic]
     convention: Convention
     coefficients: Array
     stamp: Stamp
-    """What the file says of itself; empty for a bare list."""
+    """The file's stamp; empty for a bare list."""
 
     @property
     def n_bands(self) -> int:
@@ -56,13 +56,13 @@ class CoefficientFile:
 
     @property
     def quantity(self) -> str:
-        """What our coefficients are of: "radiance" or "irradiance"."""
+        """The quantity of `coefficients`: "radiance" or "irradiance"."""
         held = self.convention.quantity or RADIANCE
         return "irradiance" if held == OVER_PI else held
 
 
 def read_coefficients(path: Path, named: str = "", limits: Limits = DEFAULT_LIMITS) -> CoefficientFile:
-    """The coefficients in a file. named: the convention of one that does not say its own, a text for parse_convention.
+    """Read the coefficients in a file. named: the convention of a file that names none, a text for parse_convention.
 
     LightError, one line with file, finding and next step, for whatever is wrong with it.
     """
@@ -71,14 +71,14 @@ def read_coefficients(path: Path, named: str = "", limits: Limits = DEFAULT_LIMI
 
 
 def read_numbers(path: Path, limits: Limits = DEFAULT_LIMITS) -> tuple[NDArray[Any], Stamp]:
-    """The numbers in a file, in whichever shape, and what it says of them; nothing for a bare list. LightError."""
+    """Read the numbers in a file, in whichever shape, and its stamp, empty for a bare list. LightError if it is bad."""
     limits = Limits(file_bytes=min(MAX_FILE_BYTES, limits.file_bytes))
     _check_size(path)
     return _READERS[HOLDS[path.suffix.lower()]](read_bytes(path, limits))
 
 
 def _check_size(path: Path) -> None:
-    """Before a byte is read; that the path leads to a file at all is looked at next."""
+    """LightError if the file is too large, before a byte is read. Whether there is a file is checked later."""
     with suppress(OSError, ValueError):
         if (size := path.stat().st_size) > MAX_FILE_BYTES:
             raise LightError(
@@ -87,7 +87,7 @@ def _check_size(path: Path) -> None:
 
 
 def interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientFile:
-    """Numbers as they were read, in the convention of their stamp, or the one that somebody named. LightError."""
+    """Interpret numbers in the convention of their stamp, or the one that was named. LightError if that is impossible."""
     if stamp:
         convention = read_stamp(stamp)
         if named and parse_convention(named) != parse_convention(str(stamp["convention"])):
@@ -149,7 +149,7 @@ def _no_constant(name: str) -> float:
 
 
 def _read_csv(data: bytes) -> tuple[NDArray[Any], Stamp]:
-    """A header names the columns; without one there are three, red, green and blue."""
+    """Read a CSV file. A header names the columns; without one there are three: red, green and blue."""
     try:
         return _csv_table(_text(data))
     except csv.Error as error:
@@ -184,12 +184,12 @@ def _in_order(columns: list[str]) -> list[str]:
 
 
 def _even(lines: list[str], count: int) -> bool:
-    """Whether every line holds as many of the numbers as the others."""
+    """Whether all lines hold the same number of numbers."""
     return "," in lines[0] and all((line.count(",") + 1) * len(lines) == count for line in lines)
 
 
 def _read_text(data: bytes) -> tuple[NDArray[Any], Stamp]:
-    """A .txt, .h or .glsl file: all its numbers, or those between the marks."""
+    """Read a .txt, .h or .glsl file: all its numbers, or those between the marks."""
     text = _text(data)
     begins, ends = text.find(TABLE_BEGINS), text.find(TABLE_ENDS)
     table = text if begins < 0 else text[text.find("\n", begins) : text.rfind("\n", 0, ends)] if ends > begins else ""

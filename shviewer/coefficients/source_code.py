@@ -1,4 +1,4 @@
-"""Coefficients as C and GLSL: the numbers, and for GLSL the function that evaluates just so many bands.
+"""Coefficients as C and GLSL: the numbers, and in GLSL a function that evaluates exactly their number of bands.
 
 The shader runs the recurrence of harmonics/basis.py in differences, written out without a loop: no trigonometry, no pole, and
 every constant of the convention in place. Up to three bands the basis is a handful of polynomials, and they are written so.
@@ -13,24 +13,24 @@ from shviewer.coefficients.reading import TABLE_BEGINS, TABLE_ENDS
 from shviewer.harmonics.basis import Array, index, normalisation
 
 MAX_GLSL_BANDS = 32
-"""As many as the window sums in its own shader; more belong into a texture."""
+"""The most bands in a shader: as many as the window sums in its own; more belong in a texture."""
 
 Row = tuple[int, int, list[str]]
-"""l, m and the numbers as text."""
+"""A coefficient: l, m and the numbers as text."""
 
 POLYNOMIALS = ("", "y", "z", "x", "x * y", "y * z", "3.0 * z * z - 1.0", "x * z", "x * x - y * y")
 LEADING = (1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 0.5, 1.0, 1.0)
-"""What Im and Re (x + iy)^m times G(l, m) are times these polynomials."""
+"""The factors with which these polynomials are Im or Re (x + iy)^m times G(l, m)."""
 
 UNITY = 1e-15
-"""A constant that near to 1 is 1: the coefficient holds it already."""
+"""A constant that differs from 1 by less is left out: the coefficient holds it already."""
 
 _RowText = Callable[[int, int], str]
 """(l, m) -> the expression for its coefficient."""
 
 
 def identifier(name: str) -> str:
-    """sh_NAME with what C and GLSL allow in a name: letters, digits, single underscores."""
+    """The identifier sh_NAME, with only what C and GLSL allow in a name: letters, digits, single underscores."""
     return re.sub(r"_+", "_", "sh_" + re.sub(r"[^A-Za-z0-9]", "_", name)).rstrip("_")
 
 
@@ -52,7 +52,7 @@ def glsl_source(
 ) -> str:
     """Constants and the function `sh_NAME_QUANTITY(vec3 direction)`, GLSL 3.30 and later, without a #version line.
 
-    factors: of Y(l, m) in the program's basis, by our index. ValueError for more than MAX_GLSL_BANDS bands.
+    factors: the program's basis functions over Y(l, m), by our index. ValueError for more than MAX_GLSL_BANDS bands.
     """
     n_bands, symbol = rows[-1][0] + 1, identifier(name)
     if n_bands > MAX_GLSL_BANDS:
@@ -86,7 +86,7 @@ def _polynomials(row: _RowText, factors: Array, n_bands: int) -> list[str]:
 
 
 def _times(polynomial: str, constant: float) -> str:
-    """ " * (constant * polynomial)" without what is 1."""
+    """The text " * (constant * polynomial)", without factors that are 1."""
     text = f"({polynomial})" if " " in polynomial else polynomial
     if abs(constant - 1) < UNITY:
         return f" * {text}" if text else ""
@@ -94,7 +94,7 @@ def _times(polynomial: str, constant: float) -> str:
 
 
 def _recurrence(row: _RowText, factors: Array, n_bands: int) -> list[str]:
-    """G is g(l, m), D its difference and S the sign (south)^(l - m); C and I are the real and imaginary part of (x + iy)^m."""
+    """Lines of the recurrence: g is G(l, m), d its difference, south^(l - m) its sign; c and s are Re and Im (x + iy)^m."""
     norms = normalisation(n_bands)
     lines = ["    float t = dot(direction.xy, direction.xy) / (1.0 + abs(z)), south = z < 0.0 ? -1.0 : 1.0;"]
     lines += ["    float c = 1.0, s = 0.0, g, d, p;", "    vec3 sum = vec3(0.0);"]

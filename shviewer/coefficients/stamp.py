@@ -1,13 +1,13 @@
-"""What a coefficient file says of itself: keys and values, the same in JSON, NPZ and in the comments of CSV, C and GLSL.
+"""The stamp of a coefficient file: keys and values, the same in JSON, in NPZ and in the comments of CSV, C and GLSL.
 
-Schema 1. A reader needs the first three; the rest is for people, and is checked not to contradict them.
+Schema 1. A reader needs the first three keys; the others are for people, and must not contradict them.
 
     shviewer-coefficients   1
     convention              a text for parse_convention, such as "three" or "shviewer,y-up,no-phase"
     quantity                radiance, irradiance, or irradiance-over-pi
     basis, phase, index, axes, normalisation, one-over-pi     what `convention` and `quantity` mean, in set words
-    program, layout         who reads it, and how the program itself arranges the numbers
-    bands, rows, columns    n, n^2, and what the columns are
+    program, layout         the program that reads it, and how the program itself arranges the numbers
+    bands, rows, columns    n, n^2, and the names of the columns
     light, light-is, light-notes, window, muted, method, samples, seed
     suns                    how many were left out of the light, if any were; of each, sun-1 having the greatest flux,
     sun-1-direction         x y z in the file's axes, the unit vector towards it,
@@ -16,8 +16,8 @@ Schema 1. A reader needs the first three; the rest is for people, and is checked
     sun-1-width             the angle across this disc in degrees
     relative-l2, left-out, added, max-error, minimum, negative-area, irradiance-relative-l2
 
-Errors are of what the rows hold against the light, relative ones over all channels; max-error and minimum are in units of
-the radiance, or of the irradiance before it is divided by pi. A key of a later schema is no mistake, a later schema is one.
+Errors compare the coefficients in the rows with the light; relative errors are over all channels. max-error and minimum are in
+units of the radiance, or of the irradiance before it is divided by pi. An unknown key is ignored; a later schema is refused.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ Stamp = Mapping[str, Value]
 
 
 def stamp_of(convention: Convention, quantity: str, n_bands: int) -> dict[str, Value]:
-    """Everything that follows from the convention, the quantity held and the number of bands."""
+    """The keys that follow from the convention, the quantity held and the number of bands."""
     columns = "red green blue"
     if convention.complex:
         columns = " ".join(f"{name} {name}-imaginary" for name in columns.split())

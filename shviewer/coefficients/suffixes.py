@@ -1,4 +1,4 @@
-"""How the names of coefficient files end, and what each ending holds; known without loading what reads them."""
+"""The suffixes of coefficient files and their meaning, in a module of their own that loads no reader."""
 
 from __future__ import annotations
 

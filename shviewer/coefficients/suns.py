@@ -1,4 +1,4 @@
-"""Suns that were split off, as a program needs them beside coefficients of the rest: directional lights in its own axes."""
+"""Suns that were split off, in the form that programs need beside coefficients of the rest: directional lights."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from shviewer.harmonics.basis import Array
 
 
 class DirectionalLight(NamedTuple):
-    """A sun as a program takes it, in our axes: a unit vector towards it, then linear RGB."""
+    """A sun as a directional light, in our axes: a unit vector towards it, and linear RGB."""
 
     direction: Array
     irradiance: Array
-    """What a surface that faces the sun receives, (3,)."""
+    """The irradiance of a surface that faces the sun, (3,)."""
     radiance: Array
-    """What a disc of uniform radiance has that gives this irradiance, (3,)."""
+    """The radiance of a uniform disc with this irradiance, (3,)."""
     width_degrees: float
     """The angle across this disc."""
 
 
 def sun_keys(suns: Sequence[DirectionalLight], axes: Axes) -> dict[str, Value]:
-    """What the stamp says of them, the greatest flux first; nothing if there are none."""
+    """The stamp's keys about the suns, the greatest flux first; empty if there are none."""
     found: dict[str, Value] = {SUNS_KEY: len(suns)} if suns else {}
     for number, sun in enumerate(suns, 1):
         found |= {
@@ -38,7 +38,7 @@ def sun_keys(suns: Sequence[DirectionalLight], axes: Axes) -> dict[str, Value]:
 
 
 def sun_left_out(sun: DirectionalLight, axes: Axes) -> str:
-    """One line: a directional light in its place."""
+    """One line about a sun that was left out and the directional light in its place."""
     direction, irradiance = _briefly(axes.matrix @ sun.direction), _briefly(sun.irradiance)
     return f"sun left out: a directional light from ({direction}), irradiance {irradiance}"
 

@@ -1,13 +1,13 @@
-"""Why two sets of coefficients of one function differ: the usual suspects, tried alone and together.
+"""The usual suspects: mistakes by which two sets of coefficients of one function differ, tried alone and together.
 
-Somebody else's coefficients g should be ours, c, and are not. What people get wrong is a short list: the Condon-Shortley phase,
-m and -m, the axes, a constant (pi, sqrt(4 pi), any other), the clamped cosine A(l), SN3D's sqrt(2l+1), the order of the
-channels, or how the numbers were read altogether. Each is undone in every combination, and the error that is left decides; of
-nearly equal ones the simplest explanation is taken.
+Somebody else's coefficients g should equal ours, c, and do not. The usual mistakes are few: the Condon-Shortley phase, m and
+-m, the axes, a constant (pi, sqrt(4 pi), any other), the clamped cosine A(l), SN3D's sqrt(2l+1), the sequence of the channels,
+or the way the numbers were read. Every combination is undone, and the error that is left decides; among nearly equal errors
+the simplest explanation is taken.
 
-The first three are orthogonal and keep each degree's power; factors multiply a degree. So with e = sum of c^2, d = sum of
-c g' and p = sum of g'^2 per degree, for g' = g with the first three undone, the squared error of a factor f(l) is the sum of
-e - 2 f d + f^2 p, and each g' answers for all factors at once. The best constant s in front of f is sum f d / sum f^2 p.
+The first three are orthogonal and keep each degree's power; factors multiply a degree. Let g' be g with the first three undone,
+and e = sum of c^2, d = sum of c g' and p = sum of g'^2 per degree. Then the squared error with a factor f(l) is the sum of
+e - 2 f d + f^2 p, so each g' serves all factors at once. The best constant s in front of f is sum f d / sum f^2 p.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors
 
 MOST_BANDS = 6
-"""As many tell all suspects apart, and turn in no time."""
+"""The most bands compared: enough to tell all suspects apart, and fast to turn."""
 
 ALIKE = 1.5
-"""Errors within this factor of the smallest are explained as well; what is left of them is noise of sampling and digits."""
+"""Errors within this factor of the smallest count as equal: what is left then is noise of sampling and digits."""
 
 TINY = 1e-6
-"""Relative errors below this are all none: single precision, six printed digits."""
+"""Relative errors below this count as none: single precision, or six printed digits."""
 
 USUAL_AXES = {"+y+z+x": "z forward", "+z+x+y": "y polar"} | {text: name for name, text in NAMED_AXES.items()}
-"""Those that programs have; any other costs as much as two mistakes."""
+"""Axes that programs have; any others cost as much as two mistakes."""
 
 ODD_AXES = 2.5
 
@@ -50,29 +50,29 @@ SCALES = {
     OVER_ROOT: np.sqrt(4 * np.pi),
     TIMES_ROOT: 1 / np.sqrt(4 * np.pi),
 }
-"""What was done to the numbers -> the factor that undoes it."""
+"""A change to the numbers -> the factor that undoes it."""
 
 ANY_SCALE = 1.4
-"""What a constant costs that has no name."""
+"""The cost of a constant without a name."""
 
 NO_SCALE = 0.01
-"""A constant that near to 1 is none."""
+"""A constant that differs from 1 by no more than this counts as 1."""
 
 CHANNELS = {
     order: (f"with channels in the order {' '.join('RGB'[channel] for channel in order)}", cost)
     for order, cost in zip(permutations(range(3)), (0.0, 2.0, 2.0, 2.0, 2.0, 1.0), strict=True)
 }
-"""Where red, green and blue are -> words and cost. Blue first is what people have."""
+"""The places of red, green and blue -> words and cost. Blue first is the usual mistake."""
 
 
 @dataclass(frozen=True)
 class Suspect:
-    """changes: what was done to the given numbers, in words; none for as they are. error: relative L2 once it is undone."""
+    """An explanation. changes: in words, what was done to the given numbers. error: the relative L2 error once undone."""
 
     changes: tuple[str, ...]
     error: float
     cost: float = 0.0
-    """How much has to have gone wrong: 1 for each change, more for axes or a constant that nobody has."""
+    """How much must have gone wrong: 1 for each change, more for unusual axes or constants."""
 
     @property
     def words(self) -> str:
@@ -82,21 +82,21 @@ class Suspect:
 
 
 class _Tried(NamedTuple):
-    """Arrays over channels, orientations, factors of a degree, and constants, of which the last is any."""
+    """Results for one reading: arrays over channels, orientations, factors per degree, and constants, any constant last."""
 
     reading: tuple[str, ...]
     errors: Array
     constants: Array
-    """The best one of each, without the last axis: what undoes it."""
+    """The best constant that undoes each, without the last axis."""
 
 
 def usual_suspects(
     exact: Array, given: Array, readings: Mapping[tuple[str, ...], Array] | None = None
 ) -> list[Suspect]:
-    """What might have been done to `given`: the best explanation, then the best of every number of changes.
+    """Explanations of what was done to `given`: the best, then the best of every other number of changes.
 
-    exact: (N**2, 3), given: (n**2, 3), both in our convention; errors are over the bands both have, up to MOST_BANDS, relative
-    to those of `exact`. readings: by what would have been done to the numbers of a file, what they are then, (n**2, 3).
+    exact: (N**2, 3), given: (n**2, 3), both in our convention. Errors are relative to `exact`, over the bands that both have,
+    up to MOST_BANDS. readings: other ways to read a file's numbers, in words -> the coefficients (n**2, 3) read so.
     """
     n_bands = min(count_bands(exact), count_bands(given), MOST_BANDS)
     exact = exact[: n_bands**2]
@@ -127,13 +127,13 @@ def _tried(reading: tuple[str, ...], exact: Array, given: Array, total: float) -
 
 
 def _ranked(tried: list[_Tried], n_bands: int) -> list[Suspect]:
-    """The simplest of those that fit about as well as the best; then the best of every other length."""
+    """The simplest explanation that fits about as well as the best; then the best of every other number of changes."""
     cost, length = _costs(n_bands)
     errors = np.stack([one.errors for one in tried])
     extra = np.array([len(one.reading) for one in tried]).reshape(-1, 1, 1, 1, 1)
     costs, lengths = extra + cost, extra + length
     good = errors <= max(ALIKE * float(errors.min()), TINY)
-    first = int(np.where(good, costs, np.inf).argmin())  # of equal ones that which comes first
+    first = int(np.where(good, costs, np.inf).argmin())  # of equals the first
     places = [first]
     for changes in np.unique(lengths):
         others = np.where(lengths == changes, errors, np.inf).reshape(-1)
@@ -163,7 +163,7 @@ def _suspect(tried: list[_Tried], n_bands: int, place: tuple[np.intp, ...], cost
 
 @cache
 def _costs(n_bands: int) -> tuple[Array, Array]:
-    """(cost, number of changes) of everything but the reading, in the order of `_Tried`."""
+    """Cost and number of changes without those of the reading, as arrays with the axes of `_Tried`."""
     words, costs, _ = _orientations(n_bands)
     orientation = np.array(costs)[:, None, None], np.array([len(changes) for changes in words])[:, None, None]
     degree = np.array([bool(word) for word in _by_degree(n_bands)])[:, None].astype(float)
@@ -177,9 +177,9 @@ def _costs(n_bands: int) -> tuple[Array, Array]:
 
 @cache
 def _orientations(n_bands: int) -> tuple[list[tuple[str, ...]], list[float], Array]:
-    """Every choice of phase, order and axes: in words, what it costs, and what undoes it, (k, n**2, n**2).
+    """Every choice of phase, sign of m and axes: in words, its cost, and the matrix that undoes it, (k, n**2, n**2).
 
-    Half a turn about z is the phase, and left out.
+    A half-turn about z equals the phase, and is left out.
     """
     identity = np.eye(n_bands**2)
     phases, swapped = alternating(orders(n_bands)) * identity, identity[mirrored_orders(n_bands)]
@@ -201,11 +201,11 @@ def _orientations(n_bands: int) -> tuple[list[tuple[str, ...]], list[float], Arr
 
 
 CYCLE = Axes("+y+z+x")
-"""All axes are this, so often as it takes, and then axes that keep z in its place, where turns are exact and quick."""
+"""Any axes are this, repeated as needed, and then axes that keep z in its place, whose turns are exact and quick."""
 
 
 def _turning(axes: Axes, identity: Array, cycle: Array) -> Array:
-    """What `turn` does, as a matrix (n**2, n**2)."""
+    """The matrix (n**2, n**2) of `turn`."""
     rest, turned = axes, identity
     while rest.text[5] != "z":
         rest, turned = CYCLE.inverse.then(rest), cycle @ turned
@@ -218,7 +218,7 @@ def _axes_name(axes: Axes) -> str:
 
 
 def _by_degree(n_bands: int) -> dict[str, Array]:
-    """What was done -> the factor per degree that undoes it, (n_bands,). Where A(l) is zero nothing can be undone."""
+    """A change -> the factor per degree that undoes it, (n_bands,). Where A(l) is zero nothing can be undone."""
     cosine = irradiance_factors(n_bands)
     zero = (np.arange(n_bands) > 1) & (np.arange(n_bands) % 2 == 1)
     root = np.sqrt(2 * np.arange(n_bands) + 1)

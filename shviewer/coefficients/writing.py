@@ -1,7 +1,7 @@
 """Coefficients as files: JSON, CSV, NPZ, C and GLSL, every number exact and every file stating its convention.
 
-Text holds the shortest digits that give the same float64 again. Equal arguments give equal bytes. What the keys of the
-stamp mean is in stamp.py.
+Text holds the fewest digits that give the same float64 again. Equal arguments give equal bytes. stamp.py explains the keys of
+the stamp.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ FORMATS = ("json", "csv", "npz", "h", "glsl")
 def encode(
     numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, kind: str, name: str
 ) -> bytes:
-    """The bytes of a file that holds `numbers` (n**2, 3) as they are in `convention`, and says what `stamp` says.
+    """The bytes of a file that holds `numbers` (n**2, 3), which are in `convention`, and the `stamp`.
 
-    kind: one of FORMATS; name: what a header calls its array. UsageError for another kind, ValueError for numbers that
-    cannot be written so.
+    kind: one of FORMATS; name: the name of the array in a header. UsageError for another kind, ValueError for numbers that
+    the format cannot hold.
     """
     if kind not in FORMATS:
         raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
@@ -37,7 +37,7 @@ def encode(
 
 
 def real_columns(numbers: NDArray[np.generic]) -> NDArray[np.float64]:
-    """(n**2, 3), or (n**2, 6) of complex ones: real and imaginary part of each channel."""
+    """The numbers as columns (n**2, 3), or (n**2, 6) for complex ones: real and imaginary part of each channel."""
     if np.iscomplexobj(numbers):
         pairs = np.stack([numbers.real, numbers.imag], axis=-1)
         return np.asarray(pairs.reshape(len(numbers), -1), dtype=np.float64) + 0.0
@@ -45,7 +45,7 @@ def real_columns(numbers: NDArray[np.generic]) -> NDArray[np.float64]:
 
 
 def _json(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
-    """One row to a line."""
+    """JSON with one row to a line."""
     head = json.dumps(stamp, indent=2, allow_nan=False)[:-2]
     rows = ",\n".join(f"    [{', '.join(_digits(row))}]" for row in real_columns(numbers))
     return f'{head},\n  "coefficients": [\n{rows}\n  ]\n}}\n'.encode()
@@ -95,7 +95,7 @@ def _comment_lines(mark: str, stamp: Stamp) -> list[str]:
 
 
 def _rows(numbers: NDArray[np.generic], convention: Convention) -> Iterable[tuple[int, int, NDArray[np.float64]]]:
-    """(l, m, numbers) in the order of the file."""
+    """Each row of the file as (l, m, numbers), from first to last."""
     n_bands = count_bands(numbers)
     for index, (m, row) in enumerate(zip(orders(n_bands), real_columns(numbers), strict=True)):
         yield int(np.sqrt(index)), int(-m if convention.mirrored else m), row

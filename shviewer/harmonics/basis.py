@@ -30,14 +30,14 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 MAX_BANDS = 1400
-"""The normalisation grows like 10**(0.2086 l) and would leave float64 at l = 1478."""
+"""The most bands: the normalisation grows like 10**(0.2086 l) and would leave float64 at l = 1478."""
 
 MAX_VALUES = 2**28
-"""The most basis values one call may return (2 GiB); larger sets are evaluated in blocks by their users."""
+"""The most basis values one call may return (2 GiB); callers evaluate larger sets in blocks."""
 
 
 def index(l: int, m: int) -> int:
-    """Where Y(l, m) is stored."""
+    """The index at which Y(l, m) is stored: l(l+1) + m."""
     return l * (l + 1) + m
 
 

@@ -2,12 +2,11 @@
 
 P.-P. Sloan ("Deringing Spherical Harmonics", 2017) narrows a window of one parameter until nothing is negative. No such
 family contains the best answer: for Green's light a Lanczos window has to go down to two bands. Here every band has a
-factor h(l) of its own, the mean excepted, and
+factor h(l) of its own, except band 0, the mean. The squared L2 change, which is exactly
     sum over l of (1 - h(l))^2 p(l),   p(l) the energy of band l,
-which is exactly the squared L2 change, is made as small as possible while no channel is negative in any direction. That is a
-least-distance problem with one linear constraint per direction; only the few lowest valleys matter, and they are
-found on the function itself and added until none is below zero. It has a solution wherever the mean is
-not negative, since the mean alone is one.
+is made as small as possible while no channel is negative in any direction. That is a least-distance problem with one linear
+constraint per direction. Only the few lowest valleys matter; they are found on the function itself and added until none is
+below zero. There is a solution whenever the mean is not negative, since the mean alone is one.
 
 Source
     [LH] C. Lawson, R. Hanson, "Solving Least Squares Problems" (1974), chapter 23: NNLS and LDP.
@@ -33,12 +32,12 @@ TOLERANCE = 1e-6
 ROUNDS, QUICK_ROUNDS, QUICK_VALLEYS = 40, 7, 40
 """The search is quick while constraints are collected, and thorough once at the end."""
 EMPTY = 1e-10
-"""A band with less than this share of the L2 norm is left as it is."""
+"""A band with less than this share of the L2 norm keeps the factor 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Deringing:
-    """factors: h(l), (n,). minimum: of the result, over all channels and directions. change: relative to the L2 norm."""
+    """factors: h(l), (n,). minimum: the result's least value in any channel and direction. change: L2, relative to the norm."""
 
     factors: Array
     minimum: float
@@ -46,7 +45,7 @@ class Deringing:
 
 
 def dering(coefficients: Array) -> Deringing:
-    """The factors of the module docstring for coefficients (n**2, 3), n up to MAX_DERINGED_BANDS.
+    """Find the factors h(l) (see above) for coefficients (n**2, 3), n up to MAX_DERINGED_BANDS.
 
     One factor per band for all channels, so that no hue shifts; 1 where nothing is negative. ValueError for too many
     bands, or for a negative mean, which no window can make non-negative.
@@ -85,7 +84,7 @@ def dering(coefficients: Array) -> Deringing:
 
 
 def least_distance(rows: Array, limits: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """The shortest u with rows @ u >= limits [LH, LDP]: (k, n), (k,) -> (n,), and which of the rows hold it there, (k,).
+    """The shortest u with rows @ u >= limits [LH, LDP]: (k, n), (k,) -> (n,), and which rows are binding, (k,).
 
     ValueError if there is none.
     """
@@ -125,6 +124,6 @@ def _non_negative_least_squares(system: Array, target: Array) -> Array:
 
 
 def _band_values(coefficients: Array, directions: Array, channels: NDArray[np.int64]) -> Array:
-    """What each band adds to one channel in each direction: (k, n)."""
+    """The value of each band in one channel and one direction: (k, n)."""
     terms = evaluate_basis(directions, count_bands(coefficients)) * coefficients[:, channels].T
     return np.asarray(np.add.reduceat(terms, np.arange(count_bands(coefficients)) ** 2, axis=1))

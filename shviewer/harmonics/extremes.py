@@ -1,7 +1,7 @@
-"""Where a reconstruction is lowest, and where it is farthest from its light.
+"""The extremes of a reconstruction: its minimum, and its largest distance from the light.
 
-A grid finds the right valley; from there the search goes on in ever smaller patches of the function itself, so that what
-is reported is a value the function takes, and not one that depends on where the grid's points happen to lie.
+A grid finds the right valley; from there the search goes on in ever smaller patches of the function itself. So the
+result is a value that the function takes, and does not depend on where the grid's points happen to lie.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ PATCH = np.stack(np.meshgrid(np.arange(-2.0, 3.0), np.arange(-2.0, 3.0), indexin
 PARABOLOID = np.linalg.pinv(
     np.stack([np.ones(25), *PATCH.T, PATCH[:, 0] ** 2 / 2, PATCH[:, 0] * PATCH[:, 1], PATCH[:, 1] ** 2 / 2], axis=1)
 )
-"""Values on a patch -> value, slopes and curvatures of the best paraboloid, (6, 25)."""
+"""The matrix (6, 25) from values on a patch to value, slopes and curvatures of the paraboloid of least squares."""
 
 ON_RIM = np.append(np.abs(PATCH).max(axis=1) == 2, True)
-"""Whether a point of a patch, if it is the best, asks for another patch as wide, (26,); the last one is a vertex."""
+"""Whether the next patch is as wide if this point is the best, (26,): points of the patch, and last the vertex."""
 
 DISPLAY_ROUNDS = 3
-"""Patches for a figure that is shown: to an eighth of the grid's cell, and to the vertices of paraboloids."""
+"""The number of patches for a figure on display: down to an eighth of a grid cell, and to vertices of paraboloids."""
 
 BLOCKS = 6
 SEARCH_ROUNDS = 22
 
 Triple = tuple[float, float, float]
 Objective = Callable[[Array], Array]
-"""Unit directions (k, 3) -> (k,), to be maximised."""
+"""A function to maximise: unit directions (k, 3) -> (k,)."""
 
 
 @dataclass(frozen=True)
@@ -54,9 +54,9 @@ class Extremes:
     minimum: float
     minimum_direction: Triple
     negative_area: float
-    """Share of the sphere with negative Rec. 709 luminance."""
+    """The share of the sphere with negative Rec. 709 luminance."""
     negative_energy: float
-    """Integral of min(reconstruction, 0)^2 over that of reconstruction^2, all channels."""
+    """The integral of min(reconstruction, 0)^2 divided by that of reconstruction^2, over all channels."""
     peak: float
     """The largest |radiance| of the original seen on the same grid."""
 
@@ -64,8 +64,8 @@ class Extremes:
 class ErrorGrid:
     """A light seen on a lat-long grid and at its landmarks, ready to be compared with any reconstruction.
 
-    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions where a grid would miss something. rows: the radiance
-    on rows at theta (rows,), with so many columns, (rows, 3, columns), where there is a faster way to all of them.
+    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions of features that a grid may miss. rows: a faster way to
+    the radiance on whole rows, if there is one: theta (rows,) and the number of columns -> (rows, 3, columns).
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class ErrorGrid:
         self.peak = float(max(np.abs(self.original).max(), np.abs(self.landmark_radiance).max(initial=0)))
         edges = np.cos(np.pi * np.arange(n_rows + 1) / n_rows)
         self.row_share = (edges[:-1] - edges[1:]) / (2 * 2 * n_rows)
-        """Solid angle of one cell of a row over 4 pi; exact."""
+        """The solid angle of one cell of each row divided by 4 pi, (rows,); exact."""
 
     def compare(self, shown: Array) -> Extremes:
         """The extremes of the reconstruction with coefficients `shown`, (n**2, 3)."""
@@ -122,7 +122,7 @@ class ErrorGrid:
         return best
 
     def _negative_energy(self, values: Array, shown: Array) -> float:
-        """The negative part is measured on the grid, the whole is the sum of squared coefficients (Parseval)."""
+        """The share of energy below zero: that part measured on the grid, the whole as the sum of squares (Parseval)."""
         whole = float((shown**2).sum())
         if values.min() >= 0 or whole == 0:  # squares of less than 1e-160 may be 0
             return 0.0
@@ -132,7 +132,7 @@ class ErrorGrid:
 
 
 def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Rows and columns of the highest cells of the BLOCKS best 8 x 8 blocks of a grid: its peaks, and not one peak's slope."""
+    """Rows and columns of the highest cells of the BLOCKS best 8 x 8 blocks of a grid: several peaks, not one's slope."""
     short = [-side % 8 for side in values.shape]
     values = np.pad(values, ((0, short[0]), (0, short[1])), constant_values=-np.inf)
     rows, columns = values.shape
@@ -197,10 +197,9 @@ def _grid_valleys(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], 
 
 
 def _spread_out(candidates: Array, depth: Array, apart: float, most: int | None) -> NDArray[np.int64]:
-    """Which of the candidates (k, 3) to follow: the lowest first, but no two within `apart` radians or of one depth.
+    """Indices of the candidates (k, 3) to follow: the lowest first, but no two within `apart` radians or of equal depth.
 
-    Equal depths are the copies that a symmetry makes, such as all the points of a ring about z; a ring about another axis
-    takes many.
+    Equal depths are copies by symmetry, such as all points of a ring about z; a ring about another axis keeps many points.
     """
     order = np.argsort(depth, kind="stable")
     chosen: list[int] = []
@@ -216,11 +215,11 @@ def _spread_out(candidates: Array, depth: Array, apart: float, most: int | None)
 
 
 def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tuple[Array, Array]:
-    """Uphill from each of the unit vectors `starts`, (k, 3), in 5 x 5 patches that reach `step` at first.
+    """Climb from each of the unit vectors `starts`, (k, 3), in 5 x 5 patches that reach `step` at first.
 
-    A patch gets half as wide once its best point is not on its rim. It also gets the vertex of the paraboloid fitted to the
-    one before, which runs along narrow slanted ridges where the best of a few points would crawl. Returns the values
-    (k,) and directions (k, 3) arrived at.
+    The next patch is half as wide unless the best point is on the rim. It also contains the vertex of the paraboloid fitted to
+    the patch before, which follows narrow slanted ridges where the best of a few points would crawl. Returns the values (k,)
+    and directions (k, 3) reached.
     """
     everyone = np.arange(len(starts))
     places = vertices = starts
@@ -241,7 +240,7 @@ def climb(objective: Objective, starts: Array, step: float, rounds: int) -> tupl
 
 
 def _vertex(values: Array) -> tuple[Array, Array]:
-    """Where in the patch (units of PATCH) the paraboloids fitted to values (k, 25) are highest; 0, 0 where they are not."""
+    """Places in the patch (units of PATCH) where paraboloids fitted to values (k, 25) are highest; 0, 0 for no maximum."""
     _, slope_a, slope_b, bend_a, across, bend_b = PARABOLOID @ values.T
     determinant = bend_a * bend_b - across**2
     peaked = (bend_a < 0) & (determinant > 0)
@@ -252,7 +251,7 @@ def _vertex(values: Array) -> tuple[Array, Array]:
 
 
 def _tangents(places: Array) -> tuple[Array, Array]:
-    """Two unit vectors (k, 3) across each of the unit vectors (k, 3) and across each other.
+    """Two unit vectors (k, 3) at right angles to each of the unit vectors (k, 3) and to each other.
 
     [T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017]: no pole, no square root.
     """

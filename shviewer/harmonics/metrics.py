@@ -1,4 +1,4 @@
-"""How far a reconstruction is from its light, from coefficients alone.
+"""Error metrics of a reconstruction, from coefficients alone.
 
 Shown coefficients s(l, m) need not be the exact ones c(l, m): bands may be muted or windowed, or a sampled method
 estimates them. Since the basis is orthonormal, the squared L2 error splits without any quadrature (Parseval):
@@ -21,25 +21,25 @@ from shviewer.harmonics.basis import Array, count_bands, degrees
 from shviewer.harmonics.extremes import LUMINANCE
 
 ROUNDING = 1e-11
-"""How far, relative to ||f||^2, a sum of squared coefficients may exceed it: rounding of up to 128**2 terms."""
+"""How far a sum of squared coefficients may exceed ||f||^2, relative to it: rounding of up to 128**2 terms."""
 
 SMALLEST = 1e-300
-"""How far it may besides: squares that are smaller lose their digits where float64 ends."""
+"""How far it may exceed it in addition, absolutely: smaller squares lose their digits where float64 ends."""
 
 PARSEVAL_FLOOR = 1e-7
-"""A relative error below this cannot be told from rounding by a difference of squares in float64."""
+"""Relative errors below this are lost in rounding, since they come from a difference of squares in float64."""
 
 CHANNELS = ("red", "green", "blue", "luminance")
 
 
 def band_power(coefficients: Array) -> Array:
-    """Sum over m of c(l, m)^2, which no rotation changes: (n**2, 3) -> (n, 3)."""
+    """The power of each band, the sum over m of c(l, m)^2, which no rotation changes: (n**2, 3) -> (n, 3)."""
     first = np.arange(count_bands(coefficients)) ** 2
     return np.asarray(np.add.reduceat(coefficients**2, first, axis=0))
 
 
 def band_weights(n_bands: int, muted: frozenset[int]) -> Array:
-    """1 for every coefficient of a band that is on, 0 for a muted one, (n_bands**2, 1)."""
+    """A weight per coefficient, (n_bands**2, 1): 1 in a band that is on, 0 in a muted one."""
     return np.isin(degrees(n_bands), list(muted), invert=True).astype(np.float64)[:, None]
 
 
@@ -48,9 +48,9 @@ def squared_error(
 ) -> tuple[float, float]:
     """(left-out, added) squared L2 error over all channels: the two terms of the module docstring.
 
-    norm_squared: (k,) for k channels; exact, shown: (n**2, k); magnitude: (k,), what norm_squared was rounded at, if it is a
-    sum that may cancel. ValueError if `exact` holds more energy than the light: then the two come from different
-    quadratures and no error can be read off them.
+    norm_squared: (k,) for k channels; exact, shown: (n**2, k); magnitude: (k,), the sum of magnitudes, if norm_squared is
+    a sum that may cancel. ValueError if `exact` holds more energy than the light: then the two come from different
+    quadratures, and no error follows from them.
     """
     missing = norm_squared - (exact**2).sum(axis=0)
     if (missing < -SMALLEST - ROUNDING * (norm_squared if magnitude is None else magnitude)).any():
@@ -76,7 +76,7 @@ class ChannelFigures:
     added: float
     """The part that muted bands, windows and sampling add."""
     psnr: float
-    """10 log10(peak^2 / mean of the squared error over the sphere); infinite for no error."""
+    """10 log10(peak^2 / mean square error over the sphere); infinite for no error."""
 
 
 def channel_figures(products: Array, exact: Array, shown: Array, peak: float) -> dict[str, ChannelFigures]:
@@ -128,7 +128,7 @@ def smallest_band_count(errors: Array, tolerance: float) -> int | None:
 
 @dataclass(frozen=True)
 class SampleEstimate:
-    """What samples alone say of the band count: the likely one, and the fewest and most that their noise allows."""
+    """The band count estimated from samples alone: the likely one, and the fewest and most that their noise allows."""
 
     likely: int | None
     fewest: int | None
@@ -147,7 +147,7 @@ def split_half_estimate(
     A squared coefficient holds the variance of its estimate, too, and would make every band look needed; products of
     two halves do not. ||f||^2 - sum of first * second therefore estimates what is left out without bias, and with
     d = first - second, s = first + second the variance of one product is about d^2 s^2 / 4 + d^4 / 4. `norm_squared` over
-    all channels comes from the same samples, with the standard deviation `norm_deviation`. None where no count will do.
+    all channels comes from the same samples, with the standard deviation `norm_deviation`. None: no count is enough.
     """
     starts = np.arange(count_bands(first)) ** 2
     difference, total = first - second, first + second
@@ -164,9 +164,9 @@ def split_half_estimate(
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
-    """Indices of (time, error) to which nothing is both as fast and as accurate, and in one of them better; by time.
+    """Indices of the Pareto front of points (time, error), by time: no other point is as good in both and better in one.
 
-    Of equal points the first stands for all.
+    Of equal points the front has the first.
     """
     front: list[int] = []
     for i in sorted(range(len(points)), key=lambda i: (points[i], i)):

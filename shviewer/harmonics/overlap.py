@@ -1,9 +1,9 @@
 """The integral over the sphere of a product of two lobe profiles about any two axes, to float64 accuracy.
 
-It makes the squared norm of a sum of lobes exact, and with it every error figure of such a light (Parseval). Pairs with
-a constant or two Gaussians are closed forms. The rest is one integral over the angle to the axis of the first profile: the
-integral of the second one round that circle is an arc of known length, so only a piecewise analytic function of one
-variable is left, which Gauss-Legendre nodes take to rounding once its pieces are known.
+It makes the squared norm of a sum of lobes exact, and with it every error figure of such a light (Parseval). Pairs with a
+constant, and pairs of Gaussians, have closed forms. Any other pair is one integral over the angle to the axis of the first
+profile: round that circle the second profile integrates in closed form. So only a piecewise analytic function of one variable
+is left, which Gauss-Legendre nodes integrate to rounding once its pieces are known.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Pr
 
 NODES = 64
 BLOCK = 128
-"""Angles at a time, so that the nodes of all their pieces stay in the cache."""
+"""How many angles are worked on at a time, so that the nodes of all their pieces stay in the cache."""
 
 
 def inner_product(first: Profile, second: Profile, angle: ArrayLike) -> Array:
-    """Integral of first * second over the sphere, in steradians, where `angle` radians lie between their axes; same shape."""
+    """Integral of first * second over the sphere, in steradians, for angles (radians) between their axes; same shape."""
     angle = np.asarray(angle, dtype=np.float64)
     if isinstance(first, Constant) or isinstance(second, Constant):
         other = second if isinstance(first, Constant) else first
@@ -37,7 +37,7 @@ def inner_product(first: Profile, second: Profile, angle: ArrayLike) -> Array:
 
 
 def _gaussian_product(k1: float, k2: float, angle: Array) -> Array:
-    """exp(k1 (x1 - 1)) exp(k2 (x2 - 1)) is a Gaussian about k1 a1 + k2 a2, of sharpness |k1 a1 + k2 a2|."""
+    """Two Gaussians: exp(k1 (x1 - 1)) exp(k2 (x2 - 1)) is a Gaussian about k1 a1 + k2 a2, of sharpness |k1 a1 + k2 a2|."""
     total = k1 + k2
     deficit = 4 * k1 * k2 * np.sin(angle / 2) ** 2  # total**2 - sharpness**2, without cancellation
     sharpness = np.maximum(np.sqrt(np.maximum(0, total**2 - deficit)), 1e-12 * total)

@@ -2,12 +2,12 @@
 
 A patch is a square on which direction and density (steradians per unit area) are analytic functions of the two image
 coordinates. There the kernel K = density * Y is a polynomial of moderate degree up to rounding, so it is known from its values
-at few points, and what the image contributes at each of them is a closed form:
+at a few points, and the weight of the image at each of them is a closed form:
     integral of I K = sum over i, j of K(x_i, y_j) W_ij,      W = R I C^T,
-    R[i, r] = integral over row r of the polynomial that is 1 at x_i and 0 at the other points, alike C for columns.
+    R[i, r] = integral over row r of the polynomial that is 1 at x_i and 0 at the other points, and C likewise for columns.
 With Chebyshev points and polynomials (T. J. Rivlin, "Chebyshev Polynomials", 2nd ed., chapters 1 and 2) the integrals are
 differences of cosines, and two matrix products are the only pass over the image. The error is that of the interpolation
-of K, rho**-points with rho the Bernstein ellipse in which K is analytic; the texels may be as small or large as they like.
+of K, rho**-points with rho of the Bernstein ellipse in which K is analytic; it does not depend on the size of the texels.
 
 The four quadrants of an image that is symmetric about its centre are mirror images on the sphere, and so are opposite faces of
 a cube. Mirroring only changes signs of Y, so one quadrant of the points is enough.
@@ -22,7 +22,7 @@ from shviewer.harmonics.basis import Array, check_bands, normalise
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
 
 BLOCK_VALUES = 2**21
-"""Basis values, or texel values, held in float64 at a time."""
+"""How many basis values, or texel values, are held in float64 at a time."""
 
 
 def texel_weights(edges: Array, n_points: int) -> tuple[Array, Array]:
@@ -43,21 +43,21 @@ def texel_weights(edges: Array, n_points: int) -> tuple[Array, Array]:
 
 
 def chebyshev_points(n_points: int) -> Array:
-    """(n_points,) in (-1, 1), descending."""
+    """Chebyshev points, (n_points,), in (-1, 1), descending."""
     return np.asarray(np.cos(np.pi * (np.arange(n_points) + 0.5) / n_points))
 
 
 def chebyshev_shares(positions: Array, n_points: int) -> Array:
-    """How much each Chebyshev point counts at positions (...) in [-1, 1]: (..., n_points).
+    """The share of each Chebyshev point in the interpolation at positions (...) in [-1, 1]: (..., n_points).
 
-    These are the polynomials that are 1 at their own point and 0 at the others.
+    The shares are the polynomials that are 1 at their own point and 0 at the others.
     """
     angle = np.arccos(np.clip(positions, -1, 1))
     return np.asarray(np.cos(angle[..., None] * np.arange(n_points)) @ _points_from_series(n_points).T)
 
 
 def _points_from_series(n_points: int) -> Array:
-    """Takes values of the Chebyshev polynomials T(0) to T(n-1), or linear functionals of them, to shares of the points."""
+    """The matrix from values of the Chebyshev polynomials T(0) to T(n-1), or functionals of them, to shares of the points."""
     angle = np.pi * (np.arange(n_points) + 0.5) / n_points
     matrix = np.cos(angle[:, None] * np.arange(n_points)) * (2 / n_points)
     matrix[:, 0] /= 2
@@ -65,9 +65,9 @@ def _points_from_series(n_points: int) -> Array:
 
 
 def quadrant_points(n_texels: int, n_points: int) -> tuple[Array, Array]:
-    """`texel_weights` of the half [0, 1] of n_texels equal texels on [-1, 1]: n_texels - n_texels // 2 of them.
+    """`texel_weights` for the half [0, 1] of n_texels equal texels on [-1, 1]: n_texels - n_texels // 2 texels.
 
-    The middle one of an odd number counts with its half. The half [-1, 0] is the same, mirrored.
+    The middle one of an odd number counts half. The half [-1, 0] is the same, mirrored.
     """
     edges = np.maximum((2 * np.arange(n_texels // 2, n_texels + 1) - n_texels) / n_texels, 0.0)
     return texel_weights(edges, n_points)
@@ -76,11 +76,11 @@ def quadrant_points(n_texels: int, n_points: int) -> tuple[Array, Array]:
 def quadrant_weights(
     image: NDArray[np.floating], n_points: int, spans: NDArray[np.int64] | None = None
 ) -> tuple[Array, Array]:
-    """W of the four quadrants of an image (height, width, 3) on the square [-1, 1]^2, rows downwards.
+    """W for the four quadrants of an image (height, width, 3) on the square [-1, 1]^2, rows downwards.
 
     spans: (height, 2), first and last-plus-one column of each row; texels outside count as 0. None for all.
-    Returns the points (n_points,) in [0, 1] and W, shape (2, 2, n_points, n_points, 3): the lower half of the rows second,
-    the right half of the columns second, then the distances from the centre down or up, and sideways.
+    Returns the points (n_points,) in [0, 1] and W, shape (2, 2, n_points, n_points, 3). Its axes: upper and lower half, left
+    and right half, distance from the centre up or down, distance sideways, channel.
     """
     height, width = image.shape[:2]
     points, rows = quadrant_points(height, n_points)

@@ -1,9 +1,9 @@
 """From radiance on rows to coefficients, c(l, m) = integral of f Y(l, m); scattered.py has the samples that lie anywhere.
 
-Anything on rows of constant theta is separable, in three steps: sums over the rows with cos(k theta) and sin(k theta), the
-only pass over the values (row_transform.py); sums over the columns with cos(m phi) and sin(m phi); and a small product with
-the series of the basis (theta_series.py). It also makes texels exact: the integral of cos(k theta) sin(theta) over a row, and
-of cos(m phi) over a column, are closed forms.
+A projection from rows of constant theta separates into three steps: sums over the rows with cos(k theta) and sin(k theta),
+the only pass over the values (row_transform.py); sums over the columns with cos(m phi) and sin(m phi); and a small product
+with the series of the basis (theta_series.py). Texels, too, are integrated exactly: the integrals of cos(k theta) sin(theta)
+over a row and of cos(m phi) over a column are closed forms.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from shviewer.harmonics.row_transform import Precision, RowFunctions, row_sums
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, azimuth_functions, from_waves
 
 BLOCK_VALUES = 2**21
-"""Eight times the directions a light is called with."""
+"""Eight times the number of directions in one call of a light."""
 
 BLOCK_PRODUCTS = 2**12
-"""Values of three channels multiplied at a time."""
+"""How many values of three channels are multiplied at a time."""
 
 
 def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tuple[Array, Array]:
@@ -68,7 +68,7 @@ def project_image(image: NDArray[np.floating], n_bands: int, precision: Precisio
 
 @lru_cache(maxsize=8)
 def _rows_of_texels(height: int, n_bands: int) -> RowFunctions:
-    """Integrals of cos(kt) sin(t) and sin(kt) sin(t) over each row.
+    """The integrals of cos(kt) sin(t) and sin(kt) sin(t) over each row.
 
     That of sin(pt) over a row of height h about t0 is h sinc(ph/2) sin(p t0), and alike for cos.
     """
@@ -89,13 +89,13 @@ def _rows_of_texels(height: int, n_bands: int) -> RowFunctions:
 
 @lru_cache(maxsize=8)
 def _columns_of_texels(width: int, n_bands: int) -> Array:
-    """Integrals of cos(m phi) and sin(m phi) over each column, (2, n_bands, width)."""
+    """The integrals of cos(m phi) and sin(m phi) over each column, (2, n_bands, width)."""
     strength = 2 * np.pi / width * np.sinc(np.arange(n_bands) / width)
     return strength[:, None] * azimuth_functions(n_bands, width)
 
 
 def _from_row_sums(even: Array, odd: Array, azimuth: Array) -> Array:
-    """The sums of `row_sums`, and what columns are summed with, (2, n_bands, n_columns) -> (n_bands**2, 3)."""
+    """Coefficients (n_bands**2, 3) from the sums of `row_sums` and the functions over columns, (2, n_bands, n_columns)."""
     columns, _, n_bands = even.shape
     by_order = np.empty((n_bands, 2, 3, n_bands))  # m, {cos, sin}(m phi), channel, k by parity
     for parity, sums in enumerate((even, odd)):

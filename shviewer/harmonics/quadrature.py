@@ -1,4 +1,4 @@
-"""Where a function on the sphere is evaluated, and with what weight.
+"""Quadrature rules on the sphere: directions and weights.
 
 Sources
     [Green]     R. Green, "Spherical Harmonic Lighting: The Gritty Details", GDC 2003: jittered samples.
@@ -84,7 +84,7 @@ class ProductRule:
 
     @property
     def phi(self) -> Array:
-        """(columns,) radians, decreasing: the columns of a lat-long image."""
+        """The azimuths (columns,) in radians, decreasing: the columns of a lat-long image."""
         return column_azimuths(self.n_columns)
 
     def directions(self, rows: slice = slice(None)) -> Array:
@@ -167,7 +167,7 @@ def angles_from_directions(directions: Array) -> tuple[Array, Array]:
 
 
 def evaluate_rows(radiance: Radiance, theta: Array, n_columns: int) -> Array:
-    """A function on rows of a lat-long grid at angles theta (rows,) from +z: (rows, 3, n_columns)."""
+    """Evaluate a function on rows of a lat-long grid at angles theta (rows,) from +z: (rows, 3, n_columns)."""
     directions = directions_from_angles(theta[:, None], column_azimuths(n_columns)).reshape(-1, 3)
     return np.ascontiguousarray(radiance(directions).reshape(len(theta), n_columns, 3).transpose(0, 2, 1))
 

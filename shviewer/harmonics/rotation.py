@@ -16,7 +16,7 @@ from shviewer.harmonics.projection import BLOCK_VALUES
 from shviewer.harmonics.quadrature import gauss_legendre
 
 MAX_ROTATED_BANDS = 128
-"""Beyond this one rotation takes more than a minute."""
+"""The most bands: with more, one rotation takes over a minute."""
 
 ORTHONORMAL = 1e-9
 """How far M M^T may be from the identity before a matrix is refused as no rotation."""

@@ -1,9 +1,9 @@
 """The one pass over values on rows of constant theta: their sums over the rows with cos(k theta) and sin(k theta).
 
 Half way round, at phi + pi, cos(m phi) and sin(m phi) are the same for even m and change sign for odd m; and even orders are
-series in cos(k theta), odd ones in sin(k theta) (theta_series.py). So the left half of a row plus its right half is all that
-the cosines have to see, left minus right all that the sines have to. North and south, theta and pi - theta, fold alike for
-even and odd k. A fold halves the products that follow, for the price of one sum over values that are in the cache.
+series in cos(k theta), odd ones in sin(k theta) (theta_series.py). So the cosines need only the left half of a row plus its
+right half, and the sines only left minus right. North and south, theta and pi - theta, fold in the same way for even and odd
+k. A fold halves the products that follow, for the price of one sum over values that are in the cache.
 """
 
 from __future__ import annotations
@@ -18,41 +18,41 @@ from numpy.typing import NDArray
 from shviewer.harmonics.basis import Array
 
 FOLD_BANDS = 24
-"""From so many bands on north and south are folded, too; below, the fold costs more than it saves."""
+"""The number of bands from which north and south are folded, too; below, the fold costs more than it saves."""
 
 BLOCK_ROWS = 64
-"""Rows, or pairs of folded rows, in one product: what float32 sums before float64 takes over."""
+"""Rows, or pairs of folded rows, in one product: the terms that float32 sums before float64 takes over."""
 
 NARROW = 1024
-"""Columns. Float32's rounding averages out over them; where there are fewer, float64 is as fast and is taken instead."""
+"""The fewest columns for float32, whose rounding averages out over them; with fewer, float64 is as fast and is used."""
 
 SMALL_PRODUCT = 900_000
-"""Multiplications; below a million OpenBLAS has kernels that read their operands where they are."""
+"""Multiplications in one product: below a million, OpenBLAS has kernels that read their operands in place."""
 
 MAX_STEP = 3072
-"""Values of a row in one product, so that a block stays in the cache."""
+"""The most values of a row in one product, so that a block stays in the cache."""
 
 ALIKE = 1e-5
-"""Relative. Columns this much alike would round alike in float32, and their errors add up instead of averaging out."""
+"""Columns whose relative difference is less would round alike in float32: errors would add up, not average out."""
 
 OUTSTANDING = 1 / 200
-"""Share of the sum over all columns. One errs by 1e-7 of itself in float32; all of them, at random, by sqrt(1/200) of that."""
+"""The share of the whole sum from which a column is summed again in float64. In float32 it errs by 1e-7 of itself."""
 
 TIMES_THE_MEAN = 8
-"""Nor is a column repeated that holds less than this many times its part: most are not."""
+"""A column is summed again only if it also holds this many times the mean of all columns, which few do."""
 
 Values = NDArray[np.floating[Any]]
 Precision = type[np.float32] | type[np.float64]
 
 
 def by_parity(n_bands: int) -> NDArray[np.int64]:
-    """The order in which k is held: the even ones, then the odd ones."""
+    """The values of k as they are stored: the even ones, then the odd ones."""
     return np.concatenate([np.arange(0, n_bands, 2), np.arange(1, n_bands, 2)])
 
 
 @dataclass(frozen=True, eq=False)
 class RowFunctions:
-    """What rows are summed with: weight times cos(k theta) and sin(k theta), (n_bands, rows), mirrored about the equator."""
+    """The factors of each row: weight times cos(k theta) and sin(k theta), (n_bands, rows), mirrored about the equator."""
 
     cosines: Array
     sines: Array
@@ -70,9 +70,9 @@ class RowFunctions:
 
 
 def row_sums(values: Values, functions: RowFunctions, precision: Precision) -> tuple[Array, Array]:
-    """values (rows, columns, 3) -> what even and what odd orders need, (columns or half of them, 3, n_bands) float64 each.
+    """values (rows, columns, 3) -> the sums for even and for odd m, (columns or half of them, 3, n_bands) float64 each.
 
-    The sums have k in the order of `by_parity`. Of an even number of columns only the left half comes back, folded.
+    The last axis has k as in `by_parity`. An even number of columns is folded, and only the left half returned.
     """
     rows, columns = values.shape[:2]
     halves = 1 if columns % 2 else 2
@@ -87,7 +87,7 @@ def row_sums(values: Values, functions: RowFunctions, precision: Precision) -> t
 
 
 def _sum_rows(flat: Values, functions: RowFunctions, precision: Precision) -> Array:
-    """(rows, halves, width) -> (even and odd orders, width, n_bands)."""
+    """Sums over rows: (rows, halves, width) -> (even and odd m, width, n_bands)."""
     rows, _, width = flat.shape
     n_bands, half = len(functions.cosines), rows // 2
     work = _Pass(flat, functions, np.zeros((2, width, n_bands)), precision)
@@ -100,7 +100,7 @@ def _sum_rows(flat: Values, functions: RowFunctions, precision: Precision) -> Ar
 
 
 def _repeat_outstanding(flat: Values, functions: RowFunctions, sums: Array) -> None:
-    """Columns that hold much of the whole, such as those of a sun, again in float64: no others average their rounding out."""
+    """Sum again in float64 columns that hold much of the whole, such as a sun's: their rounding does not average out."""
     rows, halves, width = flat.shape
     weight = np.abs(sums[0, :, 0]).reshape(-1, 3)
     share = weight.max(axis=1) / max(float(weight.max(axis=1).sum()), np.finfo(np.float64).tiny)
@@ -124,7 +124,7 @@ class _Pass:
         self.n_even = (len(self.cosines) + 1) // 2
 
     def add_rows(self, start: int, stop: int) -> None:
-        """The products of rows start to stop as they are."""
+        """Add the products of rows `start` to `stop`, not folded."""
         width, n_bands = self.sums.shape[1:]
         height = min(BLOCK_ROWS, stop - start)
         folded = np.empty((2, max(height, 1), width), self.precision)
@@ -142,7 +142,7 @@ class _Pass:
                     self.sums[parity][columns] += out
 
     def add_pairs(self, count: int) -> None:
-        """The products of the first and last `count` rows, each row of the north folded with its mirror in the south."""
+        """Add the products of the first and last `count` rows, each northern row folded with its mirror in the south."""
         width, n_bands = self.sums.shape[1:]
         rows = len(self.flat)
         height = min(BLOCK_ROWS, count)
@@ -169,7 +169,7 @@ class _Pass:
                     self.sums[parity][columns] += out
 
     def _fold_halves(self, rows: slice, out: Values) -> None:
-        """out (2, rows, width): left plus right and left minus right; or twice the row where it has no halves."""
+        """Write into out (2, rows, width) left plus right and left minus right, or the row twice if it has no halves."""
         block = self.flat[rows]
         if block.shape[1] == 1:
             out[:] = block[:, 0]
@@ -185,7 +185,7 @@ class _Pass:
             self._take_out_alike(rows, out[0])
 
     def _take_out_alike(self, rows: slice, block: Values) -> None:
-        """Where all columns are alike, the first one's value is summed in float64, and only what differs from it is left."""
+        """In rows whose columns are alike, sum the first column's value in float64, and leave only the differences from it."""
         middle = block.shape[1] // 6 * 3
         if abs(block[0, middle] - block[0, 0]) > ALIKE * abs(block[0, 0]):
             return
@@ -199,6 +199,6 @@ class _Pass:
 
 
 def _step(n_functions: int, height: int, width: int) -> int:
-    """How many of a row's values go into one product: a multiple of 48, at least that."""
+    """The number of a row's values in one product: a multiple of 48."""
     most = SMALL_PRODUCT // (n_functions * max(height, 1))
     return min(max(most // 48 * 48, 48), MAX_STEP, width)

@@ -1,12 +1,12 @@
 """Projecting scattered samples: the sum of weight * radiance * Y(l, m) over them, without ever holding the basis.
 
-Every Y(l, m) is one of 2n functions of the azimuth times a combination of n functions of z. So a block of samples is summed
-with the products of the two alone, one matrix product, (2n, block) by (block, 3n) for three channels; what knows of l is a
-small table, applied once at the end. There are two pairs of functions:
+Every Y(l, m) is one of 2n functions of the azimuth times a combination of n functions of z. So a block of samples needs only
+the products of the two: one matrix product, (2n, block) by (block, 3n) for three channels. The dependence on l is a small
+table, applied once at the end. There are two pairs of functions:
 
     few bands   {Re, Im} (x + iy)^m and z^k: the cheapest, but the sums of powers lose a third of a digit per band;
-    more        {cos, sin}(m phi), for odd m times sin(theta), and T(k)(z) = cos(k theta), into which theta_series.py takes the
-                Legendre functions apart. Nothing is much larger than 1, so that nothing cancels.
+    more        {cos, sin}(m phi), for odd m times sin(theta), and T(k)(z) = cos(k theta), into which theta_series.py expands
+                the Legendre functions. No value is much larger than 1, so that nothing cancels.
 
 No angle is computed: sin(theta) {cos, sin}(phi) are x and y, and those of 2 phi are (x^2 - y^2) and 2xy over x^2 + y^2.
 """
@@ -23,28 +23,28 @@ from shviewer.harmonics.quadrature import DirectionSet, Radiance
 from shviewer.harmonics.theta_series import degrees_and_orders, theta_series
 
 Values = Callable[[slice], tuple[Array, Array | float]]
-"""Some of the samples -> their values (k, 3) and weights, (k,) or one of all."""
+"""A slice of the samples -> their values (k, 3) and weights, (k,) or one for all."""
 
 POWER_BANDS = 6
-"""Up to so many bands powers are used: their table adds up to 18, 1e-14 of the sum."""
+"""The most bands for which powers are used; the magnitudes in their table add up to 18, for an error of 1e-14."""
 
 WAVE_BANDS = 128
-"""With more the table, n**3 values, is too large, and the basis is evaluated."""
+"""The most bands with a table, which has n**3 values; with more, the basis is evaluated."""
 
 BLOCK = 10_000
-"""The most samples in a block, which the light sees at once; no power of two, for the sake of the cache."""
+"""The most samples in a block, for which the light is called once; no power of two, for the sake of the cache."""
 
 BASIS_VALUES = 2**21
-"""Values of the basis held at a time, where it is evaluated."""
+"""How many values of the basis are held at a time, where it is evaluated."""
 
 SMALL_PRODUCT, SLICED_BANDS = 900_000, 20
-"""Multiplications; below a million OpenBLAS has kernels that read their operands where they are. Worth it below 20 bands."""
+"""Multiplications in one product: below a million, OpenBLAS reads operands in place, which pays below 20 bands."""
 
 NOT_UNIT = 1e-14
-"""Directions are normalised where x^2 + y^2 + z^2 is further from 1."""
+"""Directions are normalised if x^2 + y^2 + z^2 is further from 1 than this."""
 
 AT_A_POLE = 1e-200
-"""Where x^2 + y^2 is less it has lost its digits, and the azimuth cannot matter."""
+"""Where x^2 + y^2 is less than this it has lost its digits, and the azimuth cannot matter."""
 
 
 def project_samples(radiance: Radiance, samples: DirectionSet, n_bands: int) -> Array:
@@ -58,7 +58,7 @@ def project_samples(radiance: Radiance, samples: DirectionSet, n_bands: int) -> 
 
 
 def project_values(directions: Array, weighted: Array, n_bands: int) -> Array:
-    """The same of values that are there already, times their weights: (k, 3) each -> (n_bands**2, 3)."""
+    """The same for values that are known and already weighted: (k, 3) each -> (n_bands**2, 3)."""
     return _project(directions, lambda rows: (weighted[rows], 1.0), n_bands)
 
 
@@ -89,7 +89,7 @@ class _BasisSums:
             self.sums += evaluate_basis(directions[rows], self.n_bands).T @ weighted[rows]
 
     def coefficients(self) -> Array:
-        """(n_bands**2, 3) of all that was added."""
+        """Coefficients (n_bands**2, 3) of all samples added."""
         return self.sums
 
 
@@ -130,7 +130,7 @@ class _Products:
         self.sums += np.matmul(left, right).sum(axis=0)
 
     def coefficients(self) -> Array:
-        """(n_bands**2, 3) of all that was added."""
+        """Coefficients (n_bands**2, 3) of all samples added."""
         n = self.n_bands
         table = _wave_table(n) if n > POWER_BANDS else _power_table(n)
         sums = self.sums.reshape(2, n, n, 3).transpose(1, 2, 0, 3).reshape(n, n, 6)
@@ -162,7 +162,7 @@ class _Products:
             np.multiply(self.weighted[k - 1], z, out=self.weighted[k])
 
     def _fill_waves(self) -> None:
-        """T(k)(|z|) do for both hemispheres: for odd k the values take the sign of z."""
+        """Fill with waves. T(k)(|z|) serves both hemispheres: for odd k the values take the sign of z."""
         self._fill_azimuth()
         self._fill_chebyshev()
         sign = np.copysign(1, self.points[2], out=self.scratch[1])
@@ -171,7 +171,7 @@ class _Products:
             np.multiply(self.waves[parity::2, None], self.values[parity], out=self.weighted[parity::2])
 
     def _fill_azimuth(self) -> None:
-        """e^(im phi), for odd m times sin(theta): e^(i(b+a)) = e^(i(a-b)) + 2i sin(b) e^(ia), for b = 2, 4, 8, ...
+        """Fill in e^(im phi), for odd m times sin(theta): e^(i(b+a)) = e^(i(a-b)) + 2i sin(b) e^(ia), for b = 2, 4, 8, ...
 
         The step is a rotation that has no cancellation where sin(b) is small, as cos(b+a) = 2 cos(b) cos(a) - cos(b-a) has.
         """
@@ -197,7 +197,7 @@ class _Products:
             b *= 2
 
     def _fill_chebyshev(self) -> None:
-        """W(k) = 1 - T(k)(|z|), which keeps its digits next to the poles: for b = 1, 2, 4, ...
+        """Fill in T(k) by W(k) = 1 - T(k)(|z|), which keeps its digits next to the poles: for b = 1, 2, 4, ...
 
         W(b+a) = 2 W(b) + (2 - 2 W(b)) W(a) - W(b-a).
         """
@@ -218,7 +218,7 @@ class _Products:
 
 @lru_cache(maxsize=8)
 def _power_table(n_bands: int) -> Array:
-    """Coefficient of z^k in Y(l, m) over {Re, Im} (x + iy)^m, (m, l, k): the recurrence of basis.py, in powers."""
+    """The coefficient of z^k in Y(l, m) over {Re, Im} (x + iy)^m, (m, l, k): the recurrence of basis.py, in powers."""
     table = np.zeros((n_bands, n_bands, n_bands))
     for m in range(n_bands):
         table[m, m, 0] = 1
@@ -234,7 +234,7 @@ def _power_table(n_bands: int) -> Array:
 
 @lru_cache(maxsize=8)
 def _wave_table(n_bands: int) -> Array:
-    """Coefficient of T(k)(z) in Y(l, m) over {cos, sin}(m phi), for odd m over sin(theta), too, (m, l, k).
+    """The coefficient of T(k)(z) in Y(l, m) over {cos, sin}(m phi), and for odd m over sin(theta), too: (m, l, k).
 
     sin(k theta) / sin(theta) = 2 T(k-1) + 2 T(k-3) + ..., with T(0) once.
     """

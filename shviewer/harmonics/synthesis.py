@@ -13,13 +13,13 @@ from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
 from shviewer.harmonics.theta_series import azimuth_functions, theta_series
 
 BLOCK_VALUES = 2**14
-"""Directions times bands that are evaluated at a time, so that they stay in the cache."""
+"""How many directions times bands are evaluated at a time, so that they stay in the cache."""
 
 STEP = 768
-"""Values of a row in one product of a map."""
+"""The number of values of a row in one product of a map."""
 
 FEWEST_BANDS = 8
-"""Products of fewer than four rows are slower than these."""
+"""The fewest bands of a product; with fewer, it would have less than four rows and be slower."""
 
 
 def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
@@ -45,13 +45,13 @@ class Synthesis:
         ]  # for even and for odd m: k, ({cos, sin}, channel, m)
 
     def on_rows(self, theta: Array, n_columns: int) -> Array:
-        """On rows at `theta` (rows,) with the columns of a lat-long image: (rows, 3, n_columns)."""
+        """Evaluate on rows at `theta` (rows,) with the columns of a lat-long image: (rows, 3, n_columns)."""
         flat = self._along_theta(theta).reshape(-1, 2 * self.n_bands)
         azimuth = azimuth_functions(self.n_bands, n_columns).reshape(2 * self.n_bands, n_columns)
         return np.asarray(flat @ azimuth).reshape(len(theta), 3, n_columns)
 
     def at(self, theta: Array, phi: Array) -> Array:
-        """At scattered angles (k,), radians: (k, 3)."""
+        """Evaluate at scattered angles (k,), radians: (k, 3)."""
         values = np.empty((len(theta), 3))
         block = max(64, BLOCK_VALUES // self.n_bands)
         for start in range(0, len(theta), block):
@@ -63,15 +63,15 @@ class Synthesis:
         return values
 
     def pole_to_pole(self, n_rows: int, n_columns: int) -> NDArray[np.float32]:
-        """A map for the GPU, (n_rows, n_columns, 3) float32, rows from theta = 0 to pi, both included; 2e-7 of its peak off.
+        """A map for the GPU, (n_rows, n_columns, 3) float32, rows from theta = 0 to pi inclusive; off by 2e-7 of its peak.
 
-        Each block of rows is one product with {cos, sin}(k theta); its mirror south of the equator and the other half of
-        its columns, where odd k and odd m change sign, cost only sums (row_transform.py has the same folds the other way).
+        Each block of rows is one product with {cos, sin}(k theta); its mirror south of the equator and the other half of its
+        columns, where odd k and odd m change sign, cost only sums (row_transform.py has the same folds the other way round).
         """
         return self._map(n_rows, n_columns, 3)
 
     def _map(self, n_rows: int, n_columns: int, channels: int) -> NDArray[np.float32]:
-        """(n_rows, n_columns, channels); channels beyond the third are 0."""
+        """The map (n_rows, n_columns, channels); channels beyond the third are 0."""
         if self.n_bands < FEWEST_BANDS:
             return self._padded()._map(n_rows, n_columns, channels)
         theta = np.linspace(0, np.pi, n_rows)[: (n_rows + 1) // 2]
@@ -105,9 +105,10 @@ class Synthesis:
 
         (n_rows, n_columns, 4), the last of each four 0: graphics processors read texels of four fastest.
 
-        A spline at its node and the two beside it is 3/4, 1/8, 1/8: it takes a wave of w radians a node by 3/4 + cos(w)/4.
-        The function is a sum of such waves, along theta round both poles, so they are divided by it: an interpolation without a
-        linear system. Between the nodes it is wrong by about 0.006 w^3 of a wave. ValueError for fewer than 2 nodes a wave.
+        A spline is 3/4 at its node and 1/8 at the two beside it, so it multiplies a wave of w radians a node by 3/4 + cos(w)/4.
+        The function is a sum of such waves, along theta round both poles, so each wave is divided by its factor: an
+        interpolation without a linear system. Between the nodes it is off by about 0.006 w^3 of a wave. ValueError for fewer
+        than 2 nodes a wave.
         """
         if n_rows - 1 < self.n_bands or n_columns < 2 * self.n_bands:
             raise ValueError(f"{self.n_bands} bands need more nodes than {n_rows} x {n_columns}")
@@ -133,7 +134,7 @@ class Synthesis:
         return Synthesis(padded)
 
     def _by_column(self, n_columns: int, kept: int, channels: int) -> NDArray[np.float32]:
-        """Before cos(k theta), for even m, and sin(k theta), for odd m: (2, k by parity, kept columns x channels)."""
+        """The factors of cos(k theta), for even m, and sin(k theta), for odd m: (2, k by parity, kept columns x channels)."""
         azimuth = azimuth_functions(self.n_bands, n_columns)[..., :kept]
         order = by_parity(self.n_bands)
         values = np.zeros((2, self.n_bands, kept, channels), np.float32)
@@ -143,7 +144,7 @@ class Synthesis:
         return values.reshape(2, self.n_bands, -1)
 
     def _along_theta(self, theta: Array) -> Array:
-        """What stands before cos(m phi) and sin(m phi) at each theta (rows,): (rows, 3, {cos, sin}, n_bands)."""
+        """The factors of cos(m phi) and sin(m phi) at each theta (rows,): (rows, 3, {cos, sin}, n_bands)."""
         angle = theta[:, None] * np.arange(self.n_bands)
         along_theta = np.empty((len(theta), 3, 2, self.n_bands))
         for parity, functions in enumerate((np.cos(angle), np.sin(angle))):
@@ -153,7 +154,7 @@ class Synthesis:
 
 
 def _to_orders(coefficients: Array) -> Array:
-    """Coefficients at l(l+1) +- m -> (m, l, {cos, sin}, 3)."""
+    """Coefficients, at index l(l+1) +- m, arranged as (m, l, {cos, sin}, 3)."""
     n_bands = count_bands(coefficients)
     degree, order = np.tril_indices(n_bands)
     centre = degree * (degree + 1)

@@ -4,7 +4,7 @@ On the great circle through the poles and phi the normalised function is a trigo
     Y(l, m)(theta, phi) = {cos, sin}(|m| phi) times the sum over k <= l of D(m, l, k) cos(k theta)     for even m,
                                                                         or D(m, l, k) sin(k theta)     for odd m,
 because it continues over the poles; k + l is even wherever D is not zero. So a transform along theta is a product with plain
-cosines and sines, the same for every m, and what knows of m and l is small.
+cosines and sines, the same for every m, and only the small table D depends on m and l.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from shviewer.harmonics.quadrature import column_azimuths
 Indices = NDArray[np.int64]
 
 MAX_SEPARABLE_BANDS = 512
-"""The table D takes n**3 values: 1 GiB at 512 bands."""
+"""The most bands with a table D, which has n**3 values: 1 GiB at 512 bands."""
 
 
 @lru_cache(maxsize=8)
@@ -52,14 +52,14 @@ def theta_series(n_bands: int) -> Array:
 
 @lru_cache(maxsize=8)
 def series_by_parity(n_bands: int) -> tuple[Array, Array]:
-    """What of D is not zero, laid out as (m, k, l): for even k and l, and for odd k and l."""
+    """The parts of D that are not zero, laid out as (m, k, l): for even k and l, and for odd k and l."""
     series = theta_series(n_bands).transpose(0, 2, 1)
     return np.ascontiguousarray(series[:, 0::2, 0::2]), np.ascontiguousarray(series[:, 1::2, 1::2])
 
 
 @lru_cache(maxsize=8)
 def degrees_and_orders(n_bands: int) -> tuple[Indices, Indices, Indices]:
-    """Degree l and |m| of each coefficient, and 1 where it is that of a sine, (n**2,) each."""
+    """Degree l and |m| of each coefficient, and 1 for that of a sine, else 0; (n**2,) each."""
     degree = np.repeat(np.arange(n_bands), 2 * np.arange(n_bands) + 1)
     order = np.arange(n_bands**2) - degree * (degree + 1)
     return degree, np.abs(order), (order < 0).astype(np.int64)
@@ -73,7 +73,7 @@ def azimuth_functions(n_bands: int, n_columns: int) -> Array:
 
 
 def from_waves(sums: Array) -> Array:
-    """Sums with cos(k theta), for odd m sin(k theta), and {cos, sin}(m phi) -> coefficients (n**2, 3).
+    """Sums with {cos, sin}(m phi) and cos(k theta), for odd m sin(k theta) -> coefficients (n**2, 3).
 
     sums: (m, {cos, sin}, channel, k), the even k first, then the odd ones.
     """

@@ -21,18 +21,18 @@ import numpy as np
 from shviewer.harmonics.basis import Array, check_bands, evaluate_basis
 
 LARGEST = 1e15
-"""No slope, offset or sharpness beyond this: a lobe of sharpness 1e15 is already 3e-8 radians wide."""
+"""The largest slope, offset or sharpness: a lobe of sharpness 1e15 is only 3e-8 radians wide."""
 
 
 class Profile(Protocol):
     """A rotationally symmetric function with peak value about 1, still to be multiplied by a radiance."""
 
     kind: ClassVar[int]
-    """Its number in shaders/lobes.glsl."""
+    """The profile's number in shaders/lobes.glsl."""
 
     @property
     def parameters(self) -> tuple[float, float]:
-        """What the shader needs beside the kind."""
+        """The numbers that the shader needs beside the kind."""
 
     @property
     def half_angle(self) -> float:
@@ -165,7 +165,7 @@ class Gaussian:
 def gegenbauer_ratios(z: float, one_minus_z: float, m: int, n_bands: int) -> Array:
     """G(l, m)(z) of basis.py for l = 0 to n_bands-1, zero for l < m.
 
-    `one_minus_z` is 1 - z with whatever accuracy the caller has: for a tiny cap it knows more of it than z does.
+    `one_minus_z` is 1 - z as accurately as the caller has it: for a tiny cap, z itself has lost those digits.
     """
     check_bands(n_bands)
     delta = one_minus_z if z >= 0 else 1 + z

@@ -1,1 +1,1 @@
-"""What is projected: sums of lobes, environment maps and Python functions."""
+"""Lights: sums of lobes, environment maps, Python functions and coefficients."""

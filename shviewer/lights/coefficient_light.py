@@ -1,6 +1,6 @@
 """A light that is a coefficient file: band-limited, so that everything about it is a finite sum.
 
-A light is radiance. Of a file that holds irradiance it is the radiance with just that irradiance, so that the viewer shows the
+A light is radiance. A file that holds irradiance becomes the radiance with just that irradiance, so that the viewer shows the
 file's own numbers as irradiance, and they can be written as either.
 """
 
@@ -33,12 +33,12 @@ MAP_SIZE = (1025, 2048)
 
 @dataclass(frozen=True, eq=False)
 class CoefficientLight(RadianceLight):
-    """`given`: radiance in our convention, (n**2, 3), float64."""
+    """The light of given coefficients; `given`: radiance in our convention, (n**2, 3), float64."""
 
     given: Array
     name: str = "coefficients"
     file: CoefficientFile | None = None
-    """What was read, with its own numbers."""
+    """The file as it was read, with its own numbers."""
 
     best_method = "coefficients as given"
     lobes = ()
@@ -49,12 +49,12 @@ class CoefficientLight(RadianceLight):
 
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> CoefficientLight:
-        """LightError if the file is bad or does not say its convention."""
+        """Read a coefficient file. LightError if it is bad or does not name its convention."""
         return cls.of_file(read_coefficients(path, reading.convention, reading.limits), path.stem)
 
     @classmethod
     def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
-        """The light whose coefficients, or whose irradiance's, a file holds that has been read."""
+        """The light of a file that has been read, which holds the coefficients of the light or of its irradiance."""
         held = file.coefficients
         return cls(held if file.quantity == RADIANCE else recovered_radiance(held)[0], name, file)
 
@@ -73,12 +73,12 @@ class CoefficientLight(RadianceLight):
 
     @property
     def extent(self) -> str:
-        """ "sh.txt has 3 bands": what is said where more are asked for."""
+        """The message where more bands are asked for: "sh.txt has 3 bands"."""
         return f"{self.name} has {counted(self.n_bands, 'band')}"
 
     @property
     def quantity(self) -> str:
-        """What the file's numbers are of: "radiance" or "irradiance"."""
+        """The quantity of the file's numbers: "radiance" or "irradiance"."""
         return self.file.quantity if self.file else RADIANCE
 
     @property
@@ -120,7 +120,7 @@ class CoefficientLight(RadianceLight):
         return self._synthesis.at(*angles_from_directions(directions))
 
     def rows(self, theta: Array, n_columns: int) -> Array:
-        """For a fraction of what as many directions cost."""
+        """As in Light; costs a fraction of `radiance` in as many directions."""
         return self._synthesis.on_rows(theta, n_columns)
 
     @cached_property

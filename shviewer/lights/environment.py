@@ -25,21 +25,21 @@ from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import check_brightness
 
 MAX_RASTER_WIDTH = 8192
-"""Columns at most of the lat-long raster from which an image is drawn that is no texture itself."""
+"""The most columns of the lat-long raster that stands for an image in another layout when it is drawn."""
 
 BLOCK_TEXELS = 2**20
-"""Texels given out together, which bounds the memory."""
+"""Texels in one block of `texels`, which bounds the memory."""
 
 MAX_TEXTURE_SIDE = 16384
-"""What every desktop GPU of the last ten years takes."""
+"""The largest side of a texture that every desktop GPU of the last ten years takes."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class EnvironmentLight(RadianceLight):
-    """`radiance` interpolates between texel centres; coefficients and norm are those of the areas."""
+    """The light of an image. `radiance` interpolates between texel centres; coefficients and norm are those of the areas."""
 
     pixels: NDArray[np.float32]
-    """(height, width, 3), as the layout wants them."""
+    """The image as the layout has it, (height, width, 3)."""
     layout: Layout
     name: str
     notes: tuple[str, ...]
@@ -67,7 +67,7 @@ class EnvironmentLight(RadianceLight):
 
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> EnvironmentLight:
-        """The image in a file, or one layer of it. LightError if it cannot be read or has not the layout asked for."""
+        """The image in a file, or one layer of it. LightError if it cannot be read or does not fit the layout asked for."""
         image = read_radiance_image(path, reading, layer)
         try:
             layout, notes = recognise(image.pixels, image.layout, reading.layout, image.encoding.startswith("JPEG"))
@@ -92,7 +92,7 @@ class EnvironmentLight(RadianceLight):
 
     @cached_property
     def map(self) -> LatLongMap:
-        """The texels themselves where they are lat-long and a texture; else sampled from them, about as fine as they are."""
+        """The texels themselves if they are lat-long and fit a texture; else a raster sampled from them, about as fine."""
         if self._is_lat_long and max(self.pixels.shape) <= MAX_TEXTURE_SIDE:
             return LatLongMap(self.pixels)
         width = max(4, min(self.layout.raster_width, MAX_RASTER_WIDTH))
@@ -112,7 +112,7 @@ class EnvironmentLight(RadianceLight):
         return np.asarray(self.pixels[self.layout.nearest(directions)], dtype=np.float64)
 
     def coefficients(self, n_bands: int) -> Array:
-        """Projected once to the most bands asked for so far; fewer are the first rows of more."""
+        """As in Light. The most bands asked for so far are kept; fewer bands are their first rows."""
         held = self._projected
         if not held or len(held[0]) < n_bands**2:
             held[:] = [self.layout.project(self.pixels, n_bands)]
@@ -148,7 +148,7 @@ class EnvironmentLight(RadianceLight):
         return self.layout.centres(row, column)
 
     def texels(self) -> Iterator[tuple[Array, Array]]:
-        """Those that show something."""
+        """As in Light: the texels that show something."""
         areas = np.broadcast_to(self.layout.solid_angles(), self.pixels.shape[:2])
         rows = max(1, BLOCK_TEXELS // self.pixels.shape[1])
         for top in range(0, len(self.pixels), rows):
@@ -164,7 +164,7 @@ class EnvironmentLight(RadianceLight):
 
 
 def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:
-    """Row and column, (1,) each, of the first texel with the largest absolute value."""
+    """Row and column, (1,) each, of the first texel with the value of largest magnitude."""
     values = pixels.reshape(-1)
     ends = sorted((int(values.argmax()), int(values.argmin())))
     texel = max(ends, key=lambda i: abs(values[i])) // 3

@@ -1,4 +1,4 @@
-"""How the text LIGHT of a command line becomes a light, and which file it is read from."""
+"""From the text LIGHT of a command line to the light and the file that it is read from."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.resources import resource_folder
 
-if TYPE_CHECKING:  # a kind of light is loaded where there is one
+if TYPE_CHECKING:  # each kind of light is imported when one is found
     from shviewer.lights.light import Light
 
 
@@ -25,7 +25,7 @@ def built_in_lights() -> dict[str, Path]:
 
 
 def split_light(text: str) -> tuple[Path, str]:
-    """The file that a LIGHT names, and what in it: the layer of "file.exr:layer", the function of "file.py:function", or "".
+    """The file that LIGHT names, and the layer of "file.exr:layer" or the function of "file.py:function", or "".
 
     A built-in name comes first, then a file of that very name.
     """
@@ -37,14 +37,14 @@ def split_light(text: str) -> tuple[Path, str]:
 
 
 def file_version(text: str) -> FileVersion | None:
-    """The version of the file of the light that `text` names; None where there is none at the moment."""
+    """The present version of the file of the light that `text` names; None where there is no file."""
     return version_of(split_light(text)[0])
 
 
 def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
     """The light that `text` names: a built-in, a scene, an image, coefficients, a "file.exr:layer" or a "file.py:function".
 
-    `reading` says how an image is read, and which convention numbers have that do not say it.
+    `reading` says how to read an image, and the convention of numbers that do not name theirs.
     LightError if there is no such light or its file is bad.
     """
     path, part = split_light(text)
@@ -75,7 +75,7 @@ def _exists(path: Path) -> bool:
 
 
 def _what_it_is(text: str) -> str:
-    """What a path is that cannot be a light, and what to do; "" if there is nothing of that name."""
+    """Why the file or directory `text` is no light, and what to do; "" if nothing has that name."""
     path = Path(text)
     if not _exists(path):
         return _what_the_colon_is(text)
@@ -88,7 +88,7 @@ def _what_it_is(text: str) -> str:
 
 
 def _what_the_colon_is(text: str) -> str:
-    """What is wrong with the part after a file's last colon; "" if there is none, or no file of a known kind before it."""
+    """The fault of the part after the last colon; "" if there is no colon, or no file of a known kind before it."""
     file, _, part = text.rpartition(":")
     suffix = Path(file).suffix.lower()
     if suffix == ".exr" and not part:

@@ -1,4 +1,4 @@
-"""A light that is any Python function of directions."""
+"""A light that is a Python function of directions."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from shviewer.lights.radiance import RadianceLight
 from shviewer.limits import check_brightness
 
 SAMPLED_BANDS = 128
-"""Bands by which the quadrature is judged; more are projected on request."""
+"""The bands that decide how many points the quadrature needs; more are projected on request."""
 
 FIRST_ROWS, LAST_ROWS = 160, 640
 """Gauss-Legendre rows to begin with (exact for products of two functions of 160 bands) and to stop at."""
 
 MOVEMENT = 5e-4
-"""The rows are doubled until no relative L2 error, whatever the number of bands, moves by more than this."""
+"""The rows are doubled until the relative L2 error moves by no more than this with any number of bands."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Sampling:
-    """What a Gauss-Legendre rule of `rows` rows found, and how much the figures moved at the last doubling."""
+    """Results of a Gauss-Legendre rule of `rows` rows; `movement`: how far the errors moved at the last doubling."""
 
     rows: int
     coefficients: Array
@@ -48,7 +48,7 @@ DirectionFunction = Callable[[Array], ArrayLike]
 
 @dataclass(frozen=True, eq=False)
 class FunctionLight(RadianceLight):
-    """`function` is called on arrays of unit directions (k, 3) and returns radiance (k, 3), or (k,) for grey.
+    """The light of a `function` that takes unit directions (k, 3) and returns radiance (k, 3), or (k,) for grey.
 
     LightError if it raises, or returns another shape, a value that is not finite, or more radiance than can be shown.
     """
@@ -115,7 +115,7 @@ class FunctionLight(RadianceLight):
 
     @cached_property
     def _sampling(self) -> _Sampling:
-        """As many points as the function's sharpness asks for, up to a limit."""
+        """Sample with as many points as the function's sharpness needs, up to a limit."""
         rows, last = FIRST_ROWS, None
         while True:
             coefficients, products = project_product(self.radiance, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
@@ -133,8 +133,8 @@ class FunctionLight(RadianceLight):
 def load_function(path: Path, function: str) -> FunctionLight:
     """The light `function` of the Python file `path`. LightError if the file or the function is missing or fails.
 
-    The file is compiled here and not through Python's cache, which takes two versions for one if they are of one size and
-    one second.
+    The file is compiled here and not through Python's cache, which takes two versions for one if they have the same size
+    and were written in the same second.
     """
     try:
         missing = not path.is_file()

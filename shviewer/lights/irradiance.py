@@ -1,8 +1,8 @@
 """The irradiance of a light: what a white Lambertian surface receives, as a light of its own.
 
 E(n) = integral of L(d) max(0, n . d) over d is a convolution, so its coefficients are A(l) c(l, m) (filters.py), and
-everything that is done with a light, the exact error included, is done with its irradiance in the same way.
-Divide by pi for the radiance of a white surface.
+whatever can be done with a light, the exact error included, can be done with its irradiance in the same way.
+Divided by pi, it is the radiance of a white surface.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ TABLE_NODES, EDGE_NODES = 2049, 513
 
 @dataclass(frozen=True, eq=False)
 class IrradianceLight(LightBase):
-    """The irradiance of `source`, whose first `bands` bands hold all of it that can be told."""
+    """The irradiance of `source`; bands beyond the first `bands` are negligible."""
 
     source: Light
     bands: int = MAP_BANDS
@@ -86,10 +86,10 @@ class IrradianceLight(LightBase):
 
 
 class MappedIrradiance(IrradianceLight):
-    """The irradiance of an image or a function: its bands are summed in a map once, and read from that."""
+    """The irradiance of an image or a function: its bands are summed into a map once, from which radiance is read."""
 
     def accuracy(self) -> float:
-        """That of the source, and what its further bands could still hold."""
+        """The accuracy of the source, and a bound of what further bands could hold."""
         kept = self.source.coefficients(self.bands)
         beyond = max(float(np.trace(self.source.products()) - (kept**2).sum()), 0.0)
         total = float(np.trace(self.products()))
@@ -105,7 +105,7 @@ class MappedIrradiance(IrradianceLight):
 
 
 class BandLimitedIrradiance(IrradianceLight):
-    """The irradiance of coefficients: a finite sum, too."""
+    """The irradiance of coefficients: a finite sum, like the light itself."""
 
     def radiance(self, directions: Array) -> Array:
         return self._synthesis.at(*angles_from_directions(directions))
@@ -152,10 +152,10 @@ def _lobe_products(lobes: tuple[Lobe, ...]) -> Array:
 
 
 def _table(lobe: Lobe) -> tuple[Array, Array]:
-    """Irradiance of a lobe of unit radiance against the angle between surface and axis: (k,) radians, (k,).
+    """Irradiance of a lobe of unit radiance against the angle between normal and axis: angles (k,) in radians, values (k,).
 
-    The clamped cosine's overlap with the profile, exact; read off linearly between nodes that crowd where the profile's edge
-    crosses the horizon, which keeps the error below 1e-6 of the largest value.
+    The clamped cosine's overlap with the profile, exact at the nodes and linear between them. Nodes crowd where the
+    profile's edge crosses the horizon, which keeps the error below 1e-6 of the largest value.
     """
     horizon, edge = np.pi / 2, min(1.5 * lobe.profile.half_angle, np.pi / 2)
     crowd = np.linspace(horizon - edge, horizon + edge, EDGE_NODES)

@@ -1,4 +1,4 @@
-"""A lat-long raster of radiance, and the same bilinear look-up that shaders/lat_long.glsl makes in float32.
+"""A lat-long raster of radiance, with the bilinear look-up that shaders/lat_long.glsl does in float32.
 
 Column u in [0, 1] is phi = pi (1 - 2u): the centre of the image looks along +x, and turning right is decreasing phi. Row
 v in [0, 1] is theta = pi v with +z on top. (OpenEXR's lat-long convention with z for its y.)
@@ -31,13 +31,13 @@ class LatLongMap:
 
     @classmethod
     def pole_to_pole(cls, rows: Callable[[Array, int], Array]) -> LatLongMap:
-        """MAP_ROWS rows of a smooth function: rows(theta (k,), n_columns) -> (k, 3, n_columns)."""
+        """The map, of MAP_ROWS rows, of a smooth function: rows(theta (k,), n_columns) -> (k, 3, n_columns)."""
         values = rows(np.linspace(0, np.pi, MAP_ROWS), 2 * (MAP_ROWS - 1)).transpose(0, 2, 1)
         return cls(np.ascontiguousarray(values, dtype=np.float32), rows_on_poles=True)
 
     @property
     def row_scale_offset(self) -> tuple[float, float]:
-        """(a, b) with row = a theta + b."""
+        """The pair (a, b) with row = a theta + b."""
         height = len(self.texels)
         return ((height - 1) / np.pi, 0.0) if self.rows_on_poles else (height / np.pi, -0.5)
 
@@ -53,7 +53,7 @@ class LatLongMap:
         return np.asarray(self._row_value(top, column) * (1 - down) + self._row_value(top + 1, column) * down)
 
     def _row_value(self, row: NDArray[np.int64], column: Array) -> Array:
-        """Linear between the texels of whole rows (k,); beyond a pole comes the same row half way round."""
+        """Values of whole rows (k,), linear between their texels; beyond a pole comes the same row half way round."""
         height, width = self.texels.shape[:2]
         pole_row = 0 if self.rows_on_poles else 1
         column = column + np.where((row < 0) | (row >= height), width / 2, 0.0)

@@ -1,4 +1,4 @@
-"""What every light can do."""
+"""The interface of every light, and the answers that most lights share."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import evaluate_rows
 from shviewer.lights.lat_long import LatLongMap
 
-if TYPE_CHECKING:  # what few lights have is loaded with those
+if TYPE_CHECKING:  # types that only some lights use are imported with those lights
     from shviewer.coefficients.reading import CoefficientFile
     from shviewer.lights.lobe import Lobe
     from shviewer.lights.suns.sun import Sun
@@ -25,7 +25,7 @@ class Light(Protocol):
 
     @property
     def name(self) -> str:
-        """What the user calls it: a built-in name, a file's stem or a function's name."""
+        """The name that the user knows: a built-in name, a file's stem or a function's name."""
 
     @property
     def description(self) -> str:
@@ -37,19 +37,19 @@ class Light(Protocol):
 
     @property
     def about(self) -> About:
-        """What is known of the image or the coefficients that it is made of."""
+        """The facts about the image or the coefficients that it is made of."""
 
     @property
     def best_method(self) -> str:
-        """How `coefficients` computes, in words: "closed form", "exact texel integrals", ..."""
+        """The method of `coefficients` in words: "closed form", "exact texel integrals", ..."""
 
     @property
     def lobes(self) -> tuple[Lobe, ...]:
-        """What it is the sum of, for the shader to evaluate; empty for any other light."""
+        """The lobes whose sum it is, for the shader to evaluate; empty for any other light."""
 
     @property
     def map(self) -> LatLongMap | None:
-        """What the GPU samples; None for a sum of lobes."""
+        """The raster that the GPU samples; None for a sum of lobes."""
 
     def radiance(self, directions: Array) -> Array:
         """Unit directions (k, 3) -> radiance (k, 3), float64."""
@@ -58,38 +58,38 @@ class Light(Protocol):
         """The radiance on rows of a lat-long grid at angles theta (rows,) from +z: (rows, 3, n_columns)."""
 
     def integrand(self, directions: Array) -> Array:
-        """What `coefficients` are integrals of: the radiance, or for an image its texels as areas, not interpolated."""
+        """The function that `coefficients` integrates: the radiance, or for an image its texels as areas, not interpolated."""
 
     def texels(self) -> Iterator[tuple[Array, Array]]:
-        """The areas of constant radiance that it is made of, in blocks: radiance (k, 3) and steradians (k,); mostly none."""
+        """The texels of an image in blocks: radiance (k, 3) and steradians (k,); nothing for other lights."""
 
     def coefficients(self, n_bands: int) -> Array:
-        """(n_bands**2, 3) by the best way this light knows."""
+        """Coefficients (n_bands**2, 3) by the best way this light knows."""
 
     def products(self) -> Array:
-        """Integrals of f_i f_j over the channels, (3, 3), by the same quadrature as `coefficients`."""
+        """Integrals of f_i f_j over the sphere for channels i and j, (3, 3), by the same quadrature as `coefficients`."""
 
     def accuracy(self) -> float:
-        """How far a relative L2 error of this light may be off for want of quadrature points; 0 where it is exact."""
+        """How far a relative L2 error of this light may be off for want of quadrature points; 0 if exact."""
 
     def landmarks(self) -> Array:
         """Directions (j, 3) of features that a grid might step over, such as the axis of a sun."""
 
     @property
     def source(self) -> Light:
-        """The light that it is the irradiance of; itself, if it is radiance."""
+        """The light whose irradiance it is; itself, if it is radiance."""
 
     def from_source(self, coefficients: Array) -> Array:
         """Coefficients (n**2, 3) of the source -> those of this light."""
 
     def irradiance(self) -> Light:
-        """The light that is its irradiance: one more at each call, or itself if it is irradiance."""
+        """Its irradiance as a light, a new one at each call; itself, if it is irradiance."""
 
     def split_suns(self) -> Split:
-        """What is left without its suns, and the suns. LightError, one line, if it has none."""
+        """The light without its suns, and the suns. LightError, one line, if it has none."""
 
     def __hash__(self) -> int:
-        """By identity: what is computed for a light is remembered."""
+        """A hash by identity, since results for a light are remembered."""
 
 
 class Split(NamedTuple):
@@ -97,12 +97,12 @@ class Split(NamedTuple):
 
     rest: Light
     suns: tuple[Sun, ...]
-    """The greatest flux first."""
+    """The suns, the greatest flux first."""
 
 
 @dataclass(frozen=True)
 class About:
-    """What there is to say of an image or of coefficients; None for what another light has not."""
+    """Facts about an image or coefficients; None for those that a light does not have."""
 
     encoding: str | None = None
     """The format of an image's file, in words."""
@@ -113,15 +113,15 @@ class About:
     n_bands: int | None = None
     """How many bands coefficients have."""
     quantity: str | None = None
-    """What they are of, as they were given: "radiance" or "irradiance"."""
+    """The quantity of the coefficients as they were given: "radiance" or "irradiance"."""
     convention: str | None = None
-    """The convention they were given in, a text without the quantity."""
+    """The convention in which they were given, a text without the quantity."""
     file: CoefficientFile | None = None
-    """What they were read from."""
+    """The file they were read from."""
 
 
 class LightBase(ABC):
-    """What a light answers unless it knows better."""
+    """The answers of a light that has no better ones."""
 
     @property
     def about(self) -> About:

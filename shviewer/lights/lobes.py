@@ -17,10 +17,10 @@ from shviewer.lights.radiance import RadianceLight
 from shviewer.limits import check_brightness
 
 EDGE = 1e-9
-"""How far from an edge, relative to its angle, a landmark lies."""
+"""The distance of a landmark from an edge, relative to the edge's angle."""
 
 MAX_LOBES = 64
-"""As many as the uniform block of shaders/lobes.glsl holds."""
+"""The most lobes: as many as the uniform block of shaders/lobes.glsl holds."""
 
 
 def _edge(lobe: Lobe) -> Array:
@@ -85,7 +85,7 @@ class LobeLight(RadianceLight):
         return LobeIrradiance(self)
 
     def split_suns(self) -> Split:
-        """The discs to which the rule for images applies; they leave exactly."""
+        """Split off the discs that are suns by the rule for images; no rest of them is left."""
         from shviewer.lights.suns.compact_sources import MOST, suns_or_refusal
         from shviewer.lights.suns.sun import Sun
 
@@ -104,7 +104,7 @@ class LobeLight(RadianceLight):
         return Split(rest, suns_or_refusal(self.name, suns, why))
 
     def _disc_refusal(self, disc: Lobe) -> str:
-        """Why one of the discs is no sun; "" if it is. As everywhere, of the mean of the channels."""
+        """Why one of the discs is no sun; "" if it is. As everywhere, the mean of the channels counts."""
         from shviewer.lights.suns.compact_sources import refusal
 
         radiance, solid_angle = float(disc.radiance.mean()), float(disc.profile.zonal(1)[0])

@@ -1,4 +1,4 @@
-"""What the lights share that are radiance, and not the irradiance of another one."""
+"""The base of lights that are radiance, not the irradiance of another light."""
 
 from __future__ import annotations
 

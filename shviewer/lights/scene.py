@@ -50,7 +50,7 @@ def read_scene(path: Path) -> LobeLight:
         raise LightError(f"{path}: {error.strerror or error}; check the path") from error
     except UnicodeDecodeError as error:
         raise LightError(f"{path}: byte {error.start} is not UTF-8 text; a scene is a TOML file") from error
-    except (ValueError, RecursionError) as error:  # tomllib lets those of int() and of deep nesting out, too
+    except (ValueError, RecursionError) as error:  # tomllib lets errors of int() and of deep nesting through
         raise LightError(f"{path}: not valid TOML: {error}") from error
     return _Reader(path).light(document)
 

@@ -1,1 +1,1 @@
-"""What is seen: state and keys, pictures as plain arrays, and a thin shell of OpenGL and GLFW."""
+"""The viewer: state and keys, pictures as plain arrays, and a thin shell of OpenGL and GLFW."""

@@ -1,4 +1,4 @@
-"""What can be done to a state: functions from one state to the next. keys.py says which key does which."""
+"""Actions: functions from one state to the next. keys.py binds them to keys."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ Action = Callable[[State], State]
 
 
 class Command(Enum):
-    """What a key asks for that is no other state: the session does it."""
+    """A request that a key makes and no new state can answer; the session carries it out."""
 
     SAVE = auto()
     RELOAD = auto()
     FIT = auto()
-    """As many bands as the tolerance asks for, which depends on the light."""
+    """Use as many bands as the tolerance needs, which depends on the light."""
     FACE_MARK = auto()
     """Look at the next mark, whose place depends on the light."""
     FULL_SCREEN = auto()
@@ -36,7 +36,7 @@ EXPOSURE_STEP = 0.5
 MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
 
 SWEEP_BANDS = 10
-"""Where a sweep ends that starts with one band in use."""
+"""The last band count of a sweep that starts with one band in use."""
 
 
 def more_bands(count: int) -> Action:
@@ -44,7 +44,7 @@ def more_bands(count: int) -> Action:
 
 
 def with_bands(state: State, n_bands: int) -> State:
-    """So many bands, as far as they can be shown; a basis function above them is left."""
+    """Show `n_bands` bands, within what can be shown; a basis function above them is given up."""
     most = min(state.recipe.compare.n_bands, MAX_BANDS) if state.recipe.compare else MAX_BANDS
     if state.recipe.compare and n_bands > most:
         state = changed(state, message=state.recipe.compare.extent)
@@ -54,7 +54,7 @@ def with_bands(state: State, n_bands: int) -> State:
 
 
 def toggle_band(state: State, band: int) -> State:
-    """Mute a band or take it back; one that is not in use only says so."""
+    """Mute a band or unmute it; for a band that is not in use, only say so."""
     return changed(state, muted=state.recipe.muted ^ {band}) if band < state.recipe.n_bands else not_in_use(state, band)
 
 
@@ -63,7 +63,7 @@ def not_in_use(state: State, band: int) -> State:
 
 
 def solo_band(state: State, band: int) -> State:
-    """Only this band; once more: all of them."""
+    """Mute all bands but this one; a second time, unmute all."""
     others = frozenset(range(MAX_BANDS)) - {band}
     if band >= state.recipe.n_bands:
         return not_in_use(state, band)
@@ -71,7 +71,7 @@ def solo_band(state: State, band: int) -> State:
 
 
 def move_cursor(step: int) -> Action:
-    """Along the band bars; the first press only shows where the cursor is."""
+    """Move the cursor along the band bars; the first press only shows where it is."""
 
     def action(state: State) -> State:
         moved = (state.view.cursor + step) % state.recipe.n_bands if state.view.cursor_visible else state.view.cursor
@@ -85,7 +85,7 @@ def toggle_cursor(state: State) -> State:
 
 
 def next_light(step: int) -> Action:
-    """Through the lights, round again after the last."""
+    """Show the light `step` places further in the list, which is a ring."""
 
     def action(state: State) -> State:
         at = state.lights.index(state.recipe.light) + step
@@ -95,19 +95,19 @@ def next_light(step: int) -> Action:
 
 
 def next_layout(state: State) -> State:
-    """Through all layouts, for this image and those opened afterwards."""
+    """Read images in the next layout: this one and those opened afterwards."""
     last = state.view.layout_tried or state.recipe.reading.layout
     layout = _after(last, LAYOUT_CHOICES)
     return changed(state, reading=replace(state.recipe.reading, layout=layout), layout_tried=layout)
 
 
 def toggle_sanitizing(state: State) -> State:
-    """Of this image and those opened afterwards."""
+    """Repair bad values or leave them: in this image and those opened afterwards."""
     return changed(state, reading=replace(state.recipe.reading, sanitize=not state.recipe.reading.sanitize))
 
 
 def next_window(state: State) -> State:
-    """Through all windows; deringing, which takes up to MAX_DIRECT_BANDS bands, is left out above them."""
+    """Go to the next window; deringing, which takes at most MAX_DIRECT_BANDS bands, is left out above them."""
     names = WINDOWS if state.recipe.n_bands <= MAX_DIRECT_BANDS else WINDOWS[:-1]
     at = names.index(state.recipe.window) if state.recipe.window in names else len(names) - 1
     return changed(state, window=names[(at + 1) % len(names)])
@@ -171,7 +171,7 @@ def toggle_lobe_view(state: State) -> State:
 
 
 def step_basis(step: int) -> Action:
-    """Through the functions Y(l, m) of the bands in use, in the order of their coefficients, and none of them."""
+    """Show the next function Y(l, m) of the bands in use, in the sequence of their coefficients; beyond the ends, none."""
 
     def action(state: State) -> State:
         count = state.recipe.n_bands**2
@@ -183,7 +183,7 @@ def step_basis(step: int) -> Action:
 
 
 def toggle_sweep(state: State) -> State:
-    """Go through the band counts from 1 to the present one; where that is 1, to those that the bars show. Or stop."""
+    """Start a sweep from 1 band to the present count, or to SWEEP_BANDS where that is 1; or stop the sweep that plays."""
     if state.view.sweep_to is not None:
         return changed(state, sweep_to=None)
     to = state.recipe.n_bands if state.recipe.n_bands > 1 else SWEEP_BANDS
@@ -200,7 +200,7 @@ def step_sweep(state: State) -> State:
 
 
 def reset(state: State) -> State:
-    """Everything but the light, how it is read and what is asked of its numbers as it was at the start."""
+    """Go back to the start in everything but the light, how it is read and what is asked of its numbers."""
     last, view = state.recipe, state.view
     recipe = Recipe(light=last.light, reading=last.reading, compare=last.compare, tolerance=last.tolerance)
     return changed(state, recipe=recipe, view=View(evaluate=view.evaluate, layout_tried=view.layout_tried))

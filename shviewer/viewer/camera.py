@@ -18,7 +18,7 @@ Quaternion = tuple[float, float, float, float]
 
 IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
 VIEW_AXES: Quaternion = (0.5, 0.5, 0.5, 0.5)
-"""Takes the view's x (right), y (up), z (to the viewer) to the world's y, z, x: a camera on +x with +z up."""
+"""The rotation from the view's x (right), y (up), z (to the viewer) to the world's y, z, x: a camera on +x with +z up."""
 
 
 def about_axis(axis: tuple[float, float, float], degrees: float) -> Quaternion:
@@ -30,7 +30,7 @@ def about_axis(axis: tuple[float, float, float], degrees: float) -> Quaternion:
 
 
 def compose(second: Quaternion, first: Quaternion) -> Quaternion:
-    """First `first`, then `second`."""
+    """The rotation by `first` and then by `second`."""
     return _normalised(quaternion.cross(np.array(second), np.array(first)))
 
 
@@ -46,14 +46,14 @@ def towards(azimuth_degrees: float, elevation_degrees: float) -> Quaternion:
 
 
 def facing(direction: Array) -> tuple[float, float]:
-    """Azimuth in [0, 360) and elevation, degrees, of a camera that looks at a direction (3,) of the world from outside."""
+    """Azimuth in [0, 360) and elevation, in degrees, of the camera that has the world direction (3,) in front."""
     x, y, z = (float(part) for part in direction)
     return float(np.degrees(np.arctan2(y, x))) % 360, float(np.degrees(np.arctan2(z, np.hypot(x, y))))
 
 
 @lru_cache(maxsize=64)
 def world_from_view(azimuth_degrees: float, elevation_degrees: float) -> Array:
-    """A camera standing in that direction and looking at the centre; its columns are right, up, and to the viewer."""
+    """The 3 x 3 matrix of a camera that stands in that direction and looks at the centre: columns right, up, to the viewer."""
     axes = matrix(compose(towards(azimuth_degrees, elevation_degrees), VIEW_AXES))
     axes.flags.writeable = False
     return axes
@@ -61,7 +61,7 @@ def world_from_view(azimuth_degrees: float, elevation_degrees: float) -> Array:
 
 @lru_cache(maxsize=64)
 def light_from_world(light_rotation: Quaternion) -> Array:
-    """What turns a world direction into the frame in which the light was defined: the inverse of its rotation."""
+    """The 3 x 3 matrix from world directions to the frame in which the light was defined: its rotation inverted."""
     turn = matrix(light_rotation).T
     turn.flags.writeable = False
     return turn

@@ -12,7 +12,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.resources import resource_folder
 
 DIVERGING, SEQUENTIAL = "berlin", "inferno"
-"""Both have black for no error, as radiance has; both keep their order to every kind of colour vision."""
+"""Both have black for no error, as radiance has; both look ordered to every kind of colour vision."""
 
 
 def map_of(error: str) -> str:
@@ -22,7 +22,7 @@ def map_of(error: str) -> str:
 
 @lru_cache
 def table(name: str) -> NDArray[np.uint8]:
-    """sRGB, (256, 3)."""
+    """The colours of a map: sRGB, (256, 3) uint8."""
     with Image.open(resource_folder("assets") / "colour_maps" / f"{name}.png") as image:
         colours: NDArray[np.uint8] = np.array(image.convert("RGB"), dtype=np.uint8)[0]
     colours.flags.writeable = False
@@ -30,6 +30,6 @@ def table(name: str) -> NDArray[np.uint8]:
 
 
 def linear(srgb: NDArray[np.uint8]) -> Array:
-    """Linear RGB of sRGB bytes: IEC 61966-2-1 backwards."""
+    """Linear RGB of sRGB bytes: the inverse of the sRGB curve, IEC 61966-2-1."""
     value = srgb / 255.0
     return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)

@@ -12,7 +12,7 @@ DESIGN_WIDTH, DESIGN_HEIGHT = 1280, 640
 
 
 class Box(NamedTuple):
-    """left, top, right, bottom; the last two lie outside."""
+    """A rectangle of pixels: columns left to right and rows top to bottom, without the last ones."""
 
     left: float
     top: float
@@ -37,7 +37,7 @@ class Sphere(NamedTuple):
     caption_y: float = 0.0
 
     def touches(self, box: Box) -> bool:
-        """Whether any of the sphere that is seen lies in the box."""
+        """Whether any visible part of the sphere lies in the box."""
         left, right = max(box.left, self.clip.left), min(box.right, self.clip.right)
         top, bottom = max(box.top, self.clip.top), min(box.bottom, self.clip.bottom)
         if left >= right or top >= bottom:
@@ -48,31 +48,31 @@ class Sphere(NamedTuple):
 
     @property
     def visible_area(self) -> float:
-        """Pixels of its square within its clip."""
+        """The area in pixels of the sphere's square within its clip."""
         wide = min(self.x + self.radius, self.clip.right) - max(self.x - self.radius, self.clip.left)
         high = min(self.y + self.radius, self.clip.bottom) - max(self.y - self.radius, self.clip.top)
         return max(wide, 0.0) * max(high, 0.0)
 
     def position(self, x: float, y: float) -> tuple[float, float] | None:
-        """Where a pixel lies in radii right and up from the centre; None outside the sphere or where it is cut."""
+        """The place of a pixel in radii, right and up from the centre; None outside the sphere or where it is cut."""
         right, up = (x - self.x) / self.radius, (self.y - y) / self.radius
         return (right, up) if self.clip.contains(x, y) and right * right + up * up < 1 else None
 
 
 @dataclass(frozen=True)
 class Composition:
-    """The original, the reconstruction and perhaps their difference, captions above, figures under a hairline."""
+    """The layout of a frame: original, reconstruction and perhaps the error, captions above, figures under a hairline."""
 
     width: int
     height: int
     scale: float
-    """Size of type and gaps; 1 at 1280 x 640."""
+    """Pixels per unit of type and gaps; 1 at 1280 x 640."""
     spheres: tuple[Sphere, ...]
     caption_y: float
-    """Of the corners, and of the captions of the first row."""
+    """The y of the corners' words and of the captions of the first row."""
     hairline_y: float
     colour_bar: Box | None = None
-    """Room for the colours of the error and their numbers, under its sphere."""
+    """Room for the colour bar and its numbers, under the error's sphere."""
 
     def px(self, length: float) -> float:
         """A length of the 1280 x 640 design in pixels of this frame."""

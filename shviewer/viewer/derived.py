@@ -1,4 +1,4 @@
-"""What is drawn of a projection beside its coefficients, each computed once: map, surfaces, scale of the error, exposure."""
+"""Things derived from a projection for drawing, each computed once: map, surfaces, scale of the error, exposure."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ WHITE_PERCENTILE = 0.99
 """Automatic exposure puts this share of the sphere below WHITE_LEVEL."""
 
 WHITE_LEVEL = 0.8
-"""What is shown of it, linear: the brightest hundredth still stands out above it."""
+"""The linear level at which that percentile is shown: the brightest hundredth still stands out above it."""
 
 SURFACE_RADIUS = 222.0
-"""Pixels at zoom 1 for which surfaces are made fine enough: those of the 1280 x 640 design."""
+"""The radius in pixels, at zoom 1, for which surfaces are fine enough: that of the 1280 x 640 design."""
 
 
 def exposure_stops(view: View, light: Light) -> float:
@@ -46,7 +46,7 @@ def exposure_stops(view: View, light: Light) -> float:
 
 
 def surfaces(view: View, light: Light, projection: Projection, shown: Shown) -> tuple[Surface, ...]:
-    """Of the light, its reconstruction or a basis function in place of it, and their difference."""
+    """The surfaces of the light, of its reconstruction (or a basis function in its place), and perhaps of the error."""
     radius = SURFACE_RADIUS * view.zoom
     original, reconstruction, error = _compared_surfaces(
         light, projection, shown, max(LIGHT_ROWS, rows_for(shown.n_bands, radius))
@@ -61,7 +61,7 @@ def surfaces(view: View, light: Light, projection: Projection, shown: Shown) -> 
 def reconstruction_map(
     light: Light, projection: Projection, shown: Shown, size: tuple[int, int]
 ) -> NDArray[np.float32]:
-    """Of rows and columns `size`: spline coefficients (rows, columns, 4)."""
+    """The map of the reconstruction with (rows, columns) `size`: spline coefficients (rows, columns, 4)."""
     return Synthesis(reconstruct(light, projection, shown)[0]).spline_map(*size)
 
 
@@ -86,7 +86,7 @@ def error_scale(
     shown: Shown,
     kind: str,
 ) -> ErrorScale:
-    """From the grid on which the figures are found; the largest relative error, which is no figure, is climbed to there.
+    """The scale of the error, from the grid of the figures. The largest relative error is no figure: it is searched for here.
 
     The floor of the relative error is the light's mean.
     """

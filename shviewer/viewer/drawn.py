@@ -1,4 +1,4 @@
-"""How the reconstruction is drawn: decided once, by `prepare`, and carried to everybody who has to know."""
+"""The ways to draw the reconstruction. `prepare` decides once; its choice is passed to the renderer and the overlay."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from shviewer.harmonics.basis import Array
 from shviewer.viewer.surface import Surface
 
 MAP_COLUMNS = (512, 1024, 2048)
-"""Widths of the map."""
+"""Widths that a map can have."""
 
 MAP_ERROR = 0.25 / 255
-"""What its splines may be off, in units of white: half of what could be seen. The widest map is taken where none is so good."""
+"""How far its splines may be off, in units of white: half of what could be seen. Where no width is enough, the widest."""
 
 SPLINE_ERROR = 0.012
-"""A wave of w radians a column is off by this times w^3 at most, of its height (Synthesis.spline_map)."""
+"""The spline of a wave of w radians a column is off by at most this times w^3 of its height (Synthesis.spline_map)."""
 
 LONGEST_STEP = 0.7
-"""Radians a column of the shortest wave: beyond, that is no bound."""
+"""Radians a column of the shortest wave for which that bound holds."""
 
 
 @dataclass(frozen=True, eq=False)
 class DirectSum:
-    """Each pixel sums the bands: coefficients (n**2, 3), of MAX_DIRECT_BANDS bands at most."""
+    """Each pixel sums the bands: coefficients (n**2, 3), of at most MAX_DIRECT_BANDS bands."""
 
     coefficients: Array
 
@@ -40,7 +40,7 @@ class SplineMap:
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """In place of the spheres: the light, its reconstruction or one basis function, and the error, if it is shown."""
+    """Surfaces in place of the spheres: the light, its reconstruction or one basis function, and perhaps the error."""
 
     shown: tuple[Surface, ...]
 

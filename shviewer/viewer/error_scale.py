@@ -1,8 +1,8 @@
 """The error as one number per direction, and the range of its colours. shaders/error.glsl has the same formula.
 
-The error of a direction is that of the channel where it is largest in magnitude, so that its largest magnitude over the
-sphere is the figure "largest error". Relative to the original, it is measured against no less than a floor: black has no
-relative error.
+The error in a direction is that of the channel with the largest error in magnitude, so that its largest magnitude over the
+sphere is the figure "largest error". The relative error is divided by the original, but by no less than a floor: black has
+no relative error.
 """
 
 from __future__ import annotations
@@ -14,33 +14,33 @@ import numpy as np
 from shviewer.harmonics.basis import Array
 
 QUIET, SPIKE = 0.95, 2.5
-"""The colours end at SPIKE times what this share of the sphere stays below: beyond, an error leaves no colours to the rest."""
+"""The colours end at SPIKE times the error that this share of the sphere stays below: a spike must not take all colours."""
 
 NOISE = 1e-6
-"""Of the light's peak: smaller errors are rounding, which a range of its own would blow up to colours."""
+"""A share of the light's peak: smaller errors are rounding, and a range fitted to them would show rounding as colours."""
 
 NOISE_SHARE = 100.0
-"""The colours end no nearer to noise than this many times it, where it cannot be seen."""
+"""The colours end at no less than this many times the noise, so that the noise cannot be seen."""
 
 MOST_RELATIVE = 1.0
-"""Colours of the relative error end at 100 % or before."""
+"""The largest relative error with a colour of its own: 100 %."""
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorScale:
-    """How the error of one picture is shown. Radiance, or for the relative error shares of the original."""
+    """The scale of the error in one picture: in radiance, or for the relative error in shares of the original."""
 
     kind: str
     floor: float
-    """The radiance that a darker original counts as in the relative error."""
+    """The least radiance that the relative error divides by: a darker original counts as this."""
     largest: float
-    """Where its magnitude is largest; negative only if signed."""
+    """The error of largest magnitude; negative only if signed."""
     direction: Array
-    """There, (3,), in the frame of the light."""
+    """The direction (3,) of the largest error, in the frame of the light."""
     end: float
-    """Where the colours end."""
+    """The error at which the colours end."""
     noise: float
-    """Errors below this are what float32 makes of none."""
+    """Errors below this are rounding of float32."""
 
     @property
     def worth_showing(self) -> bool:
@@ -55,7 +55,7 @@ class ErrorScale:
 def error_values(kind: str, original: Array, reconstruction: Array, floor: float) -> Array:
     """Radiance (..., 3) twice -> the error (...), by one of the ERRORS but "off". Only a signed one may be negative.
 
-    floor: radiance; of the relative error alone.
+    floor: a radiance, used by the relative error alone.
     """
     error = reconstruction - original
     if kind == "relative":
@@ -65,10 +65,10 @@ def error_values(kind: str, original: Array, reconstruction: Array, floor: float
 
 
 def automatic_range(kind: str, errors: Array, shares: Array, largest: float, noise: float = 0.0) -> float:
-    """Where the colours end: at the largest error, unless it is a spike; and far enough above noise not to show that.
+    """The end of the colours: the largest error, unless it is a spike, and far enough above the noise to hide it.
 
-    errors: on a grid, (k,); shares: of the sphere that each stands for, (k,), sum 1; largest: what the metrics found, and
-    noise: both in the unit of the errors. Never 0, so that it can be divided by.
+    errors: on a grid, (k,); shares: the share of the sphere that each stands for, (k,), sum 1; largest: the largest error
+    that the metrics found; noise: as in ErrorScale. All in the same unit. The end is never 0, so that it can be divided by.
     """
     magnitude = np.abs(errors)
     order = np.argsort(magnitude)

@@ -1,6 +1,6 @@
 """The one table of keys: it drives the program and makes the help sheet, `--list-keys` and the key list of the guide.
 
-Keys are names ("PageUp", "Shift+3"), so nothing here needs a window; viewer/window.py turns what GLFW reports into these.
+Keys are names ("PageUp", "Shift+3"), so nothing here needs a window; desktop/glfw_window.py gives GLFW's keys these names.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from shviewer.viewer.view import CAMERA_HOME
 
 
 class Binding(NamedTuple):
-    """One row of the key table: what stands for it, what each of its keys does, and its present value."""
+    """One row of the key table: its label, what each of its keys does, and its present value."""
 
     label: str
     group: str

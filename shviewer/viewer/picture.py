@@ -27,7 +27,7 @@ from shviewer.viewer.tone import steepest
 
 
 class Source(NamedTuple):
-    """What the shader evaluates a light by: its lobes, or a map."""
+    """The form in which the shader evaluates a light: its lobes, or a map."""
 
     lobes: tuple[Lobe, ...]
     map: LatLongMap | None
@@ -35,49 +35,49 @@ class Source(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What the GPU and the overlay need for one state."""
+    """Everything that the GPU and the overlay need for one state."""
 
     state: State
     subject: Subject
-    """What is shown on the left, what is projected, and the suns that were split off."""
+    """The light shown on the left, the light that is projected, and the suns that were split off."""
     original: Source
     compared: Source
-    """What the error is of: the original, or what is left of it without its suns."""
+    """The light that the error compares with: the original, or what is left of it without its suns."""
     suns: tuple[Lobe, ...]
     """Drawn on top of the reconstruction."""
     coefficients: Array
-    """Shown, (n_bands**2, 3): muted ones are zero."""
+    """The coefficients shown, (n_bands**2, 3): those of muted bands are zero."""
     drawn: Drawn
     """How the reconstruction is drawn."""
     world_from_view: Array
     light_from_world: Array
     exposure_stops: float
     error_scale: ErrorScale | None
-    """Of the error, if it is shown."""
+    """The scale of the error, if the error is shown."""
     projection: Projection
     figures: Figures
     needs: Needs
     needs_unsplit: Needs | None
-    """What the light would need with its suns; None if none were split off."""
+    """The bands that the light would need with its suns; None if none were split off."""
     verdict: str = ""
-    """How well coefficients that are compared agree with the light's own, and if they do not, what is wrong with them."""
+    """How well the compared coefficients agree with the light's own, and if they do not, what is wrong with them."""
 
     @property
     def light(self) -> Light:
-        """What the figures are of."""
+        """The light that the figures are computed for."""
         return self.subject.light
 
     def rest_at(self, directions: Array) -> Array:
-        """What the coefficients give in unit directions of the light (k, 3), without suns: (k, 3) float64."""
+        """Radiance of the coefficients, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
         return np.asarray(evaluate_basis(directions, self.state.recipe.n_bands) @ self.coefficients)
 
     def suns_at(self, directions: Array) -> Array:
-        """The suns that are drawn on top of it, (k, 3)."""
+        """Radiance of the suns that are drawn on top of it, (k, 3)."""
         return LobeLight(self.suns).radiance(directions) if self.suns else np.zeros((len(directions), 3))
 
 
 def prepare(state: State, *, by_map: bool = False) -> Picture:
-    """Everything to be drawn and said. LightError if the light cannot be read, UsageError for a state out of range.
+    """Make the picture of a state. LightError if the light cannot be read, UsageError for a state out of range.
 
     by_map: draw the reconstruction from a map of it, although it could be summed per pixel.
     """
@@ -118,7 +118,7 @@ def prepare(state: State, *, by_map: bool = False) -> Picture:
 
 
 def _height(figures: Figures, scale: ErrorScale | None, exposure: float) -> float:
-    """The reconstruction's largest magnitude, at most, over what is a full step of colour: white, or the end of the error's."""
+    """A bound of the reconstruction's magnitude in units of the full range of colours: white, or the end of the error's."""
     largest = figures.extremes.peak + figures.extremes.max_error
     if scale is None:
         return largest * exposure

@@ -27,7 +27,7 @@ from shviewer.viewer.saving.stamp import metadata
 def save_picture(
     picture: Picture, composition: Composition, out: Path, *, overlay: bool = True, timing: bool = False
 ) -> NDArray[np.uint8] | None:
-    """Draw without a window and write `out`: .exr the linear radiance, else a PNG, whose pixels are returned.
+    """Draw without a window and write `out`: linear radiance as .exr (returns None), else a PNG (returns its pixels).
 
     GraphicsError, ShaderError or OutputError if that is impossible; then `out` is what it was.
     """
@@ -43,7 +43,7 @@ def save_picture(
 
 @contextmanager
 def headless_renderer() -> Iterator[Renderer]:
-    """A renderer on a context without display. GraphicsError says what was found and what to install."""
+    """A renderer on a context without a display. GraphicsError says what was found and what to install."""
     context = _headless_context()
     try:
         renderer = Renderer(context)
@@ -86,15 +86,15 @@ def render_rgb(
 
 
 def read_rgb(renderer: Renderer, composition: Composition, layers: Sequence[Layer] = ()) -> NDArray[np.uint8]:
-    """What the renderer shows, drawn into a framebuffer of its own and read back: (height, width, 3), top row first."""
+    """Draw the renderer's picture into a framebuffer and read it back: (height, width, 3), top row first."""
     data = np.frombuffer(_read(renderer, composition, "f1", layers), dtype=np.uint8)
     return data.reshape(_shape(composition))[::-1, :, :3].copy()
 
 
 def render_linear(renderer: Renderer, picture: Picture, composition: Composition) -> NDArray[np.float32]:
-    """Scene-linear radiance of the spheres, of the third one its error: (height, width, 3), top row first.
+    """Scene-linear radiance of the spheres, on the third one the error: (height, width, 3), top row first.
 
-    Negative where it is, 0 around them.
+    Negative radiance stays negative; around the spheres it is 0.
     """
     renderer.show(picture)
     data = np.frombuffer(_read(renderer, composition, "f4"), dtype=np.float32)
@@ -106,7 +106,7 @@ def _shape(composition: Composition) -> tuple[int, int, int]:
 
 
 def _read(renderer: Renderer, composition: Composition, dtype: str, layers: Sequence[Layer] = ()) -> bytes:
-    """RGBA, bottom row first: the picture for "f1", its linear radiance for "f4"."""
+    """RGBA bytes, bottom row first: the picture for dtype "f1", its linear radiance for "f4"."""
     with offscreen(renderer, composition, dtype) as target:
         renderer.draw(target, composition, layers, linear=dtype == "f4")
         return target.read(components=4, dtype=dtype)

@@ -1,4 +1,4 @@
-"""Everything a frame depends on, and what is said of it. What can be done to it is in actions.py."""
+"""The state: everything a frame depends on, and its description in words. actions.py has the steps between states."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ START, FRONT = Recipe(), View()
 
 @dataclass(frozen=True)
 class State:
-    """Which numbers, how they are seen, and the lights that Left and Right go through. Equal ones give equal pixels."""
+    """A recipe, a view, and the lights that Left and Right go through. Equal states give equal pixels."""
 
     recipe: Recipe = START
     view: View = FRONT
@@ -29,7 +29,7 @@ class State:
 
     @property
     def bands_ahead(self) -> int:
-        """Those in use, or during a sweep those it ends with: what bars and axes have to have room for."""
+        """The bands that bars and axes need room for: those in use, or during a sweep those at its end."""
         return max(self.recipe.n_bands, self.view.sweep_to or 0)
 
     def check(self, size: tuple[int, int] = (MIN_SIDE, MIN_SIDE)) -> None:
@@ -46,7 +46,7 @@ class State:
 
 
 def changed(state: State, **values: Any) -> State:
-    """The state with other values of fields of its recipe or its view, by their names. TypeError for a name of neither."""
+    """The state with other values for fields of its recipe or its view. TypeError for a name that neither has."""
     recipe = {name: values.pop(name) for name in IN_RECIPE & values.keys()}
     view = {name: values.pop(name) for name in IN_VIEW & values.keys()}
     if recipe:
@@ -57,7 +57,7 @@ def changed(state: State, **values: Any) -> State:
 
 
 def state_of(*lights: str | Light, **values: Any) -> State:
-    """The state at the start, of the first of these lights unless `light` is another, with other values as in `changed`."""
+    """The state at the start with these lights, showing `light` or else the first; other values as in `changed`."""
     lights = lights or (values.get("light", Recipe.light),)
     return changed(State(lights=lights), **{"light": lights[0], **values})
 

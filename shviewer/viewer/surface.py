@@ -1,4 +1,4 @@
-"""What the lobe view draws: values on the sphere that become radii, in one scale where they are to be compared."""
+"""The surfaces of the lobe view: values on the sphere become radii, in one scale where they are compared."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from shviewer.lights.light import Light
 Floats = NDArray[np.float32]
 
 FEWEST_ROWS, MOST_ROWS = 129, 1025
-"""Of a grid: 2^k + 1, from pole to pole, with 2^(k+1) columns."""
+"""Limits for the rows of a grid: 2^k + 1 from pole to pole, with 2^(k+1) columns."""
 
 LIGHT_ROWS = 513
-"""For what has no bands: cells of 0.35 degrees, so that a sun does not fall between them."""
+"""Rows for a light that has no bands: cells of 0.35 degrees, so that no sun falls between the points."""
 
 TIP_PIXELS = 0.25
-"""By how much the tip of the finest lobe may be cut off between two points of a grid."""
+"""How much may be cut off the tip of the finest lobe between two points of a grid, in pixels."""
 
 ASIDE = 1e-7
-"""Radians by which rows are off, so that rounding does not decide point by point on which side of an edge they are."""
+"""Radians by which rows are shifted, so that rounding does not decide point by point on which side of an edge they are."""
 
 SPIKE_SHARE, SPIKE_FACTOR = 0.99, 4.0
 """Radii end at SPIKE_FACTOR times the magnitude below which this share of the sphere stays."""
@@ -42,22 +42,22 @@ class Surface:
 
     values: Floats
     clipped: bool
-    """Whether anything longer was cut off at radius 1."""
+    """Whether larger magnitudes were cut off at radius 1."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """The magnitude that has radius 1; `spike` if there are larger ones among what it was chosen for."""
+    """The magnitude that gets radius 1; `spike` if some of the values it was chosen for are larger."""
 
     magnitude: float
     spike: bool = False
 
 
 def rows_for(n_bands: int, radius: float) -> int:
-    """Rows of a grid on which n bands, drawn with a radius in pixels, are smooth to TIP_PIXELS, as far as MOST_ROWS goes.
+    """Rows of a grid on which n bands, drawn with a radius in pixels, are smooth to TIP_PIXELS; at most MOST_ROWS.
 
-    A lobe of degree l = n - 1 has at its tip a second derivative of at most l^2 times its length; a chord of an angle h
-    cuts off h^2/8 of that.
+    A lobe of degree l = n - 1 has at its tip a second derivative of at most l^2 times its length; a chord over an angle h
+    cuts off h^2/8 times that.
     """
     intervals = float(np.pi) * (n_bands - 1) * sqrt(radius / (8 * TIP_PIXELS))
     return max(FEWEST_ROWS, min(int(2 ** ceil(log2(max(intervals, 1.0)))) + 1, MOST_ROWS))
@@ -94,10 +94,10 @@ def sample_light(light: Light, rows: int) -> Floats:
 
 
 def common_scale(*compared: Floats) -> Scale:
-    """For an original and its reconstruction: the largest magnitude of all.
+    """The scale for an original and its reconstruction: the largest magnitude of all.
 
-    But where that is more than SPIKE_FACTOR times what SPIKE_SHARE of the sphere stays below, in whichever of them this is
-    largest, a sun would shrink everything else to nothing: then radii end at that bound.
+    A sun would shrink everything else to nothing. So radii end at SPIKE_FACTOR times the magnitude that SPIKE_SHARE of the
+    sphere stays below, taken from the one where that is largest, if some magnitude is larger.
     """
     peak = max(float(np.abs(values).max()) for values in compared)
     bound = SPIKE_FACTOR * max(_magnitude_below(SPIKE_SHARE, values) for values in compared)
@@ -105,7 +105,7 @@ def common_scale(*compared: Floats) -> Scale:
 
 
 def surface(values: Floats, scale: Scale) -> Surface:
-    """In units of the scale, and cut at 1."""
+    """The surface of values in units of the scale, cut off at 1."""
     if scale.magnitude <= 0:
         return Surface(np.zeros_like(values), False)
     scaled = values / np.float32(scale.magnitude)
@@ -115,7 +115,7 @@ def surface(values: Floats, scale: Scale) -> Surface:
 
 @lru_cache(maxsize=8)
 def basis_surface(l: int, m: int, rows: int) -> Surface:
-    """Y(l, m), its largest magnitude being the radius 1."""
+    """The surface of Y(l, m), its largest magnitude being the radius 1."""
     values = sample_basis(l, m, rows)
     return surface(values, Scale(float(np.abs(values).max())))
 
@@ -127,7 +127,7 @@ def _synthesise(coefficients: Array, rows: int) -> Floats:
 
 
 def _raise_landmarks(values: Floats, light: Light) -> None:
-    """Let what is smaller than the grid's cells, such as a sun, reach one cell far: a point that stands alone has no width."""
+    """Widen features smaller than a grid cell, such as a sun, in place: a point that stands alone has no width."""
     cell = np.pi / (len(values) - 1)
     theta, phi = np.linspace(0, np.pi, len(values)), column_azimuths(values.shape[1])
     places = light.landmarks()

@@ -1,4 +1,4 @@
-"""Tone curves: what becomes of an exposed radiance before sRGB. shaders/display.glsl has the same formulas.
+"""Tone curves: they map exposed radiance to what is shown, before sRGB. shaders/display.glsl has the same formulas.
 
 A curve lifts the dark and bends towards white, or a little beyond it, where colours are cut; without one nothing is bent.
 Automatic exposure needs the way back: which radiance is shown at a given level.
@@ -20,15 +20,15 @@ ACES = (2.51, 0.03, 2.43, 0.59, 0.14)
 """
 
 LOG_RANGE = 1000.0
-"""log(1 + k x) / log(1 + k): ten stops below white are told apart."""
+"""k in log(1 + k x) / log(1 + k): ten stops below white are told apart."""
 
 
 BRIGHTEST_EXPOSED = 1e6
-"""What is brighter counts as this: it is white under every curve, and its square is finite in float32."""
+"""Brighter values count as this, which is white under every curve and has a finite square in float32."""
 
 
 def toned(exposed: NDArray[np.floating], tone: str) -> Array:
-    """What is shown of exposed radiance >= 0, any shape, by one of the TONES."""
+    """The linear level at which exposed radiance >= 0, of any shape, is shown by one of the TONES."""
     x: Array = np.minimum(exposed, BRIGHTEST_EXPOSED).astype(np.float64)
     if tone == "reinhard":  # [E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, eq. 3]
         return np.asarray(x / (1 + x))
@@ -41,7 +41,7 @@ def toned(exposed: NDArray[np.floating], tone: str) -> Array:
 
 
 def steepest(tone: str) -> float:
-    """How much more than without a curve a difference can show, at most: in the dark, where the logarithm is steep."""
+    """The largest slope of a curve, that is, how much it can enlarge a difference: in the dark, where it is steepest."""
     return LOG_RANGE / math.log1p(LOG_RANGE) if tone == "log" else 1.0
 
 

@@ -1,4 +1,4 @@
-"""How the numbers of a recipe are seen: the camera, what is drawn over and beside the spheres, and the light's colours."""
+"""The view of a recipe's numbers: the camera, what is drawn over and beside the spheres, and the exposure and tone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 TONES = ("none", "reinhard", "aces", "log")
 ERRORS = ("off", "signed", "absolute", "relative")
-"""What the third sphere shows, if there is one."""
+"""The choices for the third sphere; "off": there is none."""
 
 SHEETS = ("", "plane", "convergence")
 EVALUATIONS = ("auto", "direct", "map")
@@ -26,7 +26,7 @@ ZOOM_RANGE = (0.25, 16.0)
 
 @dataclass(frozen=True)
 class View:
-    """Equal recipes seen in equal views of equal size give equal pixels."""
+    """The options of the view. Equal recipes in equal views of equal size give equal pixels."""
 
     exposure_stops: float | None = option(
         None,
@@ -72,7 +72,7 @@ class View:
     sheet: str = option(
         "", Choice(SHEETS), "plot the error against the number of bands", "--convergence", const="convergence"
     )
-    """ "plane" is time against error so far, which no two runs agree on."""
+    """ "plane" is time against error in this session, and no two runs agree on it."""
     evaluate: str = option(
         "auto",
         Choice(EVALUATIONS),
@@ -106,7 +106,7 @@ class View:
 
     @property
     def n_spheres(self) -> int:
-        """Original, reconstruction and perhaps their difference."""
+        """The number of spheres: original, reconstruction and perhaps the error."""
         return 2 if self.error == "off" else 3
 
     def check(self) -> None:

@@ -180,7 +180,11 @@ def test_a_batch_without_failures_is_done(tmp_path: Path, capsys: Capture) -> No
         (("-o", "x.json", "--axes", "up"), 2, "such as +x+z-y"),
         (("-o", "x.json", "--convention", "unity", "--bands", "4"), 2, "4 bands: unity takes 1 to 3"),
         (("-o", "x.json", "--convention", "unity", "--axes", "z-up"), 2, "unity expects x y z are our +x +z +y; y up"),
-        (("-o", "x.json", "--input-convention", "three"), 2, "--input-convention three: it is of a coefficient file"),
+        (
+            ("-o", "x.json", "--input-convention", "three"),
+            2,
+            "--input-convention three: it applies to a coefficient file",
+        ),
         (("-o", "x.glsl", "--convention", "scipy"), 2, "complex coefficients"),
         (("-o", "x.json", "--input-convention", "maya"), 2, "must be one of shviewer"),
         (("nothing", "-o", "x.json"), 3, "unknown light 'nothing'"),
@@ -316,5 +320,7 @@ def test_the_header_says_how_its_array_differs_from_the_programs(tmp_path: Path)
 
 def test_a_convention_that_nothing_is_read_in_is_refused(capsys: Capture) -> None:
     assert main(["screenshot", "a.png", "green", "--convention", "three"]) == 2
-    says = "--convention three: it is of a coefficient file, and green is none; name one as LIGHT or with --compare"
+    says = (
+        "--convention three: it applies to a coefficient file, and green is none; name one as LIGHT or with --compare"
+    )
     assert says in capsys.readouterr().err

@@ -1,7 +1,7 @@
 """Hard cases of spherical-harmonic arithmetic, each with its right answer and the error of this program.
 
 evaluation, identities, projecting, radiances, rotating and ringing declare the cases; exact makes references to 60 digits;
-views and shader draw what concerns the fragment shader; cases runs all of them and table shows what came of it.
+views and shader draw the cases that concern the fragment shader; cases runs all of them, and table shows the results.
 """
 
 from shviewer.benchmark.hard_cases.cases import CASES, run

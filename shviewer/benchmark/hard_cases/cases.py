@@ -1,4 +1,4 @@
-"""Every hard case, and running them."""
+"""The list of all hard cases, and a function that runs them."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ CASES: tuple[Case, ...] = (
 
 
 def run(*, progress: Callable[[str], None] | None = None, shader: bool = True) -> list[Outcome]:
-    """Measure every case; `progress` is told each name first. Whatever a case raises makes it a failed row.
+    """Measure every case; `progress` is told each name first. A case that raises an exception becomes a failed row.
 
-    shader: also draw what concerns the fragment shader, where there is an OpenGL without display.
+    shader: also draw the cases that concern the fragment shader, if there is an OpenGL without display.
     """
     outcomes = []
     with shader_or_reason(shader) as drawing:
@@ -35,7 +35,7 @@ def run(*, progress: Callable[[str], None] | None = None, shader: bool = True) -
 
 
 def measure(case: Case, drawing: Shader | str) -> Outcome:
-    """One row. `drawing`: what draws, or why nothing does. Overflow, division by zero and NaN count as raised."""
+    """Measure one case. drawing: the shader, or why there is none. Overflow, division by zero and NaN count as exceptions."""
     error, notes = float("inf"), []
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):

@@ -2,7 +2,7 @@
 
 Each function returns the error of `evaluate`, which is the code under test unless a test passes another one.
 
-Where no other origin is named, the bound is `rounding(n)`.
+The bound is `rounding(n)` unless another is named.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from shviewer.harmonics.basis import MAX_BANDS, Array, evaluate_basis, index, no
 
 DEGREE_1024 = 7.6e-14
 """The largest absolute error to l = 1024 of the recurrence of basis.py, measured against 256-bit references. The usual
-normalised recurrence has 3.2e-10 next to the poles."""
+normalised recurrence is off by 3.2e-10 next to the poles."""
 
 DEGREE_1399 = DEGREE_1024 * 1400 / 1025
 
@@ -28,7 +28,7 @@ NEAR = tuple(10.0**-k for k in range(2, 13))
 
 
 def rounding(n_bands: int) -> float:
-    """n 2^-51: what rounding the direction alone may do to n bands.
+    """n 2^-51: the error that rounding the direction alone may cause in n bands.
 
     A unit vector in float64 is off by up to 2^-52 (each component by 2^-53, the length by as much again), a degree l
     changes by at most l times its largest value per radian (Bernstein), and that is about 2 for the orders m of
@@ -49,7 +49,7 @@ def generic(count: int) -> Array:
 
 
 def against_exact(evaluate: Evaluate, directions: Array, n_bands: int, orders: Iterable[int], lowest: int = 0) -> float:
-    """The largest |Y - exact| over the degrees from `lowest` on of some orders."""
+    """The largest |Y - exact| over degrees from `lowest` on and some orders."""
     values = np.asarray(evaluate(directions, n_bands))
     worst = 0.0
     for m in orders:
@@ -93,7 +93,7 @@ def double_factorials(evaluate: Evaluate = evaluate_basis) -> float:
 
 
 def pole_growth(normalise: Callable[[int], Array] = normalisation) -> float:
-    """N(l, m), the size of Y beside its sin^m at the pole, which grows like 1.62^l, at the last band there may be.
+    """N(l, m), the factor of Y beside its sin^m at the pole, which grows like 1.62^l, in the last band that is allowed.
 
     Relative to N. Bound: N is a product of up to 2 l square roots of quotients, 3 roundings of 2^-53 each, the
     roundings of a root counting half: 2 * 1400 * 3 * 2^-53 = 9.3e-13.
@@ -129,7 +129,7 @@ def underflow(evaluate: Evaluate = evaluate_basis) -> float:
 def near_poles(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
     """1e-12 to 1e-2 radians from either pole, where acos(z) and the plain recurrence lose digits.
 
-    Bound: rounding(33), a quarter of what the plain recurrence makes of it, and DEGREE_1024.
+    Bound: rounding(33), a quarter of the plain recurrence's error, and DEGREE_1024.
     """
     theta = np.array(NEAR)
     phi = np.arange(len(theta)) * 2.4
@@ -152,7 +152,7 @@ def exact_poles(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
 
 
 def seam(evaluate: Evaluate = evaluate_basis) -> float:
-    """phi = pi against -pi, and 0 against -0, at several heights: the same function value. Bound: not one bit of difference."""
+    """phi = pi against -pi, and 0 against -0, at several heights: the same function value. Bound: 0, not one bit."""
     z = np.array([-0.8, -1e-9, 0.0, 0.3, 0.999])
     x = np.sqrt(1 - z**2)
     worst = 0.0
@@ -163,7 +163,7 @@ def seam(evaluate: Evaluate = evaluate_basis) -> float:
 
 
 def seam_values(evaluate: Evaluate = evaluate_basis) -> float:
-    """On the seam and 5e-324 to 1e-3 beside it."""
+    """Values on the seam and 5e-324 to 1e-3 beside it."""
     beside = np.array([0.0, -0.0, 5e-324, -1e-300, 1e-16, -1e-9, 1e-3])
     directions = np.stack([np.full(7, -0.6), beside, np.full(7, 0.8)], axis=-1)
     return against_exact(evaluate, directions, 129, (0, 1, -1, 2, -7, 64, -64, 127, -128))
@@ -188,7 +188,7 @@ def any_length(evaluate: Evaluate = evaluate_basis) -> float:
 
 
 def no_direction(evaluate: Evaluate = evaluate_basis) -> float:
-    """How many of: zero, NaN and infinite directions are not refused. Bound: none."""
+    """How many of the zero, NaN and infinite directions are not refused. Bound: 0."""
     nan, inf = float("nan"), float("inf")
     accepted = 0
     for bad in ([0, 0, 0], [-0.0, 0, 0], [nan, 0, 1], [0, inf, 0], [inf, -inf, 1], [0, 0, -inf]):

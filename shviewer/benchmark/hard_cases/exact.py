@@ -1,4 +1,4 @@
-"""References to 60 digits, in decimal arithmetic: a textbook recurrence that is wrong by 1e-50 needs no care.
+"""References to 60 digits, in decimal arithmetic: a textbook recurrence may lose ten of them without harm.
 
 Nothing here is shared with harmonics/: the recurrence is that of the normalised Legendre functions [DLMF 14.10.3], the one
 that loses digits near the poles in float64. tests/hard_cases holds it to published values and to mpmath's. Inputs are
@@ -23,7 +23,7 @@ ExactQuaternion = tuple[Decimal, Decimal, Decimal, Decimal]
 
 
 def in_many_digits(function: Callable[P, T]) -> Callable[P, T]:
-    """Run it in a decimal context of DIGITS digits and the widest exponents."""
+    """Decorator: run the function in a decimal context of DIGITS digits and the widest exponents."""
 
     @wraps(function)
     def run(*arguments: P.args, **options: P.kwargs) -> T:
@@ -96,7 +96,7 @@ def disc(half_angle: float, n_bands: int) -> list[Decimal]:
 
 @in_many_digits
 def cosine(angle: Decimal) -> Decimal:
-    """By its series, of an angle up to a few radians."""
+    """The cosine by its series, for an angle up to a few radians."""
     total, term, k = Decimal(1), Decimal(1), 0
     while abs(term) > Decimal(10) ** (-DIGITS - 5):
         k += 2
@@ -107,7 +107,7 @@ def cosine(angle: Decimal) -> Decimal:
 
 @in_many_digits
 def product(second: ExactQuaternion, first: ExactQuaternion) -> ExactQuaternion:
-    """Hamilton's product of two quaternions (x, y, z, w): first `first`, then `second`; scaled to length 1."""
+    """Hamilton's product of two quaternions (x, y, z, w), which turns by `first` and then `second`; scaled to length 1."""
     (a, b, c, d), (e, f, g, h) = second, first
     x, y, z = d * e + a * h + b * g - c * f, d * f - a * g + b * h + c * e, d * g + a * f - b * e + c * h
     w = d * h - a * e - b * f - c * g
@@ -117,7 +117,7 @@ def product(second: ExactQuaternion, first: ExactQuaternion) -> ExactQuaternion:
 
 @in_many_digits
 def rotation_matrix(quaternion: ExactQuaternion) -> list[list[Decimal]]:
-    """Rows of M, v_out = M v_in, of a quaternion (x, y, z, w) of any length."""
+    """Rows of the matrix M, v_out = M v_in, for a quaternion (x, y, z, w) of any length."""
     x, y, z, w = quaternion
     n = x * x + y * y + z * z + w * w
     return [

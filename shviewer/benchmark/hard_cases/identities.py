@@ -1,4 +1,4 @@
-"""Hard cases of what the basis must satisfy as a whole: the addition theorem and orthonormality."""
+"""Hard cases of the identities of the whole basis: the addition theorem and orthonormality."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _legendre_between(a: Sequence[float], b: Sequence[float], n_bands: int) -> l
 def gram(n_bands: int, rule: Callable[[int], DirectionSet] | None = None, evaluate: Evaluate = evaluate_basis) -> float:
     """Integral of Y_i Y_j - (1 if i = j else 0), by the rule that has to be exact for it, 2 n^2 points.
 
-    With Gauss-Legendre nodes and weights of full accuracy 16, 33 and 64 bands have 4.4e-15, 8.0e-15 and 1.4e-14.
+    With Gauss-Legendre nodes and weights of full accuracy the errors of 16, 33 and 64 bands are 4.4e-15, 8.0e-15 and 1.4e-14.
     """
     points = gauss_legendre(2 * n_bands**2).direction_set() if rule is None else rule(2 * n_bands**2)
     basis = np.asarray(evaluate(points.directions, n_bands)) * np.sqrt(points.weights)[:, None]

@@ -1,6 +1,6 @@
 """Hard cases of projecting radiance: images, suns, cancelling and endless sums.
 
-Functions take what they test as an argument, which is the code of harmonics/ unless a test passes another one.
+Functions take the code under test as an argument, which is that of harmonics/ unless a test passes other code.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from shviewer.harmonics.zonal import Disc
 
 MANY = 10_000_000
 BLAS_SUM = 5.6e-12
-"""Relative error of 1e7 equal terms added up by BLAS in float64, measured; one by one it is 1.6e-10, in float32 9 %."""
+"""Relative error of 1e7 equal terms summed by BLAS in float64, measured; one by one it is 1.6e-10, in float32 9 %."""
 
 ANY_SIZE = ((1, 1), (2, 3), (3, 2), (5, 7), (1, 64), (64, 1), (1, 2), (17, 5), (33, 66), (512, 1024))
-"""Rows and columns of images."""
+"""Rows and columns of the test images."""
 
 CHOSEN = ((0, 0), (1, 0), (1, -1), (2, 2), (3, -2), (7, 5), (7, -7), (7, 0))
 """Degrees and orders that are summed term by term."""
@@ -53,7 +53,7 @@ def constant_image(project: ProjectImage = project_image) -> float:
 def image_error(
     project: ProjectImage, image: NDArray[np.floating], n_bands: int, chosen: Sequence[tuple[int, int]] = CHOSEN
 ) -> float:
-    """Some coefficients against sums of texel times integral over the texel, relative to those of the magnitudes.
+    """The error of some coefficients against sums of texel times integral, relative to the sums of the magnitudes.
 
     The integrals are by Gauss-Legendre within each row and column, the sum of all products is exact (fsum).
     """
@@ -125,7 +125,7 @@ def many_samples(project: ProjectSamples = project_samples) -> float:
 def many_cancelling_samples(project: ProjectSamples = project_samples) -> float:
     """5e6 samples of 1e6 + 1e-3, then as many of -1e6 + 1e-3, relative to 1e6 times the sphere.
 
-    Bound: BLAS_SUM, of the magnitudes. What is left, 1e-3, is lost in their rounding by any plain float64 sum.
+    Bound: BLAS_SUM, relative to the magnitudes. Any plain float64 sum loses the remaining 1e-3 in their rounding.
     """
     seen = 0
 
@@ -141,7 +141,7 @@ def many_cancelling_samples(project: ProjectSamples = project_samples) -> float:
 
 
 def _same_direction(count: int) -> DirectionSet:
-    """`count` times +z, in the memory of one."""
+    """`count` samples in the direction +z, in the memory of one."""
     return DirectionSet(
         np.broadcast_to(np.array([0.0, 0.0, 1.0]), (count, 3)), np.broadcast_to(np.float64(4 * np.pi / count), (count,))
     )

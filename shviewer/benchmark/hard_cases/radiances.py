@@ -1,4 +1,4 @@
-"""Hard cases of radiances: none at all, no number, and numbers at the ends of what a light may have and float64 holds."""
+"""Hard cases of radiances: zero, NaN and infinity, and numbers at the ends of what lights may have and float64 holds."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from shviewer.limits import BRIGHTEST, DIMMEST
 
 
 def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
-    """How many of: one NaN, +Inf or -Inf among 8192 texels are read, or refused without saying where. Bound: none."""
+    """How many of NaN, +Inf and -Inf, one among 8192 texels, are read, or refused without their place. Bound: 0."""
     from shviewer.viewer.saving.picture_files import write_exr
 
     missed = 0
@@ -43,14 +43,14 @@ def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
 
 
 def black(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
-    """An image and a scene of radiance 0: relative error and energies read 0. Bound: none; a NaN is an infinite error."""
+    """An image and a scene of radiance 0: relative error and energies read 0. Bound: 0; a NaN is an infinite error."""
     image = EnvironmentLight(LatLongMap(np.zeros((4, 8, 3), dtype=np.float32)))
     lights: tuple[Light, ...] = (image, LobeLight((Lobe(Disc(0.5), np.array(SUN_AXIS), np.zeros(3)),)))
     return max(largest((figures or figures_of)(light)) for light in lights)
 
 
 def figures_of(light: Light) -> list[float]:
-    """What a picture of 5 bands says: relative L2 error, and the energy of each band."""
+    """Figures that a picture of 5 bands shows: the relative L2 error, and the energy of each band."""
     from shviewer.analysis.figures import reconstruct
     from shviewer.analysis.projections import BEST, project
 
@@ -59,7 +59,7 @@ def figures_of(light: Light) -> list[float]:
 
 
 def magnitudes(project: ProjectImage = project_image) -> float:
-    """An image times 2^-900 to 2^900 has the same coefficients times that, exactly. Bound: not one bit of difference."""
+    """An image times 2^-900 to 2^900 has the same coefficients times that, exactly. Bound: 0, not one bit."""
     image = np.random.default_rng(SEED).random((16, 32, 3))
     plain = project(image, 8)
     return max(largest(np.ldexp(project(np.ldexp(image, k), 8), -k) - plain) for k in (-900, -500, 500, 664, 900))
@@ -80,7 +80,7 @@ def subnormal_image(project: ProjectImage = project_image) -> float:
 
 
 def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
-    """The relative figures of a sun of 1e-30 and of 1e30, the least and the most that a light may have, against those of 1.
+    """The relative figures of a sun of radiance 1e-30 and 1e30, the ends of what lights may have, against those of 1.
 
     Bound: 1e-12, rounding of sums.
     """

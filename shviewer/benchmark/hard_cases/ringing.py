@@ -1,4 +1,4 @@
-"""Hard cases of what is made of coefficients: Gibbs ringing, deringing, irradiance and error figures."""
+"""Hard cases of work on coefficients: Gibbs ringing, deringing, irradiance and error figures."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ OVERSHOOT = {
     16: 0.09103763872917110069,
     64: 0.08959009982631300286,
 }
-"""Bands -> how far the sum for a hemisphere of radiance 1 leaves 0 and 1 (mpmath, 40 digits): the known 25, 11.4, 9.6,
+"""Bands -> how far the sum for a hemisphere of radiance 1 exceeds 0 and 1 (mpmath, 40 digits): the known 25, 11.4, 9.6,
 9.1 and 9.0 %."""
 
 GREEN_LEFT_OUT = {1: "0.83125", 2: "0.61284548611111111111"}
-"""Bands -> share of the energy of R. Green's light that they leave out (closed form, 80 digits)."""
+"""Bands -> the share of the energy of R. Green's light that they leave out (closed form, 80 digits)."""
 
 Reconstruct = Callable[[Array, Array], Array]
 """Coefficients (n**2, 3) and theta (k,) -> values (k,) at phi = 0 and pi."""
@@ -63,7 +63,7 @@ def gibbs(reconstruct: Reconstruct = meridian) -> float:
 def deringed(factors: Callable[[Array], Array] = lambda coefficients: dering(coefficients).factors) -> float:
     """How far a deringed hemisphere, sun and pair of lobes are below zero, relative to their mean, on 721 x 1440 points.
 
-    Bound: 1e-9, what the search for the minimum may leave.
+    Bound: 1e-9, which the search for the minimum may leave.
     """
     green = find_light("green").coefficients(8)
     sun = np.repeat(orient(Disc(0.05).zonal(12), np.array(SUN_AXIS))[:, None], 3, axis=1)
@@ -90,14 +90,14 @@ def irradiance(factors: Callable[[int], Array] = irradiance_factors) -> float:
 
 
 def green_figures() -> float:
-    """Energy of the first bands of Green's light, as the figures say it. Bound: 1e-13, sums of a hundred squares."""
+    """The energy of the first bands of Green's light in the figures. Bound: 1e-13, sums of a hundred squares."""
     light = find_light("green")
     shares = np.cumsum(figures_of(light)[1:])
     return max(largest(1 - shares[n - 1] - float(Fraction(text))) for n, text in GREEN_LEFT_OUT.items())
 
 
 def band_limited() -> float:
-    """A light of two bands shown with five reads no error. Bound: 5e-8, what a difference of squares can tell."""
+    """A light of two bands shown with five reads no error. Bound: 5e-8, the resolution of a difference of squares."""
     light = LobeLight((Lobe(ClampedLinear(0.5, -1.0), np.array(SUN_AXIS), np.array([1.0, 0.3, 2.0])),))
     return figures_of(light)[0]
 

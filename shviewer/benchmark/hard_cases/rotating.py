@@ -28,7 +28,7 @@ Multiply = Callable[[Quaternion, Quaternion], Quaternion]
 
 
 def gimbal(turn: Rotate = rotate) -> float:
-    """Point lights of 33 bands turned about z, by beta about y and about z again: Y(R a), absolute.
+    """Point lights of 33 bands turned about z, by beta about y and about z again: against Y(R a), absolute.
 
     Bound: 2e-14, measured for quadrature at 33 bands; angles by acos are off by up to 1e-8.
     """
@@ -40,9 +40,9 @@ def gimbal(turn: Rotate = rotate) -> float:
 
 
 def many_bands(n_bands: int, turn: Rotate = rotate) -> float:
-    """Point lights of n bands turned to and fro by large angles: Y(R a), absolute.
+    """Point lights of n bands turned to and fro by large angles: against Y(R a), absolute.
 
-    Bound: 1e-12, asked for to 64 bands. The recurrence of Ivanic and Ruedenberg has 6e-11 there.
+    Bound: 1e-12, the goal up to 64 bands. The recurrence of Ivanic and Ruedenberg is off by 6e-11 there.
     """
     return max(
         _point_lights(turn, _about_z(0.3) @ _about_y(beta) @ _about_z(-2.0), n_bands) for beta in (0.5 * np.pi, 2.0)
@@ -75,7 +75,7 @@ def composed_matrices(multiply: Callable[[Array, Array], Array] = np.matmul) -> 
 
 
 def composed_coefficients(multiply: Multiply = compose, turn: Rotate = rotate) -> float:
-    """Coefficients of 16 bands turned once by the composed rotation. Bound: 1e-12, asked for."""
+    """Coefficients of 16 bands turned once by the composed rotation. Bound: 1e-12, the goal."""
     total = IDENTITY
     for step in _random_rotations(TURNS):
         total = multiply(step, total)
@@ -87,8 +87,8 @@ def composed_coefficients(multiply: Multiply = compose, turn: Rotate = rotate) -
 def turned_again_and_again(turn: Rotate = rotate) -> float:
     """Coefficients of 16 bands turned 1e4 times in a row, by 32 rotations in random order: values and norm.
 
-    Bound: 1e-12, asked for; 1.8e-13 was measured. (One rotation again and again would add up its own rounding, 1e-16
-    times 1e4 turns times 15 for the last band, whoever turns.)
+    Bound: 1e-12, the goal; 1.8e-13 was measured. (One rotation again and again would add up its own rounding, 1e-16 times
+    1e4 turns times 15 for the last band, in any program.)
     """
     rotations = _random_rotations(32)
     dense = [turn(np.eye(256), matrix(step)) for step in rotations]

@@ -1,4 +1,4 @@
-"""What the fragment shader makes of coefficients, in its float32, against evaluate_basis in float64."""
+"""The fragment shader's sum of coefficients, in float32, compared with evaluate_basis in float64."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 320, 160
 CENTRE = (240.5, 79.5)
-"""The right sphere's, on the centre of a pixel: that one looks exactly along the view's z."""
+"""The centre of the right sphere, on the centre of a pixel, which then looks exactly along the view's z."""
 
 RADIUS = 78.0
 BLOCK = 2048
 FROM_NORTH, FROM_SOUTH = np.eye(3), np.diag([1.0, -1.0, -1.0])
-"""world_from_view of a camera over a pole, in which the pole is met without rounding."""
+"""world_from_view of cameras over the poles, in which a pixel meets the pole without rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,16 +31,16 @@ class View:
     coefficients: Array
     world_from_view: Array = field(default_factory=lambda: FROM_NORTH)
     radius: float = RADIUS
-    """In pixels; a large one is a magnifying glass on the middle."""
+    """The radius in pixels; a large one magnifies the middle."""
 
 
 def bound(views: list[View]) -> float:
-    """1e-6 n of the peak: what float32 rounding makes of the recurrence, measured to n = 128."""
+    """The bound, 1e-6 n of the peak: float32 rounding in the recurrence, measured to n = 128."""
     return 1e-6 * max(count_bands(view.coefficients) for view in views)
 
 
 class Shader:
-    """A renderer, and how far it is from float64."""
+    """A renderer, and the measurement of its error against float64."""
 
     def __init__(self, renderer: Renderer) -> None:
         self.renderer = renderer
@@ -52,7 +52,7 @@ class Shader:
     def error(self, view: View) -> float:
         """The largest difference over the pixels, relative to the largest magnitude on the whole sphere.
 
-        Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn on it.
+        Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn.
         """
         from shviewer.viewer.composition import Box, compose
         from shviewer.viewer.composition import Sphere as Disc
@@ -101,7 +101,7 @@ def _peak(coefficients: Array) -> float:
 
 @contextmanager
 def shader_or_reason(wanted: bool) -> Iterator[Shader | str]:
-    """A Shader, or why there is none."""
+    """A Shader, or the reason why there is none."""
     if not wanted:
         yield "not asked for"
         return

@@ -1,4 +1,4 @@
-"""The table as text, Markdown and JSON."""
+"""The table of hard cases as text, Markdown and JSON."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PACKAGES = ("numpy", "moderngl")
 
 
 def as_text(outcomes: Sequence[Outcome]) -> str:
-    """Columns for a terminal, what went wrong, and what was passed."""
+    """Columns for a terminal, then the exceptions and the number of cases passed."""
     rows = [HEADINGS, *(_cells(outcome) for outcome in outcomes)]
     widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
     lines = [
@@ -30,7 +30,7 @@ def as_text(outcomes: Sequence[Outcome]) -> str:
 
 
 def as_markdown(outcomes: Sequence[Outcome]) -> str:
-    """A page: the table, remarks, and what it was measured with."""
+    """A page: the table, remarks, and the machine and versions it was measured with."""
     rows = [_cells(outcome) for outcome in outcomes]
     lines = ["| " + " | ".join(HEADINGS) + " |", "|---|---|---|--:|--:|--:|--:|"]
     lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
@@ -40,7 +40,7 @@ def as_markdown(outcomes: Sequence[Outcome]) -> str:
 
 
 def as_json(outcomes: Sequence[Outcome]) -> str:
-    """The same for programs; an error that could not be measured is null."""
+    """The table for programs; an error that could not be measured is null."""
     cases = [
         {
             "name": outcome.name,
@@ -73,7 +73,7 @@ def _number(value: float | None) -> str:
 
 
 def _remarks(outcomes: Sequence[Outcome]) -> list[str]:
-    """One line per exception, one on the shader, one with the count."""
+    """Lines below the table: one per exception, one on the shader, one with the count."""
     lines = [f"{outcome.name}: {outcome.note}" for outcome in outcomes if outcome.note]
     missing = any(outcome.drawn_by and outcome.shader_error is None for outcome in outcomes)
     drawn_by = _drawn_by(outcomes)

@@ -1,4 +1,4 @@
-"""What the shader draws for the cases that concern it."""
+"""The views that the shader draws for the cases that concern it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SEED = 20_240_601
 
 SUN_AXIS = (0.36, -0.48, 0.8)
 SUN, SKY, SUN_HALF_ANGLE = 1.6e9, 1e3, 0.265
-"""Radiances in any unit, and degrees."""
+"""Radiances of sun and sky, in any unit, and the sun's half-angle in degrees."""
 
 
 def delta(direction: Sequence[float], n_bands: int = 32) -> Array:
@@ -28,7 +28,7 @@ def noise(n_bands: int) -> Array:
 
 
 def oblique() -> Array:
-    """A camera on no axis."""
+    """The matrix of a camera that is on no axis."""
     from shviewer.viewer.camera import world_from_view
 
     return world_from_view(78.0, 22.0)

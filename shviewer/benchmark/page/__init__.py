@@ -1,1 +1,1 @@
-"""The report as it is written: tables, plots, the page, and what has changed since an older one."""
+"""The report as files: tables, plots, the page, and the changes since an older report."""

@@ -1,4 +1,4 @@
-"""What changed between two reports, beyond the noise measured in both."""
+"""The changes between two reports that exceed the noise measured in both."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from shviewer.benchmark.row import Row
 from shviewer.words import grouped
 
 LEAST_RATIO = 1.25
-"""Between two runs a shared machine drifts by more than the quartiles of one run show; less than this is no difference."""
+"""The least ratio of times that counts: between runs, a shared machine drifts by more than one run's quartiles show."""
 
 ROUNDING = 1e-6, 1e-12
-"""Relative and absolute: errors this close differ by the order of summation."""
+"""Relative and absolute differences of errors that the sequence of a summation can cause."""
 
 
 @dataclass(frozen=True)
@@ -30,20 +30,21 @@ class Change:
 
 @dataclass(frozen=True)
 class Comparison:
-    """times_comparable: measured on one kind of machine. needed_ratio: how far two times must be apart to differ."""
+    """The rows of two reports compared."""
 
     changes: tuple[Change, ...]
     only_before: int
     only_after: int
     different: tuple[str, ...]
-    """What of the machines differs, in words."""
+    """The differences between the machines, in words; empty if times can be compared."""
     needed_ratio: float
+    """The ratio from which two times count as different."""
 
     def count(self, verdict: str) -> int:
         return sum(verdict in (change.time, change.error) for change in self.changes)
 
     def as_markdown(self, name: str) -> list[str]:
-        """Lines of a section; `name`: what the older report is called."""
+        """The lines of a section of the page; name: that of the older report."""
         counts = ", ".join(f"{self.count(verdict)} {verdict}" for verdict in ("faster", "slower", "better", "worse"))
         lines = [f"{len(self.changes)} rows are in this report and in {name}: {counts}."]
         if self.different:
@@ -61,7 +62,7 @@ class Comparison:
 
 
 def compare(before: Report, after: Report) -> Comparison:
-    """Rows that were measured are matched by section, light, method, bands and samples."""
+    """Compare two reports; measured rows are matched by section, light, method, bands and samples."""
     different = _differences(before, after)
     ratio = _needed_ratio(before, after)
     old = {row.key: row for row in before.rows if row.measured}
@@ -84,7 +85,7 @@ def _differences(before: Report, after: Report) -> tuple[str, ...]:
 
 
 def _needed_ratio(before: Report, after: Report) -> float:
-    """LEAST_RATIO, or as much as the yardstick moved within and between the two runs."""
+    """LEAST_RATIO, or the ratio by which the yardstick changed within and between the two runs, if that is more."""
     ends = [
         report.yardstick[name]
         for report in (before, after)
@@ -117,7 +118,7 @@ def _error_verdict(before: Row, after: Row) -> str:
 
 
 def _spreads_meet(before: Row, after: Row) -> bool:
-    """False where nothing is random."""
+    """Whether the spreads over seeds overlap; False if nothing is random."""
     ends = (before.error_low, before.error_high, after.error_low, after.error_high)
     if any(end is None for end in ends):
         return False

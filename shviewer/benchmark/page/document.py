@@ -1,4 +1,4 @@
-"""A whole report: its rows, and everything that has to be known to believe or to repeat them."""
+"""A whole report: its rows, and everything that one must know to trust or to repeat them."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ SCHEMA = "shviewer-report/1"
 
 @dataclass
 class Report:
-    """What report.json holds. It grows section by section."""
+    """The content of report.json, which grows section by section."""
 
     seed: int
     command: str
     machine: dict[str, Any]
     versions: dict[str, str]
     renderer: str | None = None
-    """The OpenGL that drew; None where there was none."""
+    """The OpenGL that drew; None if there was none."""
     rows: list[Row] = field(default_factory=list)
-    """Those of what was not measured for want of time among them: see Row.measured."""
+    """All rows, with those that were not measured for want of time: see Row.measured."""
     lights: dict[str, dict[str, Any]] = field(default_factory=dict)
     left_out: list[str] = field(default_factory=list)
-    """What was not measured for want of time, a line for each kind."""
+    """Lines on the measurements that there was no time for, one for each kind."""
     yardstick: dict[str, float] | None = None
     complete: bool = False
     extra: dict[str, Any] = field(default_factory=dict)
-    """What a section has to say beside its rows, under the section's name."""
+    """Section -> its results that are no rows."""
 
     def measured(self, section: str) -> list[Row]:
-        """The rows of one section without those that the time did not allow."""
+        """The rows of one section that were measured."""
         return [row for row in self.rows if row.section == section and row.measured]
 
     def as_json(self) -> str:

@@ -1,4 +1,4 @@
-"""How the report's plots look: axes with plain numbers, curves that are told apart without colour, a legend below them."""
+"""The look of the report's plots: axes with plain numbers, curves that differ even without colour, a legend below."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INCHES = (3.39, 3.2)
-"""86 mm wide, with the legend."""
+"""Size of a plot with its legend: 86 mm wide."""
 
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -58,21 +58,21 @@ LOOKS = (
     ("#595959", "<"),
     ("#8C8C8C", ">"),
 )
-"""Colour and marker; with nine of them and four dashes no two of 36 curves look alike."""
+"""Colours and markers; with nine of them and four dashes, no two of 36 curves look alike."""
 
 LONGEST_NAME = 20
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Points (x, y) in the axes' units, drawn in one look and called by its name."""
+    """A named curve of points (x, y), in the axes' units, drawn in one look."""
 
     name: str
     points: tuple[tuple[float, float], ...]
     look: int
-    """Number of its colour and marker in LOOKS and of its dash in DASHES, both taken round and round."""
+    """The index of its colour and marker in LOOKS and of its dash in DASHES; both lists start again at their end."""
     spread: tuple[tuple[float, float], ...] = ()
-    """The quartiles of each y, where they are known."""
+    """The quartiles of each y; empty if they are not known."""
 
 
 def log_axes(figure: Figure, title: str, x: tuple[float, float], y: tuple[float, float], unit: str = " %") -> Axes:
@@ -110,7 +110,7 @@ def draw_curves(axes: Axes, curves: Sequence[Curve]) -> None:
 
 
 def add_legend(figure: Figure) -> None:
-    """Below the axes, over no curve: a piece of each with its name, in columns."""
+    """Add a legend below the axes, in columns."""
     figure.legend(loc="outside lower left", ncols=2)
 
 
@@ -119,7 +119,7 @@ def shorten(name: str) -> str:
 
 
 def nice_ticks(low: float, high: float) -> list[float]:
-    """Powers of ten; 1, 2, 5 of them for fewer than three decades; round steps where not even that gives three."""
+    """Ticks: powers of ten; below three decades, 1, 2 and 5 times these; round steps if that gives fewer than three."""
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     for factors in ((1,), (1, 3), (1, 2, 5)):
         ticks = [factor * 10.0**decade for decade in decades for factor in factors]
@@ -132,12 +132,12 @@ def nice_ticks(low: float, high: float) -> list[float]:
 
 
 def plain(value: float) -> str:
-    """Four digits at most, and never a power of ten."""
+    """A number in at most four digits, without a power of ten."""
     return np.format_float_positional(value, 4, unique=False, fractional=False, trim="-")
 
 
 def padded(values: Iterable[float], highest: float = math.inf) -> tuple[float, float]:
-    """A little more than the values span, at least by a little; up to `highest`, if the values allow."""
+    """A range a little wider than that of the values, and never empty; it ends at `highest` if the values allow."""
     known = list(values)
     low, high = min(known), max(known)
     room = max((high / low) ** 0.06, 1.004)

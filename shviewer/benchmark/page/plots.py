@@ -1,7 +1,7 @@
-"""The report's plots, made of its rows alone: time against error, error against bands, frame time against bands.
+"""The report's plots, made from its rows alone: time against error, error against bands, frame time against bands.
 
-For a column of print: 86 mm wide, 8 pt, a colour, a marker and a dash for each curve (M. Okabe, K. Ito, "Color Universal
-Design", 2008), and a legend below the axes. Equal rows give equal bytes with one version of matplotlib.
+They fit a column of print: 86 mm wide, 8 pt, with a colour, a marker and a dash for each curve (M. Okabe, K. Ito, "Color
+Universal Design", 2008), and a legend below the axes. Equal rows give equal bytes with the same version of matplotlib.
 """
 
 from __future__ import annotations
@@ -39,19 +39,19 @@ MISSING = "no plots: matplotlib is not installed; python -m pip install 'shviewe
 
 PIXELS_PER_INCH = 240
 FLOOR = 1e-5
-"""Errors below this share stand on the lower edge."""
+"""Errors below this share are drawn on the lower edge."""
 
 BAND_FLOOR = 1e-3
-"""The same where errors stand against bands, and tolerances of 10 to 1 % are what is looked for."""
+"""The same in the plot of error against bands, where tolerances of 10 to 1 % matter."""
 
 TOLERANCES = (0.1, 0.05, 0.01)
 SIXTY_HERTZ = 1000 / 60
 MARKED: dict[str, Any] = {"color": "0.45", "linewidth": 0.7, "linestyle": (0, (1, 2)), "zorder": 1}
-"""A level to be seen across the axes."""
+"""The look of a level that is marked across the axes."""
 
 
 def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str]:
-    """Write what the rows allow, each as .svg and .png; returns the files, and why there are none if matplotlib is missing.
+    """Write the plots for which there are rows, as .svg and .png; return the files, and MISSING if matplotlib is missing.
 
     OutputError if a file cannot be written.
     """
@@ -78,7 +78,7 @@ def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str
 
 
 def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
-    """File stem -> what draws it."""
+    """File stem -> the function that draws the plot."""
     plots: dict[str, Callable[[Figure], None]] = {}
     for light in _in_order(row.light for row in rows if row.section == PROJECTION):
         curves = time_error_curves(rows, light)
@@ -96,7 +96,7 @@ def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
 
 
 def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:
-    """(milliseconds, percent) of each method with all its band counts and samples, as far as it does not beat itself."""
+    """(milliseconds, percent) of each method: its own Pareto front over all band counts and samples."""
     curves = []
     for look, method in enumerate(METHODS):
         points = [
@@ -111,7 +111,7 @@ def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:
 
 
 def error_curves(rows: Sequence[Row]) -> list[Curve]:
-    """(bands, percent left out) of each light."""
+    """A curve (bands, percent left out) for each light."""
     curves = []
     for look, light in enumerate(_in_order(row.light for row in rows if row.truncation is not None)):
         found = {
@@ -124,7 +124,7 @@ def error_curves(rows: Sequence[Row]) -> list[Curve]:
 
 
 def frame_curves(rows: Sequence[Row]) -> list[Curve]:
-    """(bands, milliseconds) of each way of drawing, and of making the map: medians over the lights, with their quartiles."""
+    """A curve (bands, milliseconds) for each way of drawing and for making the map: medians over the lights, quartiles."""
     drawn = ("milliseconds", "low_quartile", "high_quartile")
     columns = (
         ("direct sum", reconstruction.DIRECT, drawn),
@@ -148,7 +148,7 @@ def frame_curves(rows: Sequence[Row]) -> list[Curve]:
 
 
 def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None:
-    """Both axes logarithmic; the front of all points is a broad grey staircase: nothing lies to the left and below."""
+    """Draw both axes logarithmic; the front of all points is a broad grey staircase with no point to the left and below."""
     everything = [point for curve in curves for point in curve.points]
     front = [everything[i] for i in pareto_front(everything)]
     x, y = padded(x for x, _ in everything), padded((y for _, y in everything), highest=115.0)
@@ -168,7 +168,7 @@ def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None
 
 
 def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
-    """What n bands leave out of each light, with the tolerances."""
+    """Draw the error of n bands for each light, with the tolerances."""
     lowest = min(y for curve in curves for _, y in curve.points)
     bottom = lowest if lowest == 100 * BAND_FLOOR else min(lowest / 1.3, 0.8)
     axes = log_axes(figure, "relative L2 error of the first bands", _band_range(curves), (bottom, 115.0))
@@ -183,7 +183,7 @@ def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
 
 
 def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
-    """Milliseconds per frame; 60 frames a second leave 16.7."""
+    """Draw milliseconds per frame; at 60 frames a second there are 16.7."""
     y = padded((*(y for curve in curves for _, y in curve.points), SIXTY_HERTZ))
     title = "milliseconds per frame of 1280 \N{MULTIPLICATION SIGN} 640"
     axes = log_axes(figure, title, _band_range(curves), y, unit="")

@@ -1,4 +1,4 @@
-"""The projections of every light as tables: times, errors, and what they take to set up."""
+"""The projections of every light as tables: times, errors, and the cost of setting up."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["SECTION", "lines"]
 
 
 def lines(lights: Sequence[MeasuredLight], rows: Sequence[Row]) -> list[str]:
-    """What the methods are, then three tables per light."""
+    """A table of the methods, then three tables per light."""
     found = [
         "| method | what it is |",
         "|---|---|",
@@ -35,7 +35,7 @@ def lines(lights: Sequence[MeasuredLight], rows: Sequence[Row]) -> list[str]:
 
 
 def _matrix(rows: Sequence[Row], cell: Cell) -> list[str]:
-    """A line per experiment and a column per band count; what is too wide continues below."""
+    """A table with a line per experiment and a column per band count; one that is too wide continues below."""
     by_place = {(row.method, row.samples, row.n_bands): cell(row) for row in rows}
     experiments, bands = _experiments(rows), sorted({row.n_bands for row in rows if row.n_bands is not None})
     labels = [_label(experiment) for experiment in experiments]
@@ -58,7 +58,7 @@ def _matrix(rows: Sequence[Row], cell: Cell) -> list[str]:
 
 
 def _experiments(rows: Sequence[Row]) -> list[Experiment]:
-    """In the order of the table of methods, then by samples."""
+    """The experiments, sorted as the table of methods, then by samples."""
     order = [each.name for each in METHODS]
     return sorted({(row.method, row.samples) for row in rows}, key=lambda item: (order.index(item[0]), item[1] or 0))
 
@@ -77,7 +77,7 @@ def _error(row: Row) -> str:
 
 
 def _set_up(rows: Sequence[Row]) -> list[str]:
-    """At the most bands that each experiment was measured with."""
+    """A table of set-up and memory, for the most bands with which each experiment was measured."""
     body = []
     for experiment in _experiments(rows):
         row = max((row for row in rows if (row.method, row.samples) == experiment), key=lambda row: row.n_bands or 0)

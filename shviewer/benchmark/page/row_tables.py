@@ -18,7 +18,7 @@ COLUMNS: dict[str, tuple[str, Callable[[Row], str]]] = {
 
 
 def rows_table(rows: Sequence[Row], columns: Sequence[str]) -> list[str]:
-    """Any rows: what was done, how long it took, and the columns that the section has to show."""
+    """A table of rows: the method, the time, and the given columns."""
     shown = [COLUMNS[name] for name in columns]
     body = [
         (
@@ -34,7 +34,7 @@ def rows_table(rows: Sequence[Row], columns: Sequence[str]) -> list[str]:
 
 
 def lines_not_measured(rows: Iterable[Row]) -> list[str]:
-    """A line for everything that the time did not allow: of which lights, with how many bands."""
+    """Lines on everything that there was no time for: methods, lights and band counts."""
     words = {method.name: method.words for method in METHODS}
     found: dict[str, dict[str, list[str]]] = {}
     for row in rows:
@@ -46,6 +46,6 @@ def lines_not_measured(rows: Iterable[Row]) -> list[str]:
 
 
 def _places(lights: dict[str, list[str]]) -> list[str]:
-    """Each light with its band counts, as far as there are any."""
+    """Each light with its band counts, if there are any."""
     parts = ((light, f"{' '.join(bands)} bands" if bands else "") for light, bands in sorted(lights.items()))
     return [", ".join(filter(None, part)) for part in parts if any(part)]

@@ -1,4 +1,4 @@
-"""Numbers and tables in Markdown that can be read as they are, in 128 columns."""
+"""Numbers and tables in Markdown that can also be read as plain text, in 128 columns."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ MOST_COLUMNS = 128
 
 
 def milliseconds(value: float | None) -> str:
-    """Three digits, and no exponent."""
+    """A time in three digits, without an exponent."""
     return ABSENT if value is None else three_digits(value)
 
 
 def percent(share: float | None) -> str:
-    """Three digits at most: 0.0512 as 5.12 %."""
+    """A share in percent, at most three digits: 0.0512 as 5.12 %."""
     return ABSENT if share is None else f"{100 * share:.3g} %"
 
 
@@ -26,15 +26,15 @@ def error(value: float | None) -> str:
 
 
 def with_spread(text: str, middle: float | None, low: float | None, high: float | None) -> str:
-    """The value, and half of what lies between low and high in per cent of it, where they are known."""
+    """The value, with half the distance from low to high in percent of it, if these are known."""
     if not middle or low is None or high is None:
         return text
     return f"{text} ±{50 * (high - low) / middle:.0f}%"
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
-    """Lines of a Markdown table, padded. The first `left` columns are text, and so are those without a heading; the others
-    are numbers, which end together on the right.
+    """Lines of a Markdown table, padded. The first `left` columns and those without a heading are text; the others are
+    numbers, aligned on the right.
     """
     cells = [[cell.replace("|", "\\|") for cell in row] for row in (headings, *rows)]
     widths = [max(3, *(len(row[column]) for row in cells)) for column in range(len(headings))]
@@ -51,5 +51,5 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1)
 
 
 def bullet(text: str) -> str:
-    """One point of a list, on as many lines as it takes."""
+    """One item of a list, on as many lines as it takes."""
     return textwrap.fill(text, MOST_COLUMNS, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False)

@@ -41,7 +41,7 @@ NOT_COVERED = (
 
 
 def make_folder(folder: Path) -> None:
-    """OutputError if there is none and none can be made."""
+    """Make the folder if need be. OutputError if that is impossible."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
@@ -52,26 +52,26 @@ def make_folder(folder: Path) -> None:
 
 @dataclass
 class Page:
-    """What stands on the page beside the rows."""
+    """The content of the page beside the rows."""
 
     lights: Sequence[MeasuredLight]
     hosted: dict[str, str] = field(default_factory=dict)
-    """Markdown of further sections, by their titles."""
+    """Title -> Markdown of a further section."""
     plots: list[str] = field(default_factory=list)
     """Names of picture files in the report's folder."""
     plot_message: str = ""
-    """Why there are none, and what to do."""
+    """The reason why there are no plots, and the remedy."""
 
 
 def write(folder: Path, report: Report, page: Page) -> None:
-    """All three files, each whole or as it was. OutputError if one cannot be written."""
+    """Write all three files, each whole or not at all. OutputError if one cannot be written."""
     write_atomically(folder / "report.csv", as_csv(report.rows).encode())
     write_atomically(folder / "report.json", report.as_json().encode())
     write_atomically(folder / "report.md", as_markdown(report, page).encode())
 
 
 def as_csv(rows: Sequence[Row]) -> str:
-    """One header, one line per row, nothing between two commas where nothing was measured."""
+    """The rows as CSV: a header, a line per row, and empty cells for what was not measured."""
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
     writer.writeheader()
@@ -80,7 +80,7 @@ def as_csv(rows: Sequence[Row]) -> str:
 
 
 def as_markdown(report: Report, page: Page) -> str:
-    """The page, with what to use first."""
+    """The page; the advice on what to use comes first."""
     projections = report.measured(projection_tables.SECTION)
     lines = ["# Speed against error", ""]
     if not report.complete:

@@ -1,1 +1,1 @@
-"""Image files: one decoder a format, from bytes to linear radiance."""
+"""Image files: a decoder for each format, from bytes to linear radiance."""

@@ -1,4 +1,4 @@
-"""From linear RGB of any primaries to linear RGB of Rec. 709 with the white D65.
+"""The change from linear RGB with any primaries to linear RGB with those of Rec. 709 and the white D65.
 
 Four chromaticities, the CIE xy of red, green, blue and white, make an RGB space: its matrix to XYZ has the primaries
 (x, y, 1 - x - y) as columns, scaled so that (1, 1, 1) is the white of luminance 1. Where the white is not D65 the

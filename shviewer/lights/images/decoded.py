@@ -1,4 +1,4 @@
-"""What a decoder makes of a file's bytes."""
+"""The result of a decoder."""
 
 from __future__ import annotations
 
@@ -17,6 +17,6 @@ class Decoded:
     encoding: str
     """The format in words, such as "OpenEXR, half, PIZ, tiled"."""
     notes: tuple[str, ...] = ()
-    """What was done to the values and what is missing, a line each, for the person who chose the file."""
+    """Lines for the user on what was done to the values and what is missing."""
     layout: str | None = None
-    """How the image covers the sphere, where the file itself says so: a name of lights/layouts."""
+    """The layout that the file itself states, a name of lights/layouts; None if it states none."""

@@ -1,12 +1,12 @@
 """PNG and JPEG: pictures made for a display, whose codes are turned back into light that is proportional to radiance.
 
-Whatever was brighter than white is lost in them, which their notes say. Codes are decoded by Pillow; they become
+Whatever was brighter than white is lost in them; the notes say so. Codes are decoded by Pillow; they become
 radiance by a table: the sRGB curve, or the power that a PNG's gAMA chunk states.
 
 Traps of Pillow (10 to 13), each with a test:
     Image.open warns, later refuses, above a number of texels of its own: the format's class is opened instead;
-    PNGs of 16 bit RGB come as their high bytes: the low bytes are asked for by the raw mode of the other byte order;
-    a JPEG that ends early may pass unnoticed, and much in a PNG: png_chunks.py.
+    PNGs of 16 bit RGB are decoded to their high bytes: the raw mode of the other byte order gives the low bytes;
+    a JPEG that ends early may pass unnoticed, and so may much damage in a PNG: see png_chunks.py.
 
 Damage within the scans of a JPEG cannot be told from a picture: the format has no checksum.
 
@@ -35,7 +35,7 @@ _BLOCK_TEXELS = 2**16
 _MOST_TEXELS_OF_A_BYTE = 8 * 64  # of a JPEG: a block of 8 x 8 takes at least one bit of Huffman code
 
 _LOW_BYTES = {"RGB;16B": "RGB;16L", "RGBA;16B": "RGBA;16L", "LA;16B": "RGBA"}
-"""Raw mode that gives the high bytes of 16 bit samples -> one that gives the low bytes, in an image of the same mode."""
+"""The raw mode for the high bytes of 16 bit samples -> the raw mode for the low bytes, in an image of the same mode."""
 
 _SRGB_GAMMA = 0.45455  # what encoders write for sRGB
 _TRANSFERS_OF_HDR = {16: "PQ", 18: "HLG"}  # of a PNG's cICP chunk, as numbered by ITU-T H.273
@@ -62,7 +62,7 @@ class _Codes(NamedTuple):
 
 
 def decode_png(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
-    """The radiance that a PNG's codes stand for; of an animated one, its first frame's.
+    """The radiance that a PNG's codes stand for; an animated PNG gives its first frame.
 
     data: the whole file.
     Raises LightError, without the name of the file, if it is damaged, too large, or in PQ or HLG.
@@ -95,7 +95,7 @@ def decode_jpeg(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
 
 
 def _linear(kind: str, codes: _Codes, gamma: float | None, notes: list[str]) -> Decoded:
-    """gamma: the power by which codes were made of light; None for the sRGB curve."""
+    """Codes as linear radiance. gamma: the power by which codes were made from light; None for the sRGB curve."""
     steps = np.arange(2**codes.bits) / (2**codes.bits - 1)
     table = (_linear_from_srgb(steps) if gamma is None else steps ** (1.0 / gamma)).astype(np.float32)
     values, turned = codes.values, []
@@ -111,12 +111,12 @@ def _linear(kind: str, codes: _Codes, gamma: float | None, notes: list[str]) -> 
 
 
 def _linear_from_srgb(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
-    """[sRGB]; both in 0 to 1."""
+    """The inverse of the curve [sRGB]; encoded and linear are in 0 to 1."""
     return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 def _look_up(table: NDArray[np.float32], values: NDArray[Any]) -> NDArray[np.float32]:
-    """(height, width, 3), grey in all three; in blocks of rows, because an index array takes 8 bytes a value."""
+    """Radiance (height, width, 3), grey in all three channels; by blocks of rows, since an index takes 8 bytes a value."""
     height, width = values.shape[:2]
     colours = (
         values[..., :3] if values.ndim == 3 and values.shape[2] >= 3 else values.reshape(height, width, -1)[..., :1]
@@ -131,9 +131,9 @@ def _look_up(table: NDArray[np.float32], values: NDArray[Any]) -> NDArray[np.flo
 def _decode(
     image_class: Callable[[io.BytesIO], Any], data: bytes, limits: Limits, most_texels: int | None = None
 ) -> _Codes:
-    """Everything Pillow is asked for, and its errors in the reader's words.
+    """Decode with Pillow, and turn its errors into LightErrors.
 
-    most_texels: that a file of this length can hold, where it is known.
+    most_texels: how many texels a file of this length can hold, if that is known.
     """
     try:
         with warnings.catch_warnings(action="ignore"):
@@ -150,7 +150,7 @@ def _decode(
 
 
 def _read_codes(image: Any, reopened: Callable[[], Any]) -> _Codes:
-    """image: opened, not yet decoded."""
+    """Decode an image that is opened but not yet decoded."""
     raw_mode = image.tile[0][3] if image.tile else None
     bits = 16 if raw_mode in _LOW_BYTES or image.mode in ("I", "I;16") else 8
     match image.mode:
@@ -176,7 +176,7 @@ def _read_codes(image: Any, reopened: Callable[[], Any]) -> _Codes:
 
 
 def _with_low_bytes(image: Any, high: NDArray[np.uint8], raw_mode: str) -> NDArray[np.uint16]:
-    """image: opened again, not yet decoded; high: decoded by `raw_mode`."""
+    """Samples of 16 bit. image: opened again, not yet decoded; high: the high bytes, decoded by `raw_mode`."""
     image.tile = [(*image.tile[0][:3], _LOW_BYTES[raw_mode])]
     low = np.asarray(image)
     if raw_mode == "LA;16B":  # all four bytes of grey and alpha
@@ -185,7 +185,7 @@ def _with_low_bytes(image: Any, high: NDArray[np.uint8], raw_mode: str) -> NDArr
 
 
 def _orientation(image: Any) -> int:
-    """1 where the EXIF data are missing, damaged or say nonsense."""
+    """The EXIF orientation; 1 if the EXIF data are missing, damaged or nonsense."""
     try:
         orientation = image.getexif().get(_EXIF_ORIENTATION, 1)
     except Exception:  # as many kinds as there are ways to damage a TIFF directory
@@ -199,7 +199,7 @@ def _one_line(error: Exception) -> str:
 
 
 def _png_colour(chunks: dict[bytes, bytes]) -> tuple[float | None, list[str]]:
-    """The power of its curve, None for sRGB's, and notes; of the colour chunks the first of [PNG] 4.3 counts."""
+    """The power of the PNG's curve, None for sRGB's, and notes. The first colour chunk in the list of [PNG] 4.3 counts."""
     if cicp := chunks.get(b"cICP"):
         primaries, transfer = (*cicp, 0, 0)[:2]
         if transfer in _TRANSFERS_OF_HDR:
@@ -219,7 +219,7 @@ def _png_colour(chunks: dict[bytes, bytes]) -> tuple[float | None, list[str]]:
 
 
 def _profile_notes(profile: bytes) -> list[str]:
-    """A profile that calls itself sRGB needs none."""
+    """The note on an ICC profile; a profile that calls itself sRGB needs none."""
     if not profile or b"sRGB" in profile or "sRGB".encode("utf-16-be") in profile:
         return []
     return ["its colour profile (ICC) is ignored, sRGB assumed"]

@@ -9,8 +9,8 @@ becomes one LightError; the child's own errors come back word for word.
 Nothing that the child says is executed, and sizes are checked against the limits before memory is taken.
 
 Cost by tests/benchmarks/isolated.py on two shared cores: a file of 64 x 32 texels takes 80 to 140 ms more than in this
-process (the start of Python and numpy), one of 4096 x 2048 in half and ZIP 145 ms more, 306 ms for 162 (the same start,
-and 100 MB through a pipe).
+process (the start of Python and numpy); a file of 4096 x 2048 texels in half and ZIP takes 306 ms instead of 162 (the same
+start, and 100 MB through a pipe).
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ _NEXT_STEP = "the rest of the program is unharmed: export the file again, or con
 
 
 def decode_isolated(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "") -> Decoded:
-    """What `decode_openexr` returns for the same arguments, or its LightError or MemoryError, from a child process.
+    """Decode in a child process: the result of `decode_openexr` for the same arguments, or its LightError or MemoryError.
 
-    Raises LightError too if the child ends without an answer, or has not answered after TIME_LIMIT.
+    Raises LightError, too, if the child ends without an answer, or has not answered after TIME_LIMIT.
     """
     request = {"limits": asdict(limits), "layer": layer, "bytes": len(data)}
     with _start() as child:
@@ -64,10 +64,10 @@ def decode_isolated(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "
             decoded = _read_answer(child.stdout, limits)
             if decoded is None:
                 with contextlib.suppress(subprocess.TimeoutExpired):
-                    status = child.wait(1.0)  # if it ended by itself, to learn how
+                    status = child.wait(1.0)  # tells how it ended, if it ended by itself
         finally:
             clock.cancel()
-            child.kill()  # one that has answered has nothing left to do
+            child.kill()  # a child that has answered has nothing left to do
             clock.join()
             feeder.join()
     if decoded is None:
@@ -77,7 +77,7 @@ def decode_isolated(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "
 
 
 def _start() -> subprocess.Popen[bytes]:
-    """In a session of its own: Ctrl+C in the terminal is for this process, which then ends the child."""
+    """Start the child in a session of its own: Ctrl+C in the terminal is for this process, which then ends the child."""
     path = [os.path.abspath(entry) for entry in sys.path]
     try:
         return subprocess.Popen(
@@ -109,7 +109,7 @@ def _feed(stdin: IO[bytes], request: dict[str, Any], data: bytes) -> None:
 
 
 def _read_answer(stdout: IO[bytes], limits: Limits) -> Decoded | None:
-    """None if it is cut short or makes no sense. Raises the LightError or MemoryError of the child."""
+    """The child's answer; None if it is cut short or makes no sense. Raises the LightError or MemoryError of the child."""
     try:
         answer = json.loads(stdout.readline(_LONGEST_LINE))
     except (ValueError, RecursionError):
@@ -139,12 +139,12 @@ def _read_answer(stdout: IO[bytes], limits: Limits) -> Decoded | None:
 
 
 def _read_into(stdout: IO[bytes], wanted: memoryview) -> bool:
-    """Whether there were as many bytes."""
+    """Fill `wanted`; return whether there were enough bytes."""
     return stdout.readinto(wanted) == len(wanted)  # type: ignore[attr-defined, no-any-return]
 
 
 def _how_it_ended(status: int | None) -> str:
-    """status: None for a child that had to be ended."""
+    """How the child ended, in words. status: None for a child that had to be ended."""
     if status is not None and status < 0:
         with contextlib.suppress(ValueError):
             return f"crashed ({signal.Signals(-status).name})"
@@ -199,7 +199,7 @@ def _bound_resources(limits: Limits, file_bytes: int) -> None:
 
 
 def _address_space() -> int:
-    """Bytes in use by this process, 0 where the system does not tell."""
+    """The bytes of address space that this process uses; 0 where the system does not tell."""
     try:
         with open("/proc/self/statm") as statm:
             return int(statm.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")

@@ -1,4 +1,4 @@
-"""RGB from luminance and chroma, whose samples may be coarser than the texels.
+"""RGB from luminance and chroma; chroma samples may be coarser than the texels.
 
 With the luminance Y = r R + g G + b B, whose weights follow from the chromaticities of R, G and B and sum to 1,
     RY = (R - Y) / Y,   BY = (B - Y) / Y                                                     [OpenEXR]
@@ -44,7 +44,7 @@ def rgb_from_luminance_chroma(
         )
     height, width = luminance.shape
     pixels = np.empty((height, width, 3), np.float32)
-    with np.errstate(invalid="ignore", over="ignore"):  # whoever reads the file decides about Inf and NaN
+    with np.errstate(invalid="ignore", over="ignore"):  # the caller decides about Inf and NaN
         chroma_red, chroma_blue = (_interpolated(samples, height, width) for samples in chroma)
         for top in range(0, height, _ROWS):
             rows = slice(top, top + _ROWS)
@@ -56,7 +56,7 @@ def rgb_from_luminance_chroma(
 
 
 def _interpolated(samples: NDArray[np.floating], height: int, width: int) -> NDArray[np.float32]:
-    """(height, width) from (height / k, width / l); behind the last sample its value is kept."""
+    """Samples (height / k, width / l) interpolated to (height, width); after the last sample its value is kept."""
     for axis, length in enumerate((height, width)):
         step = length // samples.shape[axis]
         if step > 1:

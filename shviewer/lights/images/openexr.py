@@ -31,9 +31,9 @@ _Plane = NDArray[np.floating]
 
 
 def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "") -> Decoded:
-    """The radiance in an OpenEXR file on its display window, and what its reader should be told.
+    """The radiance in an OpenEXR file on its display window, with notes for the user.
 
-    data: the whole file. layer: as in openexr_layers.py; "" for the plain or only one.
+    data: the whole file. layer: as in openexr_layers.py; "" for the plain colours or the only layer.
     Half floats and unsigned integers are taken at their value; Inf and NaN pass through.
     Raises LightError, without the name of the file, if it is damaged, too large, deep, or does not say which of its
     channels are the radiance. Raises MemoryError.
@@ -80,11 +80,11 @@ def _check_size(part: Part, limits: Limits) -> None:
 
 
 def _to_rec709(part: Part, source: Source) -> tuple[NDArray[np.float64] | None, tuple[str, ...]]:
-    """The matrix to linear Rec. 709, None where it is that already, and what to tell. Grey stays grey in any space."""
+    """The matrix to linear Rec. 709, None if the colours are that already, and notes. Grey stays grey in any space."""
     if part.chromaticities is None:
         return None, ()
     xy = np.array(part.chromaticities, np.float64).reshape(4, 2)
-    matrix = rec709_from(xy)  # also refuses what makes no colour space
+    matrix = rec709_from(xy)  # also refuses chromaticities that make no colour space
     if source.grey or is_rec709(xy):
         return None, ()
     red, green, blue, white = (f"({x:.4g}, {y:.4g})" for x, y in xy)
@@ -120,7 +120,7 @@ def _radiance(planes: list[_Plane], part: Part, source: Source) -> NDArray[np.fl
 
 
 def _float32(plane: _Plane) -> _Plane:
-    """Halves through a table: three quarters of the time of a cast."""
+    """The plane as float32; halves go through a table, which takes three quarters of the time of a cast."""
     return _every_half().take(plane.view(np.uint16)) if plane.dtype == np.float16 else plane
 
 
@@ -132,7 +132,7 @@ def _every_half() -> NDArray[np.float32]:
 
 
 def _convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64]) -> None:
-    """In place. A texel with an Inf or NaN is left as it is: it would smear over its channels before it is reported."""
+    """Convert in place. A texel with an Inf or NaN is left alone: it would spread to all its channels unreported."""
     transposed = matrix.T.astype(np.float32)
     for top in range(0, len(pixels), _ROWS):
         rows = pixels[top : top + _ROWS]
@@ -143,7 +143,7 @@ def _convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64]) -> None:
 def _on_display_window(
     radiance: NDArray[np.float32], window: Window, display: Window
 ) -> tuple[NDArray[np.float32], tuple[str, ...]]:
-    """Black where there are no data, nothing outside: the display window is the whole sphere."""
+    """The radiance on the display window, which is the whole sphere: black where there are no data, cropped outside."""
     if window == display:
         return radiance, ()
     left, right = max(window.left, display.left), min(window.right, display.right)

@@ -1,6 +1,6 @@
-"""The headers of an OpenEXR file as the bytes have them: what the library cannot be asked.
+"""The headers of an OpenEXR file, read from the bytes, since the library cannot be asked for everything.
 
-It puts a window of 64 x 64 in the place of one that is missing or of another type, and says nothing.
+It silently puts a window of 64 x 64 in the place of a window that is missing or of another type.
 
 Source: openexr.com, "OpenEXR File Layout": headers of name, type, size and value, each ended by an empty name; the
 headers of a file of several parts are followed by an empty one.
@@ -33,7 +33,7 @@ class RawHeader(NamedTuple):
     attributes: dict[bytes, Attribute]
 
     def count(self, name: bytes) -> int:
-        """An attribute of type int, not negative. Raises LightError."""
+        """The value of an attribute of type int that is not negative. Raises LightError for any other."""
         return count_in(self.attributes.get(name, Attribute(b"", b"")).value)
 
     def window(self, name: bytes) -> tuple[int, int, int, int]:
@@ -62,7 +62,7 @@ def read_attributes(data: bytes) -> list[RawHeader]:
 
 
 def count_in(field: bytes) -> int:
-    """Four bytes as an integer that is not negative. Raises LightError."""
+    """Four bytes as an integer. Raises LightError if it is negative."""
     if len(field) != 4 or field[3] > 127:
         raise broken("a count in a header is none")
     return int.from_bytes(field, "little")
@@ -74,7 +74,7 @@ def broken(reason: str) -> LightError:
 
 
 def _header(data: bytes, start: int, most: int) -> RawHeader:
-    """With at most so many attributes."""
+    """The header at `start`, of at most `most` attributes."""
     attributes: dict[bytes, Attribute] = {}
     at = start
     for _ in range(most + 1):

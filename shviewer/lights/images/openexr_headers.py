@@ -1,4 +1,4 @@
-"""What matters of the headers of an OpenEXR file, in plain Python."""
+"""The headers of an OpenEXR file as plain Python objects, with the fields that matter here."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Window(NamedTuple):
 class Channel(NamedTuple):
     name: str
     subsampling: tuple[int, int]
-    """There is a sample at every such x and y, counted from 0 of the file's coordinates."""
+    """The steps in x and y between samples, counted from 0 in the file's coordinates."""
 
 
 class Part(NamedTuple):
@@ -40,20 +40,20 @@ class Part(NamedTuple):
     storage: tuple[str, ...]
     """How the texels are stored, such as ("PIZ", "tiled", "mip-mapped")."""
     layout: str | None
-    """What the envmap attribute says: "lat-long", "cube", or None for no such attribute."""
+    """The layout in the envmap attribute: "lat-long" or "cube"; None without the attribute."""
     chromaticities: tuple[float, ...] | None
     """CIE x and y of red, green, blue and white, eight numbers; None: those of Rec. 709."""
     window: Window
-    """Where the file has data."""
+    """The rectangle for which the file has data."""
     display: Window
-    """What the image is meant to show."""
+    """The rectangle that the image is meant to show."""
     channels: tuple[Channel, ...]
     tile: tuple[int, int] | None
     """Texels across and down of each tile, on every level; None for scanlines."""
 
     @property
     def samples(self) -> int:
-        """Values in all channels of the finest level."""
+        """The number of values in all channels of the finest level."""
         across, down = self.window.width, self.window.height
         return sum(-(-across // c.subsampling[0]) * -(-down // c.subsampling[1]) for c in self.channels)
 
@@ -79,7 +79,7 @@ def _plain(
     windows: tuple[Window, Window],
     chromaticities: tuple[float, ...] | None,
 ) -> Part:
-    """windows: of the data and of the display."""
+    """The part that a header of the library describes. windows: the data window and the display window."""
     tiles = header.get("tiles")
     return Part(
         name=str(header.get("name", "")),
@@ -108,7 +108,7 @@ def _storage(openexr: ModuleType, header: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _chromaticities(openexr: ModuleType, header: dict[str, Any]) -> tuple[float, ...] | None:
-    """From the attribute of that name, else from the name of a linear colour space in colorInteropID."""
+    """Chromaticities from the attribute of that name, else from a linear colour space named in colorInteropID."""
     values = header.get("chromaticities")
     if values is None and "colorInteropID" in header:
         values = openexr.colorInteropIDToChromaticities(header["colorInteropID"])

@@ -1,4 +1,4 @@
-"""Which channels of an OpenEXR file are the radiance: by their names, or by the layer that the user names.
+"""The choice of the channels of an OpenEXR file that hold radiance, by their names or the layer that the user names.
 
 A channel "diffuse.R" is R of the layer "diffuse"; layers nest ("key.diffuse.R"). In a file of several parts each part has
 a name too, and a layer is named "part:layer", or "part" for the channels of that part that are in no layer.
@@ -16,13 +16,13 @@ _SHOWN = 12  # names in an error
 
 
 class Source(NamedTuple):
-    """Where the radiance is."""
+    """The part, the layer and the channels that hold the radiance."""
 
     part: int
     layer: str
     """"" for channels without a layer."""
     kind: tuple[str, ...]
-    """What the channels are called within the layer: R, G, B; Y, RY, BY; or Y alone."""
+    """The names of the channels within the layer: R, G, B; Y, RY, BY; or Y alone."""
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -39,11 +39,11 @@ class Source(NamedTuple):
 
 
 def find_source(parts: tuple[Part, ...], layer: str = "") -> tuple[Source, tuple[str, ...]]:
-    """The channels to read, and what to tell about the choice.
+    """The channels to read, and notes on the choice.
 
     layer: "diffuse", "part:diffuse" or "part"; "" for the colours without a layer, else the only layer that has
     colours, else the only luminance.
-    Raises LightError if there is no such layer, more than one, or if it is deep.
+    Raises LightError if there is no such layer or more than one, or if it is deep.
     """
     sources = [source for i, part in enumerate(parts) for source in _sources(i, part)]
     notes: tuple[str, ...] = ()
@@ -72,7 +72,7 @@ def find_source(parts: tuple[Part, ...], layer: str = "") -> tuple[Source, tuple
 
 
 def _sources(i: int, part: Part) -> list[Source]:
-    """One for each layer of a part that has colours or a luminance."""
+    """A source for each layer of a part that has colours or a luminance."""
     layers: dict[str, set[str]] = {}
     for channel in part.channels:
         layer, _, name = channel.name.rpartition(".")
@@ -87,13 +87,13 @@ def _sources(i: int, part: Part) -> list[Source]:
 
 
 def _unnamed(sources: list[Source]) -> list[Source]:
-    """The best there are: no layer before layers, but colours before grey."""
+    """The best sources if no layer is named: colours before grey, then channels without a layer before layers."""
     ranked = [(source.grey, source.layer != "") for source in sources]
     return [source for source, rank in zip(sources, ranked, strict=True) if rank == min(ranked)]
 
 
 def _named(sources: list[Source], parts: tuple[Part, ...], layer: str) -> list[Source]:
-    """By the full name; else by the layer's alone; else by the part's."""
+    """The sources with this full name; else with this name of the layer; else with this name of the part."""
     by_label = [source for source in sources if _label(source, parts) == layer]
     by_layer = [source for source in sources if source.layer == layer]
     by_part = [source for source in sources if len(parts) > 1 and parts[source.part].name == layer]
@@ -101,7 +101,7 @@ def _named(sources: list[Source], parts: tuple[Part, ...], layer: str) -> list[S
 
 
 def _label(source: Source, parts: tuple[Part, ...]) -> str:
-    """What a user would call it."""
+    """The name by which a user can ask for a source."""
     part = parts[source.part].name if len(parts) > 1 else ""
     return ":".join(filter(None, (part, source.layer)))
 
@@ -140,5 +140,5 @@ def _listed(names: list[str]) -> str:
 
 
 def _plain(name: str) -> str:
-    """In one line of bounded length, whatever the file holds."""
+    """A name as one line of bounded length, whatever the file holds."""
     return ascii(name[:60])[1:-1]

@@ -4,7 +4,7 @@ Traps of the library (3.5.3), each with a test:
     a damaged chunk raises nothing: it prints one line on stderr (from C) and one on sys.stdout, and `parts` is empty;
     damage in HTJ2K is printed on stdout from C, into a buffer that may be written out as late as at exit;
     a header may claim any window, and pixels of that size are allocated at once: open with header_only first;
-    every part is decoded, also the deep ones, whose size no header tells: see openexr_parts.py.
+    every part is decoded, even a deep one, whose size no header tells: see openexr_parts.py.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from typing import Any
 from shviewer.errors import LightError
 
 _one_at_a_time = threading.Lock()
-"""What follows turns streams of the whole process away and back."""
+"""A lock, since decoding redirects the standard streams of the whole process."""
 
 
 def import_openexr() -> ModuleType:
-    """Imported here, so that lights without an .exr start faster and need no library."""
+    """Import the library only when it is needed: other lights start faster and do without it."""
     try:
         import OpenEXR
     except ImportError as error:
@@ -34,7 +34,7 @@ def import_openexr() -> ModuleType:
 
 
 def open_openexr(openexr: ModuleType, data: bytes, *, header_only: bool) -> Any:
-    """An OpenEXR.File with at least one part, its channels apart: RGB of mixed pixel types cannot be grouped.
+    """An OpenEXR.File with at least one part, its channels not grouped: RGB of mixed pixel types cannot be.
 
     Raises LightError with whatever the library printed or raised, MemoryError if it ran out of memory.
     """
@@ -63,10 +63,10 @@ def damaged(reason: str) -> LightError:
 
 @contextlib.contextmanager
 def _c_output_silenced() -> Iterator[None]:
-    """File descriptors 1 and 2 point nowhere meanwhile: the C part of the library writes past Python's streams.
+    """Point file descriptors 1 and 2 nowhere for a while: the C part of the library writes past Python's streams.
 
-    A stream that was closed when Python started, as under a service manager, is left alone: its descriptor may be that
-    of another file by now.
+    A stream that was closed when Python started, as under a service manager, is left alone: its descriptor may belong to
+    another file by now.
     """
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
@@ -95,7 +95,7 @@ def _to_nowhere(descriptor: int) -> Iterator[None]:
 
 
 def _copy(descriptor: int) -> int:
-    """Above 2: at a free 1 or 2 it would be what the library prints to."""
+    """A copy of a descriptor, above 2: at a free 1 or 2 the library would print to it."""
     copy = os.dup(descriptor)
     if copy > 2:
         return copy
@@ -106,8 +106,8 @@ def _copy(descriptor: int) -> int:
 
 
 def _flush_c() -> None:
-    """Writes out what the C library still holds of its streams."""
+    """Flush the streams of the C library."""
     import ctypes
 
-    with contextlib.suppress(OSError, AttributeError):  # a Python that is linked in another way
+    with contextlib.suppress(OSError, AttributeError):  # in a Python that is linked in another way
         ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)

@@ -1,7 +1,7 @@
 """One part of a multi-part OpenEXR file as a file of its own.
 
 The library decodes every part of a file, whichever is wanted: all passes of a rendering, and deep parts, whose size no
-header tells. Here only the wanted part's bytes are handed to it. Nothing is decoded: chunks are copied as they are.
+header tells. Here it is handed the bytes of the wanted part only. Nothing is decoded: chunks are copied as they are.
 
 Source: openexr.com, "OpenEXR File Layout": the headers, a table of offsets per part, the chunks.
 """
@@ -40,7 +40,7 @@ def part_alone(data: bytes, index: int) -> bytes:
 
 
 def _chunks(data: bytes, at: int, count: int, index: int, tiled: bool) -> list[bytes]:
-    """The chunks of a part without the part's number, in the order of its table, which is at `at`."""
+    """The chunks of a part, without their part number, as its table at `at` lists them."""
     if at + 8 * count > len(data):
         raise broken("the table of chunks ends behind the end of the file")
     starts = np.frombuffer(data, "<u8", count, at)

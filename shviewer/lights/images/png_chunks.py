@@ -1,7 +1,7 @@
-"""The container of a PNG: its chunks, their checksums, whether all texels are there, and a plain file of what matters.
+"""The container of a PNG: its chunks, their checksums, whether all texels are there, and a plain file of the rest.
 
-Pillow asks for none of this where it matters: it leaves missing texels black, decodes damaged ones, and believes the
-last of several headers and the rectangles of animations.
+Pillow does not check enough: it leaves missing texels black, decodes damaged ones, and believes the last of several
+headers and the rectangles of animations.
 
 Source
     [PNG] Portable Network Graphics, third edition, 5.3 (chunks), 8 (interlacing), 11.2.1 (the header)
@@ -22,7 +22,7 @@ _AT_ONCE = 2**14  # bytes, which inflate to 16 MiB at most
 
 _SAMPLES = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # of a texel, by colour type
 _ADAM7 = ((0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), (0, 1, 2, 2), (1, 0, 2, 1))
-"""First row and column, step of rows and columns of each pass of an interlaced image."""
+"""The first row and column and the steps of rows and columns, for each pass of an interlaced image."""
 
 
 def damaged(reason: str) -> LightError:
@@ -31,9 +31,9 @@ def damaged(reason: str) -> LightError:
 
 
 def read_chunks(data: bytes) -> tuple[dict[bytes, bytes], list[memoryview]]:
-    """Type -> what the first chunk of that type holds, and the pieces of the image; all checksums are right.
+    """Type -> content of the first chunk of that type, and the pieces of the image.
 
-    Raises LightError if one is not, or if the end is missing.
+    Raises LightError if a checksum is wrong or the end is missing.
     """
     if not data.startswith(_SIGNATURE):
         raise damaged("its signature is not that of a PNG")
@@ -62,7 +62,7 @@ def read_chunks(data: bytes) -> tuple[dict[bytes, bytes], list[memoryview]]:
 
 
 def check_texels(header: bytes, compressed: list[memoryview], limits: Limits) -> None:
-    """LightError if they inflate to fewer bytes than the image has: Pillow leaves the rest black."""
+    """LightError if the pieces inflate to fewer bytes than the image has: Pillow would leave the rest black."""
     if len(header) != 13 or header[9] not in _SAMPLES:
         raise damaged("its IHDR chunk is not that of an image")
     width, height, bits, colour_type, _, _, interlaced = struct.unpack(">IIBBBBB", header)
@@ -85,7 +85,7 @@ def check_texels(header: bytes, compressed: list[memoryview], limits: Limits) ->
 
 
 def plain_png(chunks: dict[bytes, bytes], compressed: list[memoryview]) -> bytes:
-    """A file of the image and of what its colours and its orientation depend on, each once and nothing else."""
+    """A PNG with only the image and the chunks that its colours and its orientation depend on, each once."""
     parts = [_chunk(kind, chunks[kind]) for kind in _PLAIN if kind in chunks]
     return b"".join((_SIGNATURE, *parts, _chunk(b"IDAT", b"".join(compressed)), _chunk(b"IEND", b"")))
 

@@ -1,7 +1,6 @@
-"""Radiance from a file: which kind it is, whether it may be read, and what to do about bad values.
+"""Radiance from an image file: its kind, whether it may be read, and what to do about bad values.
 
-The decoders are beside this file, one per format. A *value* is one channel of one texel; counts in messages and notes are of
-values.
+The decoders are beside this file, one per format. A *value* is one channel of one texel; messages and notes count values.
 """
 
 from __future__ import annotations
@@ -55,9 +54,9 @@ _OTHER_MAGICS = (
 
 
 def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
-    """Reads an image file, whose kind its first bytes decide; the notes then also say what was done about bad values.
+    """Read an image file, of the kind that its first bytes say; the notes also say what was done about bad values.
 
-    layer: of an OpenEXR file, such as "diffuse"; "" for the plain or only one.
+    layer: the layer of an OpenEXR file, such as "diffuse"; "" for the plain colours or the only layer.
     Raises LightError, one line with file, finding, rule and next step, for whatever is wrong with the file.
     """
     with naming(str(path)):
@@ -66,7 +65,7 @@ def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: s
 
 
 def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
-    """`read_radiance_image` of a file that is in memory already; `name` is the path it has or might have."""
+    """`read_radiance_image` for a file that is in memory already; `name` is the path it has or might have."""
     with naming(name):
         kind = _kind(data, Path(name).suffix.lower())
         decoded = _decoded(kind, data, reading.limits, layer, reading.isolated)
@@ -76,7 +75,7 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
 
 
 def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: bool) -> Decoded:
-    """What is in the file, by a decoder that is loaded where it is needed: most lights need none."""
+    """Decode the file; the decoder is imported here, since most lights need none."""
     if kind is _RGBE:
         from shviewer.lights.images.rgbe import decode_rgbe
 
@@ -92,7 +91,7 @@ def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: boo
 
 
 def _kind(data: bytes, suffix: str) -> _Kind:
-    """By the first bytes; a suffix that says otherwise is refused, since one of the two is a mistake."""
+    """The kind by the first bytes. A suffix that says otherwise is refused, since one of the two is a mistake."""
     for kind in _KINDS:
         if not data.startswith(kind.magic):
             continue
@@ -107,7 +106,7 @@ def _kind(data: bytes, suffix: str) -> _Kind:
 
 
 def _check(pixels: NDArray[np.float32]) -> tuple[str, ...]:
-    """Refuses NaN and Inf; negative values are worth a note."""
+    """Refuse NaN and Inf; return a note on negative values, if there are any."""
     finite = np.isfinite(pixels)
     if not finite.all():
         row, column = (int(i) for i in np.argwhere(~finite.all(axis=2))[0])
@@ -121,7 +120,7 @@ def _check(pixels: NDArray[np.float32]) -> tuple[str, ...]:
 
 
 def _repair(pixels: NDArray[np.float32]) -> tuple[str, ...]:
-    """Makes the values finite and not negative, in place; one note per kind of repair."""
+    """Make the values finite and not negative, in place; return a note for each kind of repair."""
     finite = np.isfinite(pixels)
     if not finite.any():
         raise LightError("not one finite value, so there is nothing to repair it with: export it again")

@@ -1,12 +1,12 @@
 """The Radiance picture format: .hdr and .pic, RGBE and XYZE texels.
 
 A texel is four bytes: three mantissas and one exponent e. A channel's value is mantissa * 2**(e - 136), and e = 0
-is black. The files of the wild agree on this; Radiance itself adds half a step to the mantissa, nobody else does.
+is black. Writers and readers agree on this; only Radiance itself adds half a step to the mantissa.
 
-Primaries. Radiance's own are near Rec. 709 but have another white (1/3, 1/3), and no reader converts a file that is
-silent about its primaries: its RGB is taken as it is, here too. Primaries that a file states are believed, and the
-colours adapted to D65. XYZE counts as such an RGB written as XYZ: it becomes RGB of Radiance's primaries, as by
-ra_xyze -r, or of Rec. 709 where the file states primaries. Its unit is luminance, 179 lm/W times radiance.
+Primaries. Radiance's own are near Rec. 709 but have another white (1/3, 1/3). No reader converts a file that states no
+primaries: its RGB is taken as it is, here too. Primaries that a file states are believed, and the colours adapted to
+D65. XYZE counts as such an RGB written as XYZ: it becomes RGB with Radiance's primaries, as by ra_xyze -r, or with those
+of Rec. 709 if the file states primaries. Its unit is luminance, 179 lm/W times radiance.
 
 Source
     [R] Radiance File Formats, radsite.lbl.gov/radiance/refer/filefmts.pdf, "Picture File Format (.hdr suffix)"
@@ -54,7 +54,7 @@ class _Header:
 
 
 class _Settings:
-    """What the lines before the size line have said so far."""
+    """The settings in the header lines read so far."""
 
     def __init__(self) -> None:
         self.channels = "RGBE"
@@ -64,7 +64,7 @@ class _Settings:
         self.ignored: list[str] = []
 
     def read(self, line: bytes) -> None:
-        """A setting counts only at the start of its line: indented ones are history."""
+        """Read one header line. A setting counts only at the start of its line: indented ones are history."""
         key, _, value = line.partition(b"=")
         match key:
             case b"FORMAT":
@@ -100,7 +100,7 @@ class _Settings:
                 self.primaries = numbers.reshape(4, 2)
 
     def rec709_from_stored(self) -> NDArray[np.float64] | None:
-        """(3, 3), None for the identity."""
+        """The matrix (3, 3) from stored values to linear Rec. 709; None for the identity."""
         divisor = self.exposure * self.colour_correction
         if not np.all(np.isfinite(divisor) & (divisor > 0.0) & np.isfinite(1.0 / divisor)):
             raise LightError(
@@ -132,7 +132,7 @@ class _Settings:
     over="ignore", under="ignore", divide="ignore"
 )  # an exposure that overflows is refused, and so is infinite radiance
 def decode_rgbe(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
-    """The radiance in a .hdr file, and what its reader should be told.
+    """The radiance in a .hdr file, with notes for the user.
 
     data: the whole file; bytes after the last scanline are allowed.
     Raises LightError, without the name of the file, if it is cut short, damaged, or neither RGBE nor XYZE.
@@ -158,7 +158,7 @@ def decode_rgbe(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
 
 
 def _convert(planes: NDArray[np.uint8], matrix: NDArray[np.float64] | None, out: NDArray[np.float32]) -> None:
-    """(rows, 4, length) mantissas and exponents -> out, (rows, length, 3)."""
+    """Convert mantissas and exponents (rows, 4, length) to radiance, written into `out` (rows, length, 3)."""
     step = _VALUE_OF_ONE_STEP.take(planes[:, 3])
     for i in range(3):
         np.multiply(planes[:, i], step, out=out[..., i])
@@ -167,7 +167,7 @@ def _convert(planes: NDArray[np.uint8], matrix: NDArray[np.float64] | None, out:
 
 
 def _in_words(packings: set[Packing]) -> str:
-    """Old scanlines without a repeated texel look flat, so among old ones they count as old."""
+    """The packings in words. Old scanlines without a repeated texel look flat, so among old ones they count as old."""
     if len(packings) > 1 and "new" in packings:
         return "mixed packing"
     return _PACKINGS["flat" if packings == {"flat"} else "old" if "old" in packings else "new"]

@@ -6,11 +6,11 @@ A scanline comes in one of two packings, and a file may mix them:
     old  texels one after the other, where (1, 1, 1, n) repeats the one before n times; k such markers in a row are
          the digits of one count, base 256, lowest first. Without a marker it is what others call a flat file.
 
-The new packing is the PackBits of TIFF with other numbers in its packets' first bytes. So those bytes are translated,
-and Pillow does the unpacking. To find them, packets must be walked one by one; they are walked in all scanlines at
-once, a numpy step for the next packet of each. Where a scanline begins is known only when the one before has been
-walked, so everything that looks like a beginning is walked, and what the walks do not confirm is forgotten. What cannot
-be read so (other packings, damage, a handful of scanlines) is read scanline by scanline.
+The new packing is the PackBits of TIFF with other numbers in the first bytes of its packets. So those bytes are
+translated, and Pillow does the unpacking. To find them, packets must be walked one by one. All scanlines are walked at
+once: one numpy step takes the next packet of each. The beginning of a scanline is known only when the one before has been
+walked; so everything that looks like a beginning is walked, and beginnings that no walk confirms are dropped. Data that
+cannot be read so (other packings, damage, a handful of scanlines) are read scanline by scanline.
 
 Source
     [R] Radiance File Formats, radsite.lbl.gov/radiance/refer/filefmts.pdf, "Picture File Format (.hdr suffix)"
@@ -47,7 +47,7 @@ _PACKBITS_OF = _PACKBITS.tobytes()
 
 
 def check_enough_bytes(data: bytes, position: int, scanlines: int, length: int) -> None:
-    """Raises LightError if so many scanlines cannot be in what follows, before anything of their size is made."""
+    """LightError if the bytes from `position` on are too few for the scanlines; asked before memory of their size is taken."""
     shortest = scanlines * (4 if length == 1 else 8)  # bytes: one texel, and a marker that repeats it
     if len(data) - position < shortest:
         raise LightError(
@@ -59,7 +59,7 @@ def check_enough_bytes(data: bytes, position: int, scanlines: int, length: int) 
 def read_scanlines(
     data: bytes, position: int, scanlines: int, length: int
 ) -> Iterator[tuple[Packing, NDArray[np.uint8]]]:
-    """Blocks of scanlines in the order of the file: their packing, (rows, 4, length) red, green, blue and exponents.
+    """Blocks of scanlines, from first to last: the packing, and red, green, blue and exponents (rows, 4, length).
 
     data: the whole file, its texels from `position` on; scanlines of `length` texels each.
     Raises LightError with the number of the scanline that is damaged or cut short, once the blocks before it are out.
@@ -112,13 +112,13 @@ def _walk_scanlines(
     edges = [0]
     while len(edges) <= scanlines and (end := end_of.get(edges[-1], -1)) >= 0:
         edges.append(end)
-    if len(edges) - 1 < len(found):  # walks from false beginnings have left their marks
+    if len(edges) - 1 < len(found):  # walks from false beginnings have left translated bytes behind
         packbits, _ = _walk(stream, np.array(edges[:-1], np.int64), length)
     return packbits, np.array(edges)
 
 
 def _new_packing_header(length: int) -> bytes:
-    """What every scanline in the new packing begins with."""
+    """The bytes with which every scanline in the new packing begins."""
     return bytes((2, 2, length >> 8, length & 255))
 
 
@@ -136,7 +136,7 @@ def _find_beginnings(data: bytes, start: int, stop: int, length: int, most: int)
 def _walk(
     stream: NDArray[np.uint8], beginnings: NDArray[np.int64], length: int
 ) -> tuple[NDArray[np.uint8], NDArray[np.int64]]:
-    """From packet to packet in all scanlines at once.
+    """Walk from packet to packet in all scanlines at once.
 
     Returns the stream with the packets as PackBits, and where each scanline ends; -1 for one that is not whole. A
     packet across two channels is not noticed.
@@ -176,7 +176,7 @@ def _unpack(packbits: NDArray[np.uint8] | bytearray, length: int, rows: int) -> 
 
 
 def _read_scanline(data: bytes, position: int, length: int) -> tuple[Packing, NDArray[np.uint8], int]:
-    """Its packing, (1, 4, length), and the position of the next; IndexError where the data end."""
+    """One scanline: its packing, its values (1, 4, length), and the next position; IndexError where the data end."""
     if length in _NEW_PACKING_LENGTHS and data[position : position + 2] == b"\2\2" and data[position + 2] < 128:
         planes, position = _read_new_packing(data, position, length)
         return "new", planes, position
@@ -185,7 +185,7 @@ def _read_scanline(data: bytes, position: int, length: int) -> tuple[Packing, ND
 
 
 def _read_new_packing(data: bytes, position: int, length: int) -> tuple[NDArray[np.uint8], int]:
-    """(1, 4, length) and the next position; IndexError where the data end."""
+    """Values (1, 4, length) and the next position; IndexError where the data end."""
     stated = data[position + 2] << 8 | data[position + 3]
     if stated != length:
         raise LightError(f"it states {stated} texels where the header has {length}")
@@ -213,7 +213,7 @@ def _read_new_packing(data: bytes, position: int, length: int) -> tuple[NDArray[
 
 
 def _read_old_packing(data: bytes, position: int, length: int) -> tuple[NDArray[np.uint8], int]:
-    """(length, 4) texels and the next position; IndexError where the data end."""
+    """Texels (length, 4) and the next position; IndexError where the data end."""
     quads = _quads(data, position, length)
     marker = _is_marker(quads)
     if not marker.any():

@@ -21,7 +21,7 @@ from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.layout import Indices
 
 SMALLEST_SIDE = 16
-"""Texels of smaller images are divided, so that none on the rim needs many points."""
+"""The side below which an image's texels are divided, so that none on the rim needs many points."""
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,9 @@ class AngularLayout(DiscLayout):
         return coefficients
 
     def _rim_shares(self, rows: Indices, columns: Indices, n_points: int) -> tuple[Array, Array, Array]:
-        """x, y and areas, (k, n, n) each, of few points on each texel, of which the rim leaves a part.
+        """x, y and areas, (k, n, n) each, of a few points on each texel that the rim cuts.
 
-        The kernel goes on smoothly outside the disc, so its integral over that part follows from its values at these.
+        The kernel goes on smoothly outside the disc, so its integral over the part inside follows from these values.
         """
         rim, n_shares = self.rim(rows, columns, n_points), n_points - 2
         middle, half = (self.edges[:-1] + self.edges[1:]) / 2, np.diff(self.edges) / 2
@@ -96,19 +96,19 @@ class AngularLayout(DiscLayout):
         return project_mirrored(directions, (values * density[:, None])[None], n_bands)
 
     def _rim_point_count(self, n_bands: int) -> int:
-        """So many points a side of each piece make the texels on the rim exact to rounding; fitted to measurements.
+        """Points a side of each piece that make the texels on the rim exact to rounding; fitted to measurements.
 
-        Two fewer a side of the whole texel suffice for the kernel on it.
+        For the kernel on a whole texel, two fewer a side suffice.
         """
         phase = np.pi * n_bands / self.side
         return int(np.ceil(6 + 16 * self.side**-0.4 + 1.1 * phase + 3 * np.sqrt(phase)))
 
 
 def _whole_point_count(side: int) -> int:
-    """So many points a side of a whole texel make its area exact to rounding, by the error term of Gauss's rule."""
+    """Points a side of a whole texel that make its area exact to rounding, by the error term of Gauss's rule."""
     return 14 if side < SMALLEST_SIDE else 6 if side < 512 else 3
 
 
 def quadrant_point_count(n_bands: int) -> int:
-    """So many Chebyshev points a side make a quadrant of the disc exact to rounding; fitted to measurements."""
+    """Chebyshev points a side that make a quadrant of the disc exact to rounding; fitted to measurements."""
     return 27 + int(np.ceil(1.78 * n_bands))

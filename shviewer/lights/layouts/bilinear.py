@@ -1,4 +1,4 @@
-"""The look-up between four neighbouring texels of an image."""
+"""Bilinear interpolation between four neighbouring texels of an image."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def between_texels(
 ) -> NDArray[np.float32]:
     """Radiance (k, 3) at shares `down` and `right` (k,), in [0, 1], of the way from texel (top, left) to the next ones.
 
-    Of texels beyond the image it gives any. Channel by channel, which is faster than by texels of three.
+    For texels beyond the image any values are returned. Works channel by channel, which is faster than texel by texel.
     """
     width = pixels.shape[1]
     values = pixels.reshape(-1)

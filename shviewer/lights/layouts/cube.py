@@ -1,4 +1,4 @@
-"""Six square faces of a cube, each seen from its centre under 90 degrees. Where they lie in the image is an Arrangement.
+"""Six square faces of a cube, each 90 degrees wide seen from the centre. An Arrangement says where they lie in the image.
 
 Every face is drawn as seen from inside, not mirrored. In the world of basis.py, x forward, y left and z up:
 
@@ -34,7 +34,7 @@ _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-",
 
 @dataclass(frozen=True)
 class Face:
-    """row, column: of its cell. centre, right, down: where its middle looks and its columns and rows lead, as "+x"."""
+    """A face in the cell `row`, `column`. centre, right, down: the axes, as "+x", of its middle, its columns and its rows."""
 
     row: int
     column: int
@@ -51,7 +51,7 @@ class Arrangement:
     faces: tuple[Face, ...]
 
     def face_size(self, height: int, width: int) -> int:
-        """The side of a face, in texels; 0 if the image is not made of whole faces like this."""
+        """The side of a face, in texels; 0 if the image does not consist of whole faces in this arrangement."""
         size = height // self.rows
         return size if size * self.rows == height and size * self.columns == width else 0
 
@@ -108,7 +108,7 @@ HORIZONTAL_CROSS = Arrangement(
 
 @dataclass(frozen=True)
 class CubeLayout:
-    """face: the side of a face in texels."""
+    """A cube map in some arrangement. face: the side of a face in texels."""
 
     arrangement: Arrangement
     face: int
@@ -141,7 +141,7 @@ class CubeLayout:
         return row + self._corners[face, 0], column + self._corners[face, 1]
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
-        """For a texel in an empty cell the middle of the front."""
+        """As in Layout; for a texel in an empty cell, the middle of the front face."""
         face = self._faces_by_cell[rows // self.face, columns // self.face]
         u, v = ((2 * (index % self.face) + 1) / self.face - 1 for index in (columns, rows))
         directions = self._directions(np.maximum(face, 0), u, v)
@@ -149,7 +149,7 @@ class CubeLayout:
         return np.asarray(directions / np.linalg.norm(directions, axis=-1, keepdims=True))
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
-        """Continuous across the edges: beyond one comes the next face. At a corner of the cube three texels meet."""
+        """As in Layout; continuous across the edges, where the next face follows. At a corner of the cube three texels meet."""
         face, u, v = self._on_faces(directions)
         column, row = self.face * (u + 1) / 2 - 0.5, self.face * (v + 1) / 2 - 0.5
         left, top = np.floor(column).astype(np.int64), np.floor(row).astype(np.int64)
@@ -164,7 +164,7 @@ class CubeLayout:
     def _across_edges(
         self, pixels: NDArray[np.float32], face: Indices, top: Indices, left: Indices, down: Array, right: Array
     ) -> Array:
-        """(k, 3), where some of the four texels are on the next face or nowhere."""
+        """Radiance (k, 3) where some of the four texels are on the next face or nowhere."""
         weights = np.stack([(1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down])
         taps = np.empty((4, len(face), 3))
         absent = np.zeros((4, len(face)), dtype=bool)
@@ -185,7 +185,7 @@ class CubeLayout:
         return np.asarray(np.einsum("ik,ikc->kc", weights, taps))
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
-        """By one quadrant each of the front, the left and the upper face, of which all others are mirror images."""
+        """As in Layout; from one quadrant of the front, left and upper face each, whose mirror images all others are."""
         n_points = quadrant_point_count(n_bands)
         values = np.zeros((2, 2, 2, 3, n_points, n_points, 3))
         directions = np.empty((3, n_points, n_points, 3))
@@ -212,7 +212,7 @@ class CubeLayout:
 
     @cached_property
     def _faces_by_cell(self) -> NDArray[np.int64]:
-        """Which face lies in each cell, (rows, columns); -1 for none."""
+        """The index of the face in each cell, (rows, columns); -1 for an empty cell."""
         cells = np.full((self.arrangement.rows, self.arrangement.columns), -1)
         for i, face in enumerate(self.arrangement.faces):
             cells[face.row, face.column] = i
@@ -229,12 +229,12 @@ class CubeLayout:
         return np.array([[_AXES[axis] for axis in (f.centre, f.right, f.down)] for f in self.arrangement.faces])
 
     def _directions(self, face: Indices, u: Array, v: Array) -> Array:
-        """Not of unit length, (k, 3), at u to the right and v down, in [-1, 1] within the face."""
+        """Directions (k, 3), not of unit length, at u to the right and v down, in [-1, 1] within the face."""
         frame = self._frames[face]
         return np.asarray(frame[:, 0] + u[:, None] * frame[:, 1] + v[:, None] * frame[:, 2])
 
     def _on_faces(self, directions: Array) -> tuple[Indices, Array, Array]:
-        """The face that each direction of any length meets, and where, u and v in [-1, 1]."""
+        """The face that each direction (of any length) meets, and the place on it: u and v in [-1, 1]."""
         components = np.ascontiguousarray(directions.T)
         size, place = np.abs(components), np.arange(len(directions))
         depth = size.max(axis=0)
@@ -250,7 +250,7 @@ class CubeLayout:
 
     @cached_property
     def _face_solid_angles(self) -> Array:
-        """(face, face) steradians: the integral over v in closed form, without cancellation, over u by Gauss's rule.
+        """Solid angles (face, face): the integral over v in closed form, without cancellation, over u by Gauss's rule.
 
         The integral of (1 + u^2 + v^2)^(-3/2) over v is v / (a sqrt(a + v^2)) with a = 1 + u^2.
         """
@@ -271,5 +271,5 @@ class CubeLayout:
 
 
 def quadrant_point_count(n_bands: int) -> int:
-    """So many Chebyshev points a side make a quadrant of a face exact to rounding; measured, see the tests."""
+    """Chebyshev points a side that make a quadrant of a face exact to rounding; measured, see the tests."""
     return 26 + int(np.ceil(0.55 * n_bands))

@@ -1,11 +1,11 @@
-"""What the angular map and the mirror ball have in common: the sphere within a disc, turned about the direction ahead.
+"""The base of the angular map and the mirror ball: the sphere within a disc, symmetric about the direction ahead.
 
 The centre of the image looks along +x. A direction at the angle theta from there lies at a radius that depends on theta
 alone, 1 (the rim, half the image's side) for straight back, and on the side where it is seen: the image's right is -y, its
-top +z, as in all layouts. What lies outside the disc shows nothing.
+top +z, as in all layouts. Texels outside the disc show nothing.
 
-HDRShop and the published probes use the same two, unmirrored against their lat-long images. (A photograph of a mirror ball
-shows left and right exchanged, like any mirror: turn it over first.)
+HDRShop and the published probes use the same two layouts, not mirrored against their lat-long images. (A photograph of a
+mirror ball shows left and right exchanged, like any mirror: turn it over first.)
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from shviewer.lights.layouts.layout import Indices
 from shviewer.lights.layouts.rim import RimPoints, rim_points
 
 _RIM_BLOCK = 512
-"""Texels on the rim whose points are held at a time."""
+"""How many texels on the rim have their points in memory at a time."""
 
 
 @dataclass(frozen=True)
 class DiscLayout:
-    """side: of the square image, in texels. The subclasses say how the radius follows from theta."""
+    """A layout within a disc. side: texels of the square image. The subclasses say how the radius follows from theta."""
 
     side: int
     name: str = ""
@@ -38,15 +38,15 @@ class DiscLayout:
 
     @property
     def raster_width(self) -> int:
-        """Columns of a lat-long image that is nowhere much coarser."""
+        """Columns of a lat-long image that is nowhere much coarser than this one."""
         return 2 * self.side
 
     def radius(self, theta: Array) -> Array:
-        """In [0, 1], of the angle from the direction ahead, radians."""
+        """The radius, in [0, 1], of directions at an angle from the direction ahead, in radians."""
         raise NotImplementedError
 
     def theta(self, radius: Array) -> Array:
-        """The inverse."""
+        """The angle of a radius: the inverse of `radius`."""
         raise NotImplementedError
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
@@ -61,7 +61,7 @@ class DiscLayout:
         return np.clip(((1 + position) / 2 * self.side).astype(np.int64), 0, self.side - 1)
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
-        """For a texel whose centre is outside the disc a point of it inside; for one wholly outside straight back."""
+        """As in Layout; if the centre is outside the disc, another point of the texel, and if all of it is, straight back."""
         right, down = ((2 * index + 1) / self.side - 1 for index in (columns, rows))
         radius = np.hypot(right, down)
         inner_right, inner_down = (np.sign(a) * np.maximum(np.abs(a) - 1 / self.side, 0) for a in (right, down))
@@ -94,7 +94,7 @@ class DiscLayout:
         raise NotImplementedError
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
-        """Texels whose centres are outside the disc do not count: beyond the rim comes the side opposite."""
+        """As in Layout. Texels whose centres are outside the disc do not count: beyond the rim comes the opposite side."""
         x, y, z = np.ascontiguousarray(directions.T)
         across = np.hypot(y, z)
         radius = self.radius(np.arctan2(across, x))
@@ -109,7 +109,7 @@ class DiscLayout:
         return result
 
     def _across_the_rim(self, pixels: NDArray[np.float32], top: Array, left: Array, down: Array, right: Array) -> Array:
-        """(k, 3), where some of the four texels may have their centres outside."""
+        """Radiance (k, 3) where some of the four texels may have their centres outside."""
         total = np.zeros((len(top), 3))
         for below, beside in np.ndindex(2, 2):
             weight = np.abs(1 - beside - right) * np.abs(1 - below - down)
@@ -117,7 +117,7 @@ class DiscLayout:
         return total
 
     def _beyond_the_rim(self, pixels: NDArray[np.float32], rows: Array, columns: Array) -> Array:
-        """Texels (k, 3); for centres at radius r > 1 those near 2 - r on the other side whose own centres are inside."""
+        """Texels (k, 3); in place of a centre at radius r > 1, the texel near 2 - r on the opposite side, its centre inside."""
         right, down = ((2 * index + 1) / self.side - 1 for index in (columns, rows))
         radius = np.hypot(right, down)
         opposite = np.clip(2 - radius, 0, max(0.0, 1 - 1.42 / self.side)) / np.maximum(radius, 1)
@@ -128,17 +128,17 @@ class DiscLayout:
 
     @property
     def half(self) -> int:
-        """Texels from the centre to the rim, counting the middle one of an odd number."""
+        """The number of texels from the centre to the rim, counting the middle one of an odd number."""
         return self.side - self.side // 2
 
     @cached_property
     def edges(self) -> Array:
-        """Their edges, (half + 1,), from 0 to 1."""
+        """The edges of these texels, (half + 1,), from 0 to 1."""
         return np.maximum((2 * np.arange(self.side // 2, self.side + 1) - self.side) / self.side, 0.0)
 
     @cached_property
     def whole(self) -> NDArray[np.int64]:
-        """How many texels of each row of the quadrant lie wholly inside the disc, (half,)."""
+        """The number of texels in each row of the quadrant that lie wholly inside the disc, (half,)."""
         reach = np.sqrt(np.maximum(1 - self.edges[1:] ** 2, 0.0))
         return np.searchsorted(self.edges[1:], reach, side="right")
 
@@ -153,12 +153,12 @@ class DiscLayout:
         return rows, first + np.arange(len(rows))
 
     def rim_blocks(self, rows: Indices, columns: Indices, n_points: int) -> list[tuple[Indices, Indices]]:
-        """The texels in parts small enough to be worked on at once."""
+        """The texels divided into blocks small enough to be worked on at once."""
         block = max(1, _RIM_BLOCK * 64 // n_points**2)
         return [(rows[i : i + block], columns[i : i + block]) for i in range(0, len(rows), block)]
 
     def rim(self, rows: Indices, columns: Indices, n_points: int) -> RimPoints:
-        """Points of texels of the quadrant, clipped to the disc."""
+        """Quadrature points on texels of the quadrant, clipped to the disc."""
         return rim_points(
             self.edges[columns], self.edges[columns + 1], self.edges[rows], self.edges[rows + 1], n_points
         )
@@ -177,7 +177,7 @@ class DiscLayout:
         return np.stack([np.stack([pixels[row, column] for row in (up, down)]) for column in (left, right)])
 
     def whole_sphere(self, quadrant: Array) -> Array:
-        """What a quadrant (half, half) says for the image (side, side), with the halves of middle texels added up."""
+        """The values of a quadrant (half, half) for the whole image (side, side), with the halves of middle texels added up."""
         odd = self.side % 2
         if odd:
             quadrant = (

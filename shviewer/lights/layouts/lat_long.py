@@ -1,4 +1,4 @@
-"""Rows of constant theta, columns of constant phi; see shviewer/lights/lat_long.py for where they are."""
+"""The lat-long layout: rows of constant theta, columns of constant phi, placed as in shviewer/lights/lat_long.py."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class LatLongLayout:
         return self.width
 
     def solid_angles(self) -> Array:
-        """The difference of the cosines of a row's edges, which does not cancel in this form; (height, 1)."""
+        """As in Layout, (height, 1): the difference of the cosines of a row's edges, in a form that does not cancel."""
         theta = np.pi * (np.arange(self.height) + 0.5) / self.height
         rows = 2 * np.sin(theta) * np.sin(np.pi / (2 * self.height)) * (2 * np.pi / self.width)
         return np.asarray(rows[:, None])

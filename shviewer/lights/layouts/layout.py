@@ -1,4 +1,4 @@
-"""What every layout can do. A texel is an area of constant radiance, whatever its shape on the sphere.
+"""The interface of every layout. A texel is an area of constant radiance, whatever its shape on the sphere.
 
 The world: x forward, y left, z up, as everywhere (shviewer/harmonics/basis.py). The centre of a lat-long image, the front
 face of a cross, the middle of an angular map and of a mirror ball all look along +x; seen from inside, +y is to the left
@@ -26,14 +26,14 @@ class Layout(Protocol):
 
     @property
     def size(self) -> str:
-        """In words, such as "1024 x 512", width first, or "6 x 512 x 512" for a cube."""
+        """The size in words, such as "1024 x 512", width first, or "6 x 512 x 512" for a cube."""
 
     @property
     def raster_width(self) -> int:
         """Columns of a lat-long image that is about as fine."""
 
     def solid_angles(self) -> Array:
-        """Steradians of each texel, exact, in all 4 pi: (height, width), or (height, 1) where a row's are equal.
+        """Steradians of each texel, exact, with the sum 4 pi: (height, width), or (height, 1) where a row's are equal.
 
         0 for texels that show nothing: the empty cells of a cross, the corners around a disc.
         """

@@ -1,4 +1,4 @@
-"""The mirror ball: what an orthographic picture of a reflecting sphere shows, theta = 2 asin r.
+"""The mirror ball: an orthographic picture of a reflecting sphere, theta = 2 asin r.
 
 With X to the right and Y up in units of half the side, and r their distance from the centre,
     direction = (1 - 2 r^2, -2 X sqrt(1 - r^2), 2 Y sqrt(1 - r^2)),   density = 4 everywhere.
@@ -21,7 +21,7 @@ from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.layout import Indices
 
 LARGEST_TILE = 256
-"""Texels a side."""
+"""The largest tile, in texels a side."""
 
 BLOCK_TEXELS = 2**17
 BLOCK_POINTS = 2**16
@@ -55,7 +55,7 @@ class MirrorBallLayout(DiscLayout):
 
 @dataclass(frozen=True, eq=False)
 class _Tiles:
-    """A ball of even side. pixels: of an image whose texels each stand for repeat^2 of the ball's."""
+    """The tiles of a ball of even side. pixels: an image each of whose texels stands for repeat^2 of the ball's."""
 
     ball: MirrorBallLayout
     pixels: NDArray[np.float32]
@@ -81,7 +81,7 @@ class _Tiles:
         return coefficients + self._project_rim(rows, columns, n_bands)
 
     def _project_tiles(self, rows: Indices, columns: Indices, size: int, n_bands: int) -> Array:
-        """Tiles of size^2 texels with their first texel at rows and columns (k,) of the quadrant."""
+        """Project tiles of size^2 texels with their first texel at rows and columns (k,) of the quadrant."""
         coefficients = np.zeros((n_bands**2, 3))
         if not len(rows):
             return coefficients
@@ -112,7 +112,7 @@ class _Tiles:
         return coefficients
 
     def _point_count(self, rows: Indices, columns: Indices, size: int, n_bands: int) -> int:
-        """By the angle that the widest of the tiles covers."""
+        """Chebyshev points a side, by the angle that the widest of the tiles covers."""
         half = self.ball.half
         corners = [
             self.ball._directions((columns + right) / half, (rows + down) / half)

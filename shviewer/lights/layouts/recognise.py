@@ -1,4 +1,4 @@
-"""Which layout an image has: the one asked for, else the one that its file states, else what its shape suggests."""
+"""The layout of an image: the one asked for, else the one that its file states, else the one its shape suggests."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.reading import LAYOUTS
 
 TOLERANCE = 0.02
-"""How far texels that show nothing may be from one colour, as a share of how far those that show something are."""
+"""How far empty texels may be from one colour, as a share of how far the other texels are from it."""
 
 MARGIN = 2
 LOSSY_MARGIN = 16
-"""Texels along a border that may be a mixture of both sides: antialiased, or in a JPEG's blocks, 16 wide for colours."""
+"""Texels along a border that may mix both sides: by antialiasing, or by a JPEG's blocks, 16 wide for colours."""
 
 SAMPLES = 2**18
-"""About how many of the texels that show something are looked at."""
+"""About how many texels of an image are looked at."""
 
 _Notes = tuple[str, ...]
 
@@ -39,8 +39,8 @@ def recognise(
 ) -> tuple[Layout, _Notes]:
     """The layout of an image (height, width, 3) and a line about each guess.
 
-    stated: what its file says, one of LAYOUTS; None for nothing. A file that says cube means OpenEXR's.
-    wanted: "auto" or one of LAYOUTS, which overrules both. LightError if the image's shape cannot be so.
+    stated: the one of LAYOUTS that its file states, or None. A file that states a cube means OpenEXR's arrangement.
+    wanted: "auto", or one of LAYOUTS, which then overrules file and shape. LightError if the image's shape does not fit.
     lossy: whether it comes from a JPEG, which blurs what lies next to an edge.
     """
     height, width = pixels.shape[:2]
@@ -56,7 +56,7 @@ def recognise(
 
 
 def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
-    """LightError for an unknown name and for a shape that the layout does not have."""
+    """The named layout for an image of this shape. LightError for an unknown name or a shape that does not fit."""
     shown = f"{width} x {height}"
     if name == "lat-long":
         return LatLongLayout(height, width)
@@ -104,7 +104,7 @@ def _by_shape(pixels: NDArray[np.float32], lossy: bool) -> tuple[Layout, _Notes]
 
 
 def _arrangement(height: int, width: int) -> Arrangement | None:
-    """How six whole faces fill the image, if they do. A strip of unknown origin is in the order of OpenGL and Direct3D."""
+    """The arrangement of six whole faces that fills the image, if any. A strip is taken to be OpenGL's and Direct3D's."""
     for arrangement in (VERTICAL_CROSS, HORIZONTAL_CROSS, HORIZONTAL_STRIP, VERTICAL_STRIP):
         if arrangement.face_size(height, width):
             return arrangement
@@ -128,7 +128,7 @@ def _has_empty_cells(pixels: NDArray[np.float32], arrangement: Arrangement, loss
 
 
 def _is_disc(pixels: NDArray[np.float32], lossy: bool) -> bool:
-    """Whether all that lies outside the inscribed circle is of one colour but for a margin, and what lies inside is not."""
+    """Whether all texels outside the inscribed circle, but for a margin, are of one colour, and those inside are not."""
     side = len(pixels)
     margin = min(3 * LOSSY_MARGIN // 2 if lossy else MARGIN, side // 12)  # blocks may be cut across
     distance = np.maximum(np.abs(2 * np.arange(side) + 1 - side) - 1, 0) / side
@@ -144,10 +144,10 @@ def _step(texels: int) -> int:
 
 
 def _stands_out(shown: NDArray[np.float32], empty: NDArray[np.float32]) -> bool:
-    """Whether `empty` (k, 3) is of one colour from which more than half of `shown` (j, 3) differs by more than any of it does.
+    """Whether `empty` (k, 3) is of one colour, and more than half of `shown` (j, 3) is farther from it than all of `empty`.
 
-    One colour: within TOLERANCE of what is large in `shown`, its ninth decile, which a sun does not reach. The dark parts of a
-    night are close to one colour as well; but then, so is most of the rest.
+    One colour means: within TOLERANCE times the ninth decile of `shown`, which a sun does not reach. The dark parts of a night
+    are close to one colour as well; but then so is most of the rest.
     """
     colour = np.median(empty, axis=0)
     spread = float(np.abs(empty - colour).max())

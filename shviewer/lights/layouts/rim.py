@@ -1,4 +1,4 @@
-"""Texels that the rim of a disc cuts: what of them lies inside the unit circle, as points with weights."""
+"""Texels that the rim of a disc cuts: quadrature points and weights on the part inside the unit circle."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from shviewer.harmonics.basis import Array
 
 @dataclass(frozen=True, eq=False)
 class RimPoints:
-    """Points in k pieces of rectangles, (k, n). x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation.
+    """Points (k, n) in k pieces of rectangles. x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation.
 
-    weights: areas. texels: the index of each piece's rectangle, (k,).
+    weights: their areas. texels: the index of each piece's rectangle, (k,).
     """
 
     x: Array
@@ -25,7 +25,7 @@ class RimPoints:
 
 
 def rim_points(x0: Array, x1: Array, y0: Array, y1: Array, n_points: int) -> RimPoints:
-    """Gauss's rule on the part inside the unit circle of rectangles [x0, x1] x [y0, y1], (k,) each, none negative.
+    """Gauss's rule on the part of rectangles [x0, x1] x [y0, y1] inside the unit circle; limits (k,) each, not negative.
 
     With y = sin(p) and x = cos(p) sin(t) the circle is t = pi/2 and sqrt(1 - x^2 - y^2) = cos(p) cos(t), so that nothing is
     singular there. Where the circle leaves the rectangle through a side x = x', which is p' = acos(x'), the limits in t go

@@ -18,24 +18,24 @@ MARGIN = 1.5
 """A tile's texels may bulge beyond its corners: near a pole, or where a layout folds."""
 
 FEW = 2**14
-"""Texels of an image so small that every one is looked at: a tile could hold a whole face of a small cube."""
+"""The most texels of an image of which all are looked at: in a small cube, a tile could hold a whole face."""
 
 
 @dataclass(frozen=True)
 class Texels:
-    """Some texels of an image: where they are in it and on the sphere."""
+    """Some texels of an image, with their places in it and on the sphere."""
 
     rows: Indices
-    """(k,)"""
+    """Their rows, (k,)."""
     columns: Indices
-    """(k,)"""
+    """Their columns, (k,)."""
     directions: Array
     """Unit vectors to their centres, (k, 3)."""
     solid_angles: Array
     """Steradians, (k,), all above 0."""
 
     def within(self, axis: Array, nearest: float, farthest: float) -> Texels:
-        """Those with `nearest` < angle to `axis` <= `farthest`, radians, of their centres; `nearest` may be negative."""
+        """The texels with `nearest` < angle <= `farthest` between centre and `axis`, radians; `nearest` may be negative."""
         distance = chord(self.directions, axis)
         kept = (distance <= chord_of(farthest)) & (distance > chord_of(nearest))
         return Texels(self.rows[kept], self.columns[kept], self.directions[kept], self.solid_angles[kept])
@@ -52,7 +52,7 @@ def chord_of(angle: float) -> float:
 
 
 class Caps:
-    """The texels of an image, by where they look."""
+    """The texels of an image, arranged so that those near a direction are found fast."""
 
     def __init__(self, layout: Layout, height: int, width: int) -> None:
         self._layout = layout
@@ -66,7 +66,7 @@ class Caps:
         self._radii = reach if height * width > FEW else np.full_like(reach, 2.0)
 
     def texels(self, rows: Indices, columns: Indices) -> Texels:
-        """The texels in those places (k,), but for what shows nothing."""
+        """The texels at rows and columns (k,), without those that show nothing."""
         solid_angles = self._layout.solid_angles_at(rows, columns)
         seen = solid_angles > 0
         rows, columns = rows[seen], columns[seen]
@@ -74,7 +74,7 @@ class Caps:
 
     def cap(self, axis: Array, half_angle: float) -> Texels:
         """Every texel whose centre is within `half_angle` radians of `axis`."""
-        touched = ~(chord(self._middles, axis) > self._radii + chord_of(half_angle))  # also where there is no middle
+        touched = ~(chord(self._middles, axis) > self._radii + chord_of(half_angle))  # true for a NaN middle, too
         inside = np.arange(TILE)
         rows = (self._top[touched, None, None] + inside[:, None] + 0 * inside).ravel()
         columns = (self._left[touched, None, None] + inside + 0 * inside[:, None]).ravel()

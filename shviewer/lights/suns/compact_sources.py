@@ -1,16 +1,17 @@
-"""What makes a source compact, and taking the compact sources of an image out of it.
+"""Compact sources: the rule for them, and taking them out of an image.
 
-Compact is, of the mean of the three channels,
+A source is compact if it is, in the mean of the three channels,
     narrow      a half-angle of at most WIDEST,
     bright      a peak at least CONTRAST times as bright as what surrounds it,
     alone       nothing half as bright between CAP and RIM: it would be a piece of something longer, or one of a group,
     worth it    at least FLUX of the image's flux and ENERGY of its ||f||^2, as both are when the source's turn comes.
-The brightest goes first, up to MOST, until none is left. What lies within one cap of CAP leaves as one source.
+The brightest goes first, up to MOST, until none is left. Everything within one cap of CAP leaves as one source.
 
-A source is what rises above its surroundings within CAP of its middle, the middle of all that is half as bright as its peak or
-brighter. The surroundings are the ring beyond, out to RING, and their level is the radiance that LEVEL of the ring stays below,
-per channel. Texels above that level are lowered to it. Texels below 0 are raised to 0: beside a sun they are the ringing of the
-filter that resized the image, and belong to it. No other texel changes, and no channel that would gain by it.
+A source is the radiance that rises above its surroundings within CAP of its middle, which is the middle of all texels at least
+half as bright as its peak. The surroundings are the ring beyond, out to RING; their level is the radiance that LEVEL of the
+ring stays below, per channel. Texels above that level are lowered to it. Texels below 0 are raised to 0: beside a sun they are
+the ringing of the filter that resized the image, and belong to the sun. No other texel changes, nor any channel that would
+gain flux.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ CAP = np.radians(3.0)
 RIM = np.radians(4.0)
 RING = np.radians(6.0)
 WIDEST = np.radians(2.5)
-"""Less than CAP: what fills the cap goes on beyond it."""
+"""The largest half-angle of a compact source, less than CAP: a source that fills the cap goes on beyond it."""
 
 CONTRAST = 10.0
 FLUX = 0.005
@@ -40,10 +41,10 @@ LEVEL = 0.9
 MOST = 8
 
 BLOCK_VALUES = 2**18
-"""Texels weighed at a time."""
+"""Texels whose flux is summed at a time."""
 
 TRIES = 32
-"""So many bright spots are looked at before those taken out are counted and the rest weighed again."""
+"""How many bright spots are looked at before flux and energy of the rest are computed anew."""
 
 RULE = (
     f"a sun is at most {2 * np.degrees(WIDEST):g} degrees wide, alone, {CONTRAST:g} times as bright as what surrounds it, and "
@@ -73,20 +74,20 @@ def suns_or_refusal(name: str, suns: list[Sun], why: str) -> tuple[Sun, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Excess:
-    """What rises around an axis, and what would be left of it."""
+    """The texels that rise above their surroundings around an axis, before and after they are taken out."""
 
     texels: Texels
     before: NDArray[np.float32]
     after: NDArray[np.float32]
-    """Values of the texels, (k, 3), now and if it were taken."""
+    """Values of the texels, (k, 3), now and with the source taken out."""
     level: Array
-    """What LEVEL of the ring beyond stays below, (3,)."""
+    """The radiance that LEVEL of the ring beyond stays below, (3,)."""
     rim: float
-    """The brightest between CAP and RIM, of the channels' mean."""
+    """The largest mean of the channels between CAP and RIM."""
 
     @cached_property
     def taken(self) -> Array:
-        """What is missing from each texel afterwards, (k, 3): exactly, for float32 differences."""
+        """The radiance taken from each texel, (k, 3): exact, as differences of float32 values."""
         return self.before.astype(np.float64) - self.after
 
     @cached_property
@@ -96,7 +97,7 @@ class _Excess:
 
     @property
     def contrast(self) -> float:
-        """The peak over the level; infinite in front of black."""
+        """The peak divided by the level; infinite in front of black."""
         level = float(self.level.mean())
         return 1 + float(self.mean.max()) / level if level > 0 else np.inf
 
@@ -106,7 +107,7 @@ class _Excess:
 
     @property
     def flux(self) -> Array:
-        """(3,)"""
+        """The flux taken, (3,)."""
         return np.asarray(self.texels.solid_angles @ self.taken)
 
 
@@ -122,7 +123,7 @@ class CompactSources:
         self._caps = Caps(layout, *self.pixels.shape[:2])
 
     def take_all(self) -> tuple[list[Sun], str]:
-        """(the sources taken out, why there are no more)."""
+        """Take all sources out; return them and the reason why there are no more."""
         sources: list[Sun] = []
         while True:
             found, why = self._take_brightest(MOST - len(sources))
@@ -131,7 +132,7 @@ class CompactSources:
                 return sources, why
 
     def _take_brightest(self, most: int) -> tuple[list[Sun], str]:
-        """Up to `most` sources that are compact in the present image, and what is wrong with the first spot that is not.
+        """Take out up to `most` sources; return them and why the first spot that is not compact is none.
 
         A source has a texel of at least sqrt(ENERGY ||f||^2 / solid angle of the cap), which few texels reach.
         """
@@ -164,7 +165,7 @@ class CompactSources:
         return found, why or "no texel is bright enough to hold so much in so small a cap"
 
     def _flux_and_squares(self, peak: np.float32) -> tuple[float, float]:
-        """The integrals of |mean| / peak and of its square, to the few digits that a share needs."""
+        """The integrals of |mean| / peak and of its square, in the few digits that a share needs."""
         flux = squares = 0.0
         block = max(1, BLOCK_VALUES // self._mean.shape[1])
         for start in range(0, len(self._mean), block):
@@ -174,19 +175,19 @@ class CompactSources:
         return flux, squares
 
     def _brighter_than(self, dimmest: float) -> Array:
-        """Directions of the texels that are, the brightest first, (k, 3)."""
+        """Directions (k, 3) of the texels brighter than `dimmest`, the brightest first."""
         rows, columns = np.divmod(np.flatnonzero(self._mean >= dimmest), self._mean.shape[1])
         bright = self._caps.texels(rows, columns)
         return bright.directions[np.argsort(-self._mean[bright.rows, bright.columns], kind="stable")]
 
     def _middle(self, peak: Array) -> Array:
-        """The unit vector to the middle of what is at least half as bright within CAP of `peak`, which may lie at its edge."""
+        """The unit vector to the middle of all texels at least half as bright as the peak within CAP of it."""
         near = self._caps.cap(peak, CAP)
         mean = self._mean[near.rows, near.columns]
         return normalise((near.solid_angles * (mean >= mean.max() / 2)) @ near.directions)
 
     def _excess(self, axis: Array) -> _Excess:
-        """What rises within CAP of `axis`."""
+        """The texels that rise above their surroundings within CAP of `axis`."""
         near = self._caps.cap(axis, RING)
         cap, ring = near.within(axis, -1, CAP), near.within(axis, CAP, RING)
         around = self.pixels[ring.rows, ring.columns]
@@ -200,10 +201,10 @@ class CompactSources:
         return _Excess(cap, before, after, level.astype(np.float64), float(rim.max(initial=-np.inf)))
 
     def _disc(self, excess: _Excess) -> Sun:
-        """The disc whose bands 0 and 1 are those of what is taken, by the layout's exact integrals over its texels."""
+        """The disc with bands 0 and 1 of the radiance taken, by the layout's exact integrals over its texels."""
         rows, columns = excess.texels.rows, excess.texels.columns
         scale = np.abs(excess.taken).max()
-        alone = np.zeros(self.pixels.shape, dtype=np.float32)  # pages that stay zero take no memory
+        alone = np.zeros(self.pixels.shape, dtype=np.float32)  # memory pages that stay zero take no memory
         alone[rows, columns] = (excess.taken / scale).astype(np.float32)
         bands = self._layout.project(alone, 2).mean(axis=1)
         vector = np.array([-bands[3], -bands[1], bands[2]]) / np.sqrt(3)  # in units of band 0
@@ -219,7 +220,7 @@ class CompactSources:
 
 
 def _quantile(values: NDArray[np.float32], weights: Array, share: float) -> float:
-    """The smallest value that `share` of the weight does not exceed; infinite for no values."""
+    """The smallest value that `share` of the weight does not exceed; infinite without values."""
     if not len(values):
         return np.inf
     order = np.argsort(values)

@@ -1,16 +1,16 @@
-"""A light without its suns: each becomes a disc with a direction, a size and a radiance; what is left needs few bands.
+"""Suns split off a light: each becomes a disc with a direction, a size and a radiance; the rest then needs few bands.
 
-compact_sources.py says what a sun is and what of an image belongs to it. Of a sum of lobes, the suns are the discs to which
-the same rule applies; they leave exactly.
+compact_sources.py says what a sun is and which part of an image belongs to it. In a sum of lobes, the suns are the discs to
+which the same rule applies; they are taken out without a rest.
 
-In an image the disc has the flux of what was taken, per channel. Its axis is the direction of the flux vector of the channels'
-mean, and its half-angle a makes that as long: |vector| = cos(a/2)^2 flux. So bands 0 and 1 of the mean of rest and disc are
-those of the whole. What a disc cannot show is missing from the others and from single channels: of the sun's flux, about
+In an image the disc has the flux that was taken, per channel. Its axis is the direction of the flux vector of the channels'
+mean, and its half-angle a follows from the vector's length: |vector| = cos(a/2)^2 flux. So bands 0 and 1 of rest plus disc are
+those of the whole, in the mean of the channels. Other bands and single channels are off, by about this share of the sun's flux:
     l^2 |s^2 - t^2| / 8    for standard deviations s along and t across, in radians: of texels that are not square, of glare;
     (l a)^4 / 200          for another profile than a uniform disc;
     l b                    in a channel whose own centre is at the angle b to the axis.
-The half-angle is that of a uniform disc that spreads as much as what was taken, glare included: in a photograph more than the
-sun's own 0.265 degrees.
+The half-angle is that of a uniform disc that spreads as much as the radiance taken, glare included: in a photograph, more than
+the sun's own 0.265 degrees.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ class Sun:
     """A disc of uniform radiance, added to what is behind it."""
 
     axis: Array
-    """Unit, (3,)."""
+    """The unit vector towards the sun, (3,)."""
     half_angle: float
-    """Radians."""
+    """The half-angle of the disc, radians."""
     radiance: Array
-    """Linear RGB, (3,); times the solid angle it is the flux that was taken."""
+    """Linear RGB, (3,); times the solid angle it is the flux taken."""
 
     @property
     def solid_angle(self) -> float:
@@ -48,7 +48,7 @@ class Sun:
 
     @property
     def irradiance(self) -> Array:
-        """What a surface that faces it receives, (3,): pi sin(a)^2 times the radiance."""
+        """The irradiance of a surface that faces it, (3,): pi sin(a)^2 times the radiance."""
         return np.asarray(self.radiance * (np.pi * np.sin(self.half_angle) ** 2))
 
     @property
@@ -64,6 +64,6 @@ class Sun:
     def irradiance_lobe(self) -> Lobe:
         """The irradiance as a function of the surface normal, exact while the disc is all above or all below the horizon.
 
-        Where the horizon cuts it, too small: by 2a / 3 pi of `irradiance` when half of it has set, by less before and after.
+        Where the horizon cuts the disc it is too small: by 2a / 3 pi of `irradiance` if half of it has set, else by less.
         """
         return Lobe(ClampedLinear(), self.axis, self.irradiance)

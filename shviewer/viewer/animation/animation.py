@@ -1,4 +1,4 @@
-"""Animations: what the sweep of the window or a turn of the camera shows, frame by frame, in a file.
+"""Animations: a band sweep, as the window plays it, or a turn of the camera, frame by frame, in a file.
 
 A frame is the screenshot of its state: it goes through the same calls, in one headless context.
 """
@@ -28,38 +28,38 @@ from shviewer.viewer.screenshot import headless_renderer, render_rgb
 from shviewer.viewer.state import State, changed
 
 Progress = Callable[[float, float, str], None]
-"""Told the share that is done, the seconds left, and what is at work."""
+"""A function that is told the share done, the seconds left, and the step at work."""
 
 ENCODERS = {".gif": (encode_gif, 2), ".webp": (encode_webp, 1)}
-"""By suffix, with how often each frame is drawn."""
+"""Suffix -> the encoder, and how often it draws each frame."""
 
 TURN_FRAMES = 72
 TURN_SECONDS = 0.08
-"""Once round in 5.8 s, by 5 degrees a frame."""
+"""How long a turntable shows a frame: once round in 5.8 s, at 5 degrees a frame."""
 
 HOLD = 3
-"""A band sweep shows its last frame so many times as long as the others."""
+"""How many times longer a band sweep shows its last frame than the others."""
 
 SECONDS_RANGE = (0.02, 60.0)
-"""Of a frame. Below, browsers show GIFs at a tenth of a second."""
+"""The shortest and longest time of a frame. Browsers show shorter GIF frames for a tenth of a second."""
 
 MAX_FRAMES = 720
 MAX_SECONDS = 655.0
-"""In all: the most that GIF can say of one frame, which is what equal frames become."""
+"""The longest animation: the longest that GIF can show one frame, since equal frames are joined to one."""
 
 MAX_PIXELS = 2**29
-"""Of all frames together. A GIF is encoded from one byte for each; 72 frames of 3840 x 1920 are just below."""
+"""The most pixels of all frames together, a byte each while a GIF is encoded; 72 frames of 3840 x 1920 are just below."""
 
 
 @dataclass(frozen=True)
 class Animation:
-    """Its frames, how long each is shown, and the state that its description is of."""
+    """The states of the frames, how long each is shown, and `portrait`, the state that the description tells."""
 
     states: tuple[State, ...]
     milliseconds: tuple[int, ...]
     portrait: State
     about: dict[str, object]
-    """What kind it is, for its description."""
+    """The kind of animation and its numbers, for the description."""
 
 
 def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECONDS) -> Animation:
@@ -89,7 +89,7 @@ def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SEC
 
 
 def _milliseconds(seconds: float) -> int:
-    """In whole hundredths of a second, as GIF keeps them."""
+    """Milliseconds of a frame, in whole hundredths of a second, as GIF keeps them. UsageError outside SECONDS_RANGE."""
     least, most = SECONDS_RANGE
     if not least <= seconds <= most:
         raise UsageError(f"--seconds {seconds:g}: a frame is shown for {least:g} to {most:g} s")
@@ -111,7 +111,7 @@ def save_animation(
     overlay: bool = True,
     progress: Progress | None = None,
 ) -> Picture:
-    """Draw all frames without a window and write `out`, .gif or .webp; the picture that the description is of.
+    """Draw all frames without a window and write `out`, .gif or .webp; return the picture that the description tells.
 
     UsageError, LightError, GraphicsError, ShaderError or OutputError if that is impossible; then `out` is what it was.
     """
@@ -143,7 +143,7 @@ def save_animation(
 def describe(
     animation: Animation, portrait: Picture, composition: Composition, opengl: str, *, overlay: bool = True
 ) -> str:
-    """JSON: the description of one picture, the last of a band sweep or the first of a turn, and of the animation."""
+    """JSON that describes the animation and one of its pictures: the last of a band sweep, the first of a turn."""
     frames = {"frames": len(animation.states), "milliseconds": list(animation.milliseconds)}
     described = json.loads(metadata(portrait, composition, opengl, overlay=overlay))
     return json.dumps({**described, "animation": {**animation.about, **frames}}, allow_nan=False)

@@ -1,8 +1,8 @@
 """Animations as bytes: GIF with one palette for all frames, and lossless WebP. Frames are drawn when they are written.
 
 At 1280 x 640 a frame of the band sweeps of green and venice_sunset takes 51 and 68 kB and 0.3 to 0.4 s as lossless WebP.
-Quality 90 would take 19 and 21 kB and 0.06 s, but be 74 of 255 off at the edges of letters: a tool that measures errors keeps
-its pixels. As GIF it is 63 and 38 kB and 0.3 s, most of which is drawing it twice.
+Quality 90 would take 19 and 21 kB and 0.06 s, but be off by 74 of 255 at the edges of letters: a tool that measures errors
+keeps its pixels. As GIF a frame takes 63 and 38 kB and 0.3 s, most of which is drawing it twice.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ Draw = Callable[[int], NDArray[np.uint8]]
 """Frame number -> (height, width, 3) uint8, top row first; the same each time it is asked for."""
 
 WEBP_EFFORT = {"method": 2, "quality": 50}
-"""Of the lossless encoder: half as large as without effort; twice the time beyond it saves 2 %."""
+"""Settings of the lossless encoder: files half as large as without effort; twice the time would save another 2 %."""
 
 DESCRIPTION, SOFTWARE = 0x010E, 0x0131
-"""EXIF tags."""
+"""Numbers of EXIF tags."""
 
 
 def encode_gif(draw: Draw, milliseconds: Sequence[int], text: str) -> bytes:
     """An endless GIF, `text` as its comment. Every frame is drawn twice: to count its colours, and to be written.
 
-    milliseconds: of each frame, whole hundredths of a second. What did not change since the last frame is left transparent.
+    milliseconds: the time of each frame, in whole hundredths of a second. Pixels equal to the last frame's are transparent.
     """
     counted = ColourCount()
     for number in range(len(milliseconds)):
@@ -78,7 +78,7 @@ def _indexed(draw: Draw, count: int, palette: SharedPalette, table: bytes) -> It
 
 
 class _Reel(Image.Image):
-    """An image of several frames, like those that Pillow reads from files: one is drawn when its pixels are wanted."""
+    """An image of several frames, like those that Pillow reads from files: a frame is drawn when its pixels are wanted."""
 
     def __init__(self, draw: Draw, n_frames: int) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""When a sweep that plays takes its next step. Pure arithmetic: it is told the time and asks no clock."""
+"""The beat of a sweep that plays: when it takes its next step. Pure arithmetic, which is told the time and asks no clock."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ SWEEP_SECONDS = 0.7
 class Metronome:
     """A beat every so many seconds while something plays, the first one a whole period after it began.
 
-    A beat that comes late, because a frame took long, moves those after it: none is caught up with and none left out.
+    A beat that comes late, because a frame took long, delays all later ones: none is hurried and none left out.
     """
 
     def __init__(self, seconds: float = SWEEP_SECONDS) -> None:

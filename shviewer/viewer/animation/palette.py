@@ -1,4 +1,4 @@
-"""One palette for all frames of an animation: at most 256 colours that no frame's colours are far from.
+"""One palette for all frames of an animation: at most 256 colours, so chosen that every colour of a frame is near one.
 
 All frames are counted into bins first; their colours are then chosen farthest first, so that the few pixels of a small mark
 or of a lobe's edge get colours of their own, with a mild preference for what is seen often. On the band sweeps of green and
@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 BITS = 7
-"""Of each channel; colours that agree in them share a bin and an entry, and differ by less than 2^(8 - BITS) = 2."""
+"""High bits of a channel; colours equal in them share a bin and an entry, and differ by less than 2^(8 - BITS) = 2."""
 
 PREFERENCE = 0.25
-"""The squared distance of a colour counts times its number of pixels to this power."""
+"""The squared distance of a colour is weighted with its number of pixels to this power."""
 
 BLOCK = 2**20
 """Pixels counted at once, which bounds the memory needed beside the frame."""
@@ -30,10 +30,10 @@ class SharedPalette:
     colours: NDArray[np.uint8]
     table: NDArray[np.uint8]
     reach: float
-    """The largest distance, in any channel, of the mean of a bin from its entry."""
+    """The largest distance, in any channel, between the mean of a bin and its entry."""
 
     def indices(self, pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """(..., 3) uint8 of a frame that was counted -> (...) entries."""
+        """The entry of each pixel: (..., 3) uint8 of a frame that was counted -> (...)."""
         found: NDArray[np.uint8] = self.table[_bins(pixels)]
         return found
 
@@ -46,7 +46,7 @@ class ColourCount:
         self.sums = np.zeros((3, len(self.counts)))
 
     def add(self, pixels: NDArray[np.uint8]) -> None:
-        """(..., 3) uint8."""
+        """Count the pixels (..., 3) uint8 of one frame."""
         flat = pixels.reshape(-1, 3)
         for start in range(0, len(flat), BLOCK):
             block = flat[start : start + BLOCK]
@@ -56,7 +56,7 @@ class ColourCount:
                 sums += np.bincount(bins, block[:, channel], len(self.counts))
 
     def palette(self, most: int = 256) -> SharedPalette:
-        """The colours of all frames in at most `most`; at least one frame must have been added."""
+        """A palette of at most `most` colours for all frames; at least one frame must have been added."""
         used = np.flatnonzero(self.counts)
         means = (self.sums[:, used] / self.counts[used]).T
         preference = self.counts[used] ** PREFERENCE
@@ -77,7 +77,7 @@ class ColourCount:
 
 
 def _bins(pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
-    """(..., 3) -> (...) number of the bin of each pixel."""
+    """The number of the bin of each pixel: (..., 3) -> (...)."""
     red, green, blue = np.moveaxis(pixels >> (8 - BITS), -1, 0).astype(np.int32)
     bins: NDArray[np.int32] = (red << 2 * BITS) | (green << BITS) | blue
     return bins

@@ -1,4 +1,4 @@
-"""What a window shows of a picture: the renderer and what is kept from one frame to the next. Knows no window and no event."""
+"""The content of a window: the renderer, and what is kept from one frame to the next. Knows no window and no event."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class Canvas:
         self._evaluation = Evaluation()
 
     def by_map(self, state: State, composition: Composition) -> bool:
-        """Whether the reconstruction is to be drawn from a map, where that is left to the time that frames take."""
+        """Whether to draw the reconstruction from a map; asked where the choice is left to the time that frames take."""
         pixels = summed_pixels(composition)
         return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
 
     def show(self, picture: Picture, composition: Composition) -> None:
-        """Upload and write what has changed. GraphicsError for a map that this OpenGL cannot hold."""
+        """Upload what has changed, and draw its text. GraphicsError for a map that this OpenGL cannot hold."""
         self.renderer.show(picture)
         key = _overlay_key(picture, composition)
         if key != self._overlay_key:
@@ -49,9 +49,9 @@ class Canvas:
             self._overlay_key = key
 
     def draw(self, composition: Composition, pointer: Point | None = None) -> bool:
-        """The picture last shown, with the values under the pointer; True if another frame is due.
+        """Draw the picture last shown, with the values under the pointer; return whether another frame is due.
 
-        One that is summed per pixel is timed, and may turn out to be too slow.
+        A picture that is summed per pixel is timed, and may turn out to be too slow.
         """
         picture = self._picture
         layers = self.layers(composition, pointer)
@@ -68,7 +68,7 @@ class Canvas:
         return again or self._evaluation.choose(n_bands, pixels, now)
 
     def layers(self, composition: Composition, pointer: Point | None = None) -> tuple[Layer, ...]:
-        """Marks, what is written, and the values under the pointer."""
+        """Layers of the marks, of the text, and of the values under the pointer."""
         picture = self._picture
         written = self.overlay
         if written is None:
@@ -84,7 +84,7 @@ class Canvas:
         return layers
 
     def say(self, message: str, picture: Picture, composition: Composition) -> None:
-        """Draw a picture with a message over it; the next one is written anew."""
+        """Draw a picture with a message over it; the text of the next picture is drawn anew."""
         self.renderer.show(picture)
         waiting = replace(picture, state=changed(picture.state, message=message))
         self.renderer.draw(
@@ -103,14 +103,14 @@ class Canvas:
 
 
 def summed_pixels(composition: Composition) -> float:
-    """Pixels that show the reconstruction or its error, as far as they are in sight."""
+    """The number of visible pixels that show the reconstruction or its error."""
     return sum(sphere.visible_area for sphere in composition.spheres[1:])
 
 
 def _overlay_key(picture: Picture, composition: Composition) -> object:
-    """Equal as long as nothing that is written changes: turning writes nothing unless the help shows it.
+    """A key that is equal as long as no text changes. Turning changes none, unless the help shows the camera.
 
-    Zooming may, since text gives way to spheres; and the time-error plane changes with what has been measured.
+    Zooming may change it, since text gives way to spheres; the time-error plane changes with every measurement.
     """
     state = picture.state
     if not state.view.help_visible:

@@ -1,9 +1,9 @@
-"""Summed per pixel or drawn from a map: what a window's frames have cost decides, and not a guess about the machine.
+"""The choice between summing per pixel and drawing from a map, by the times that a window's frames have taken.
 
 A frame by direct summation takes longer with every band. Where one took more than LIMIT, twice, it is drawn from the map from
-then on, and so is every one with more bands. The sum comes back with so few bands that it should take less than BACK, and stays
-if it does: between the two nothing changes, so that no band count flickers. What was slow is tried again after a while, the
-later the slower it was: a machine that was busy at the start is not slow for ever.
+then on, and so is every frame with more bands. The sum comes back at a band count with which it should take less than BACK,
+and stays if it does. Between the two limits nothing changes, so that no band count flickers. A slow count is tried again after
+a while, the later the slower it was: a machine that was busy at the start is not slow for ever.
 """
 
 from __future__ import annotations
@@ -13,42 +13,42 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 LIMIT, BACK = 16.0, 12.0
-"""Milliseconds a frame."""
+"""Milliseconds of a frame: above the first the sum is too slow, below the second it is fast enough again."""
 
 BELIEF = 5.0
-"""Seconds for which a frame of LIMIT is held against the sum; one that took n times as long, n times as long."""
+"""Seconds for which a frame that took LIMIT counts against the sum; one that took n times as long counts n times longer."""
 
 MEMORY = 4
-"""Frames of a band count that are remembered; the fastest counts, the others were disturbed."""
+"""How many frames of a band count are remembered; the fastest counts, since the others were disturbed."""
 
 
 COMPARABLE = 0.7
-"""A frame says something of others with so many times its pixels or fewer: more would blow up what does not grow with them."""
+"""The least share of the present frame's pixels that a frame must have to say something about its time."""
 
 
 class Frame(NamedTuple):
-    """A direct one."""
+    """A frame that was summed per pixel."""
 
     seconds: float
-    """When."""
+    """When it was drawn, on any clock."""
     pixels: float
     milliseconds: float
 
     def at_least(self, pixels: float) -> float:
-        """What one of so many pixels takes, whatever part of this one does not depend on them."""
+        """Milliseconds that a frame of `pixels` takes at least, whatever part of the time does not depend on pixels."""
         return self.milliseconds * min(1.0, pixels / max(self.pixels, 1.0))
 
 
 @dataclass
 class Evaluation:
-    """How to draw the next frame, by the frames there have been."""
+    """The choice for the next frame, from the frames before it."""
 
     frames: dict[int, deque[Frame]] = field(default_factory=dict)
-    """By the number of bands."""
+    """Number of bands -> the frames remembered."""
     by_map: bool = False
 
     def choose(self, n_bands: int, pixels: float, seconds: float) -> bool:
-        """Whether to draw from the map. pixels: that show the reconstruction or its error; seconds: by any clock."""
+        """Whether to draw from the map. pixels: how many show the reconstruction or its error; seconds: on any clock."""
         if any(n <= n_bands and self._too_slow(n, pixels, seconds) for n in self.frames):
             self.by_map = True
         elif self.by_map:
@@ -64,7 +64,7 @@ class Evaluation:
         return [frame for frame in self.frames[n_bands] if frame.pixels >= COMPARABLE * pixels]
 
     def _cost(self, n_bands: int, pixels: float, seconds: float) -> float:
-        """Milliseconds with so many bands, at least; 0 where nothing is known, or no more believed."""
+        """A lower bound of the milliseconds with `n_bands` bands; 0 where nothing is known or still believed."""
         frames = self._comparable(n_bands, pixels)
         cost = min((frame.at_least(pixels) for frame in frames), default=0.0)
         return cost if frames and seconds - frames[-1].seconds < BELIEF * cost / LIMIT else 0.0
@@ -73,7 +73,7 @@ class Evaluation:
         return len(self._comparable(n_bands, pixels)) > 1 and self._cost(n_bands, pixels, seconds) > LIMIT
 
     def _estimate(self, n_bands: int, pixels: float, seconds: float) -> float:
-        """Milliseconds with so many bands, or from the nearest count above as if all of it was the sum's n^2 terms."""
+        """Milliseconds with `n_bands` bands, or scaled from the nearest count above as if all time went to the n^2 terms."""
         costs = {n: self._cost(n, pixels, seconds) for n in self.frames if n >= n_bands}
         known = [n for n, cost in costs.items() if cost > 0]
         return costs[min(known)] * (n_bands / min(known)) ** 2 if known else 0.0

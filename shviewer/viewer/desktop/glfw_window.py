@@ -12,7 +12,7 @@ from shviewer.errors import GraphicsError
 from shviewer.viewer.gl.renderer import GL_VERSIONS
 
 SMALLEST_WINDOW = (600, 320)
-"""Screen coordinates in which the help can still be read."""
+"""The smallest size, in screen coordinates, in which the help can still be read."""
 
 SPECIAL_KEYS = {
     glfw.KEY_UP: "Up",
@@ -33,11 +33,11 @@ SPECIAL_KEYS = {
     **{getattr(glfw, f"KEY_{digit}"): str(digit) for digit in range(10)},
     **{getattr(glfw, f"KEY_KP_{digit}"): str(digit) for digit in range(10)},
 }
-"""Keys known by their place; digits, too, because on some layouts they are typed with Shift."""
+"""Keys known by their place on the keyboard; digits, too, because on some layouts they are typed with Shift."""
 
 
 class NoDisplayError(GraphicsError):
-    """There is nothing to open a window on."""
+    """No display to open a window on."""
 
 
 def key_name(code: int, scancode: int, modifiers: int) -> str:

@@ -1,4 +1,4 @@
-"""What the window says of a light and its file, in words that name the keys."""
+"""Messages of the window about a light and its file, in words that name the keys."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from shviewer.viewer.state import describe_sanitizing
 
 
 def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
-    """A refusal of `light`, and the keys that do what it recommends as an option of the command line.
+    """A refusal of `light`, with the keys that do in the window what it recommends as an option of the command line.
 
-    With keys it names the file without its folder, so that they are not cut off.
+    Where keys follow, the file is named without its folder, so that they are not cut off.
     """
     keys = []
     if "--sanitize" in refusal and not reading.sanitize:
@@ -28,12 +28,12 @@ def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
 
 
 def notes_of(light: Light) -> str:
-    """All notes in a line; "" if there are none."""
+    """All notes of a light in one line; "" if there are none."""
     return f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
 
 
 def reading_news(before: Recipe, after: Recipe) -> str:
-    """How files are read from now on, if that changed."""
+    """A message that says how files are read from now on; "" if that did not change."""
     if before.reading.layout != after.reading.layout:
         return f"layout {after.reading.layout}"
     if before.reading.sanitize != after.reading.sanitize:

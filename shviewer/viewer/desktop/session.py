@@ -1,4 +1,4 @@
-"""What goes on between a key and a frame: one state and its picture, kept together whatever fails. Knows no window."""
+"""The session: between a key and a frame, one state and its picture, kept together whatever fails. Knows no window."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import State, changed
 
 LOOK_SECONDS = 0.2
-"""At least so far apart are two looks at a watched file, also while events come."""
+"""The least time between two looks at a watched file, also while events come."""
 
 LONG_PROJECTION = 1e8
-"""Basis values, about half a second of them."""
+"""The number of basis values from which a projection is announced: about half a second."""
 
 
 class Session:
-    """The state, and the picture of it or of the last one that could be shown."""
+    """The state, and its picture or that of the last state that could be shown."""
 
     def __init__(self, state: State, *, verbose: bool = False, watch: bool = False) -> None:
         """LightError or UsageError if the first state cannot be shown."""
@@ -55,7 +55,7 @@ class Session:
         return f"shviewer - {self.picture.light.name}"
 
     def press(self, key: str) -> Command | None:
-        """What a key does; a command that only a window can carry out is given back."""
+        """Do what a key asks for; a command that only a window can carry out is returned."""
         done = press(self.state, key)
         if isinstance(done, Command):
             return self.do(done)
@@ -63,7 +63,7 @@ class Session:
         return None
 
     def do(self, command: Command) -> Command | None:
-        """Carry a command out; one that only a window can carry out is given back."""
+        """Carry a command out; one that only a window can carry out is returned."""
         self.state = changed(self.state, message="")
         if command is Command.RELOAD:
             self._read_anew = True
@@ -81,7 +81,7 @@ class Session:
         self._read_anew = True
 
     def tick(self, now: float) -> bool:
-        """A step of the sweep that plays, and a look at a watched file, where one is due; whether anything changed."""
+        """Take a step of the sweep and a look at a watched file, where they are due; return whether anything changed."""
         last, anew = self.state, self._read_anew
         if self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
@@ -93,7 +93,7 @@ class Session:
         return self.state is not last or self._read_anew != anew
 
     def prepare(self, by_map: bool = False) -> None:
-        """Make the picture of the state. One that cannot be shown leaves the present picture and says why."""
+        """Make the picture of the state. For a state that cannot be shown, keep the present picture and say why."""
         last, anew = self.picture, self._read_anew
         if last.state == self.state and self.by_map == by_map and not anew:
             return
@@ -124,7 +124,7 @@ class Session:
         self._log(f"kept {shown.light.name}: {error}")
 
     def announcement(self) -> str:
-        """What is said over the last picture before a projection that takes long; "" if it does not."""
+        """The message over the last picture while a long projection runs; "" if the projection is short."""
         recipe, last = self.state.recipe, self.picture.state.recipe
         new = self._read_anew or (recipe.light, recipe.reading, recipe.method, recipe.samples) != (
             last.light,
@@ -137,7 +137,7 @@ class Session:
         return f"projecting {recipe.samples} samples to {recipe.projected_bands} bands ..."
 
     def save(self, renderer: Renderer, composition: Composition) -> None:
-        """The picture as a file under the next free name in the current folder."""
+        """Save the picture under the next free name in the current folder."""
         self.prepare()
         self.state = changed(self.state, message="")
         self.prepare()
@@ -152,7 +152,7 @@ class Session:
             self._log(f"saved {path}")
 
     def _news(self, light: Light, *, again: bool) -> str:
-        """What is worth saying of a light that was not shown before."""
+        """The message about a light that was not shown before."""
         notes = notes_of(light)
         if not again:
             return notes
@@ -160,7 +160,7 @@ class Session:
         return f"reloaded {notes or light.name}"
 
     def _fit(self) -> None:
-        """As many bands as the tolerance needs; where none are enough, the best there is, and say so."""
+        """Use as many bands as the tolerance needs; where none are enough, say what is the best there is."""
         self.prepare()
         found = needs(self.state.recipe)
         wanted = found.irradiance if self.state.recipe.quantity == "irradiance" else found.radiance

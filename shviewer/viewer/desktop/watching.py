@@ -7,10 +7,10 @@ from shviewer.lights.find import file_version
 
 
 class Watch:
-    """Two equal looks in a row make a change: a file that is still being written is not read too early.
+    """A watch on one file. A change counts after two equal looks, so that a file still being written is not read too early.
 
     A version is reported once, so that a file that cannot be read is not tried again until it has changed. Editors replace
-    files: one that is gone is waited for.
+    files: a file that is gone is waited for.
     """
 
     def __init__(self) -> None:

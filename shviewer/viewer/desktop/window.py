@@ -1,4 +1,4 @@
-"""The window: what GLFW reports becomes a new state, and a changed state becomes a frame.
+"""The window: an event of GLFW becomes a new state, and a changed state becomes a frame.
 
 Nothing is drawn and no time is spent while nothing happens. GLFW is asked to return four times a second all the same, so
 that Ctrl-C in the terminal is heard at once; a watched file is looked at then, too.
@@ -30,7 +30,7 @@ from shviewer.viewer.state import State, changed
 
 IDLE_SECONDS = 0.25
 CLICK_PIXELS = 4.0
-"""A press that moves less than this before its release is a click."""
+"""A press is a click if the mouse moves less than this before its release."""
 
 
 def run(state: State, size: tuple[int, int], *, verbose: bool = False, watch: bool = False) -> None:
@@ -93,7 +93,7 @@ class Window:
         self._due()
 
     def press(self, key: str) -> None:
-        """Do what a key does, and for the session what only a window can."""
+        """Do what a key asks for; commands that the session returns are done here."""
         command = self.session.press(key)
         composition = self.composition()
         if command is Command.CLOSE:
@@ -148,7 +148,7 @@ class Window:
         return compose(width, height, view.zoom, scale if scale > 0 else 1.0, view.n_spheres)
 
     def _due(self) -> None:
-        """A frame has to be drawn."""
+        """Note that a frame has to be drawn."""
         self.frames_due = max(self.frames_due, 1)
 
     def _toggle_fullscreen(self) -> None:
@@ -190,7 +190,7 @@ class Window:
     def _on_cursor(self, window: Any, x: float, y: float) -> None:
         """Remember where the mouse is, in pixels of the framebuffer, and drag.
 
-        The place comes with the event: asking for it would give where the mouse is by now, events later.
+        The place comes with the event: GLFW, if asked, would tell where the mouse is by now, some events later.
         """
         window_size, pixels = glfw.get_window_size(self.handle), glfw.get_framebuffer_size(self.handle)
         scale = pixels[0] / max(window_size[0], 1), pixels[1] / max(window_size[1], 1)
@@ -212,7 +212,7 @@ class Window:
         self.change((rotate_light if shift else orbit)(self.session.state, right, up))
 
     def _hover(self, composition: Composition) -> None:
-        """Show the values under the mouse, or show them no more."""
+        """Show the values under the mouse, or take them away."""
         over = any(sphere.position(*self.mouse) is not None for sphere in composition.spheres)
         over = over and not self.session.state.view.lobe_view and not self.session.state.view.help_visible
         if over or self.hovering:

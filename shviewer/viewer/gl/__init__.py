@@ -1,1 +1,1 @@
-"""What knows OpenGL: programs, textures, and the renderer of a Picture."""
+"""Everything that knows OpenGL: programs, textures, and the renderer of a Picture."""

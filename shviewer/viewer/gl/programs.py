@@ -21,7 +21,7 @@ SAMPLERS = {"original_map": 0, "reconstruction_map": 1, "colour_map": 2, "layer"
 
 
 class Program:
-    """A vertex and a fragment shader; by default a triangle as large as the viewport. ShaderError if they do not compile."""
+    """A vertex and a fragment shader; by default the vertices cover the viewport. ShaderError if they do not compile."""
 
     def __init__(
         self,
@@ -43,13 +43,13 @@ class Program:
                     member.value = SAMPLERS[name]
 
     def set(self, **values: Any) -> None:
-        """Uniforms by name; one that this choice of the program does not use is left out."""
+        """Set uniforms by name; a uniform that this choice of the program does not use is left out."""
         for name, value in values.items():
             if name in self._uniforms:
                 self._uniforms[name].value = value
 
     def draw(self) -> None:
-        """All pixels of the viewport."""
+        """Draw all pixels of the viewport."""
         assert self._triangle is not None
         self._triangle.render(moderngl.TRIANGLES, vertices=3)
 
@@ -71,7 +71,7 @@ def _compile(
 
 
 def _explain(report: str, sources: dict[str, ShaderSource], pair: str) -> str:
-    """moderngl's report names the stage in a heading ("fragment_shader"); a link error has none."""
+    """The error in one line. moderngl's report names the stage in a heading ("fragment_shader"); a link error has none."""
     stage = re.search(r"(vertex|fragment)_shader\s*=*\s*", report)
     if stage is None:
         return f"{pair} do not link: {' '.join(report.split())}"

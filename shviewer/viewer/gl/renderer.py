@@ -30,10 +30,10 @@ from shviewer.viewer.picture import Picture
 from shviewer.viewer.view import ERRORS
 
 GL_VERSIONS = (450, 410, 330)
-"""Asked for in this order; every shader is written for the last."""
+"""Versions of OpenGL in the order in which they are asked for; every shader is written for the last."""
 
 VEC4 = 16
-"""Bytes."""
+"""Bytes of a vec4."""
 
 
 class Renderer:
@@ -42,7 +42,7 @@ class Renderer:
     def __init__(self, context: moderngl.Context) -> None:
         self.context = context
         self.programs: dict[tuple[str, str, str, str, int], Program] = {}
-        """Of sphere.frag, by the choices they were made for."""
+        """Programs of sphere.frag, by the choices they were made for."""
         self.layer_program = Program(context, "layer.frag")
         self.surfaces: SurfaceRenderer | None = None
         """Made when the first surface is drawn."""
@@ -52,7 +52,7 @@ class Renderer:
             ArrayTexture(context) for _ in range(4)
         )
         self.layers: dict[int, tuple[Layer, ArrayTexture]] = {}
-        """By the identity of their image; those of the last frame."""
+        """The layers of the last frame and their textures, by the identity of the image."""
         self.colours: dict[str, NDArray[np.float32]] = {}
         self.picture: Picture | None = None
         self.coefficients: Array | None = None
@@ -63,7 +63,7 @@ class Renderer:
 
     @property
     def version(self) -> str:
-        """Version and renderer as the driver names them."""
+        """OpenGL's version and the name of the graphics processor, as the driver gives them."""
         code = self.context.version_code
         return f"OpenGL {code // 100}.{code % 100 // 10}, {self.context.info['GL_RENDERER']}"
 
@@ -83,7 +83,7 @@ class Renderer:
         self.picture = picture
 
     def _show_reconstruction(self, drawn: Drawn) -> None:
-        """A sum's coefficients stay in their buffer while something else is drawn; a map goes."""
+        """Upload coefficients or map. Coefficients stay in their buffer while something else is drawn; a map goes."""
         if isinstance(drawn, DirectSum) and drawn.coefficients is not self.coefficients:
             self.sh_buffer.write(pack_coefficients(drawn.coefficients))
             self.coefficients = drawn.coefficients
@@ -97,7 +97,7 @@ class Renderer:
         *,
         linear: bool = False,
     ) -> None:
-        """The picture last shown, and layers over it; with `linear` the spheres' radiance alone, which surfaces have not."""
+        """Draw the picture last shown, and layers over it. linear: the spheres' radiance alone; ValueError for surfaces."""
         picture = self.picture
         if picture is None:
             raise ValueError("nothing to draw: show a picture first")
@@ -172,7 +172,7 @@ class Renderer:
         ends = np.cumsum([0, len(picture.original.lobes), len(picture.compared.lobes), len(picture.suns)]).tolist()
         source, lobes, suns = picture.original, tuple(ends[0:2]), tuple(ends[2:4])
         map_texture = self.original_map
-        if shown == "ERROR":  # of what is left without the suns, if there are any
+        if shown == "ERROR":  # the error of what is left without the suns, if there are any
             source, lobes, suns = picture.compared, tuple(ends[1:3]), (0, 0)
             map_texture = self.original_map if source.map is picture.original.map else self.compared_map
         map_texture.use(SAMPLERS["original_map"])
@@ -195,7 +195,7 @@ class Renderer:
         program.draw()
 
     def _program(self, picture: Picture, shown: str) -> Program:
-        """The program that draws this of a picture, compiled when it is first wanted; what it does not read is all one."""
+        """The program that draws `shown`, compiled when first wanted. Choices that it does not read make no new one."""
         original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
         reconstruction = "MAP" if isinstance(picture.drawn, SplineMap) and shown != "ORIGINAL" else "SUM"
         tone = "NONE" if shown == "ERROR" else picture.state.view.tone.upper()
@@ -211,7 +211,7 @@ class Renderer:
         return self.programs[key]
 
     def _draw_layers(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
-        """In their order; the texture of an image lives as long as it is drawn in every frame."""
+        """Draw layers one over the other; the texture of an image lives as long as it is drawn in every frame."""
         wanted = {id(layer.image) for layer in layers}
         spare = [self.layers.pop(key)[1] for key in list(self.layers) if key not in wanted]
         self.context.enable(moderngl.BLEND)

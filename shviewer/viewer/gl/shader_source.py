@@ -1,4 +1,4 @@
-"""Shader files joined by their #includes, and a driver's messages given their place in the file that people edit."""
+"""Shader files joined by their #includes, and a driver's messages with the file and line that people edit."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from shviewer.resources import resource_folder
 
 INCLUDE = re.compile(r'\s*#include\s+"([^"]+)"\s*$')
 DRIVER_POSITION = re.compile(r"^(?:\s*(?:ERROR|WARNING):\s*)?\d+[:(](\d+)(?:\((\d+)\))?\)?\s*:?\s*(.*)$")
-"""Mesa "0:42(29): error: ...", NVIDIA "0(42) : error ...", AMD, Intel and Apple "ERROR: 0:42: ..."."""
+"""Positions in messages: Mesa "0:42(29): error: ...", NVIDIA "0(42) : error ...", AMD, Intel and Apple "ERROR: 0:42: ..."."""
 
 
 @dataclass(frozen=True)
 class ShaderSource:
-    """A joined shader. origins: for each of its lines the file's name and the line number there, from 1."""
+    """A joined shader. origins: the file and the line number, from 1, that each of its lines comes from."""
 
     text: str
     origins: tuple[tuple[str, int], ...]
 
     def explain(self, log: str) -> str:
-        """The driver's messages with shaders/FILE:LINE in place of the line of the joined text, one line in all."""
+        """The driver's messages in one line, with shaders/FILE:LINE in place of line numbers of the joined text."""
         lines = [self._place(line.strip()) for line in log.splitlines() if line.strip(" =")]
         return "; ".join(line for line in lines if line) or "the driver gave no reason"
 
@@ -35,7 +35,7 @@ class ShaderSource:
 
 
 def load_shader(name: str, generated: Mapping[str, str] | None = None) -> ShaderSource:
-    """shaders/`name` with its #includes joined, each file once; `generated` holds includes that are no files.
+    """shaders/`name` with its #includes joined, each file once; `generated` holds the text of includes that are no files.
 
     ShaderError if a file is missing, listing those that are there.
     """

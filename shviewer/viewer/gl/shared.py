@@ -1,4 +1,4 @@
-"""What CPU and GPU share: limits, numbers of cases, the contents of uniform blocks, and the GLSL constants made from them."""
+"""Numbers that CPU and GPU share: limits, numbers of cases, the contents of uniform blocks, and the GLSL constants."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "RECONSTRUCTION": ("SUM", "MAP"),
     "TONE": tuple(tone.upper() for tone in TONES),
 }
-"""What a program of shaders/sphere.frag is made for: one of each, and PROFILES."""
+"""The choices that a program of shaders/sphere.frag is compiled for: one of each, and PROFILES."""
 
 BACKGROUND = (0.0203, 0.0203, 0.0232)
 """Linear RGB around the spheres: a little above black, so that an unlit sphere is still seen."""
@@ -33,7 +33,7 @@ NEGATIVE_HUE = (0.06, 0.40, 1.0)
 """Linear RGB that negative luminance tends to."""
 
 NEGATIVE_KNEE = 0.3
-"""The magnitude, in units of white, that gets half of it."""
+"""The magnitude of negative luminance, in units of white, that goes half-way to that colour."""
 
 SH_TERMS = MAX_DIRECT_BANDS**2
 LOBE_SLOTS = 2 * MAX_LOBES + MAX_SUNS
@@ -43,7 +43,7 @@ VECTORS = {"BACKGROUND": BACKGROUND, "NEGATIVE_HUE": NEGATIVE_HUE}
 
 
 def glsl_constants(chosen: Mapping[str, str | int] = MappingProxyType({})) -> str:
-    """constants.glsl, which every shader that needs a number from here includes; with the choices of one program."""
+    """The text of constants.glsl, which shaders include for the numbers of this module and the choices of their program."""
     integers = {
         "SH_TERMS": SH_TERMS,
         "LOBE_SLOTS": LOBE_SLOTS,
@@ -65,7 +65,7 @@ def glsl_constants(chosen: Mapping[str, str | int] = MappingProxyType({})) -> st
 
 
 def pack_coefficients(coefficients: Array) -> NDArray[np.float32]:
-    """The block ShBlock of shaders/sh.glsl, (SH_TERMS, 4): coefficients (n**2, 3) in the order in which the shader reads them.
+    """The block ShBlock of shaders/sh.glsl, (SH_TERMS, 4): coefficients (n**2, 3) as the shader reads them, one after another.
 
     For m = 0, 1, ... and l = m, m+1, ...: the term of cos(m phi), then for m > 0 that of sin(m phi). A term is the
     coefficient times N(l, m) of basis.py, and in w the recurrence's q(l+1, m) = (2l+1)/(l+1+m).
@@ -79,7 +79,7 @@ def pack_coefficients(coefficients: Array) -> NDArray[np.float32]:
 
 @lru_cache(maxsize=MAX_DIRECT_BANDS)
 def _term_order(n_bands: int) -> tuple[NDArray[np.int64], Array, Array]:
-    """Index, factor N and step q of each term."""
+    """The index, the factor N and the step q of each term."""
     norms = normalisation(n_bands)
     terms = [
         (index(l, sign * m), norms[l, m], (2 * l + 1) / (l + 1 + m))
@@ -102,5 +102,5 @@ def pack_lobes(lobes: Sequence[Lobe]) -> NDArray[np.float32]:
 
 
 def profile_bits(lobes: Sequence[Lobe]) -> int:
-    """The kinds of their profiles, a bit for each: what PROFILES is in a program that draws them."""
+    """The kinds of the lobes' profiles as bits: the value of PROFILES in a program that draws them."""
     return sum(1 << kind for kind in {int(lobe.profile.kind) for lobe in lobes})

@@ -1,10 +1,10 @@
-"""The surface of radius |f(u)| in every direction u as triangles, few where it is smooth and many where it turns.
+"""The surface of radius |f(u)| in every direction u as triangles, few where it is flat and many where it bends.
 
 The values of f lie on a lat-long grid of 2^k + 1 rows from pole to pole and 2^(k+1) columns: two squares side by side, which
 are halved along their diagonals again and again into right triangles. Every point of the grid but the corners is the middle
 of the long side of the two triangles that it halves, and it is used only if the surface is farther from that side than a
-tolerance. A point counts as at least as far as all those that could not be used without it, so no triangle gets a corner in
-the middle of a neighbour's side, and there are no cracks.
+tolerance. A point counts as at least as far as all the points that could not be used without it. So no triangle gets a
+corner in the middle of a neighbour's side, and there are no cracks.
 
 Source
     [EKT] W. Evans, D. Kirkpatrick, G. Townsend, "Right-triangulated irregular networks", Algorithmica 30, 264 (2001).
@@ -23,7 +23,7 @@ from shviewer.harmonics.quadrature import column_azimuths, directions_from_angle
 
 Floats = NDArray[np.float32]
 Points = NDArray[np.float32]
-"""The first axis holds x, y, z."""
+"""Vectors or directions; the first axis holds x, y, z."""
 
 Part = tuple[slice, slice]
 """Rows and columns of a grid."""
@@ -32,12 +32,12 @@ BLOCK_VALUES = 2**14
 """Points of the grid that are measured at a time, so that they stay in the cache."""
 
 JUMP = 1 / 16
-"""A second difference beyond this is no curvature: 16 bands have 1/100 on 513 rows."""
+"""A second difference beyond this is a jump and no curvature: with 16 bands it is 1/100 on 513 rows."""
 
 TINY = np.float32(1e-30)
 
 MAX_TRIANGLES = 2**20
-"""A surface that needs more for its tolerance, such as a photograph, is drawn with these."""
+"""The most triangles of a surface, even if its tolerance needs more, as that of a photograph does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Mesh:
 
 
 def surface_mesh(values: Floats, tolerance: float, most: int = MAX_TRIANGLES) -> Mesh:
-    """values: (2^k + 1, 2^(k+1)); tolerance: a length, in units of the values. ValueError for another shape."""
+    """Make the mesh. values: (2^k + 1, 2^(k+1)); tolerance: a length in their units. ValueError for another shape."""
     rows, columns = values.shape
     size = rows - 1
     if size < 2 or size & (size - 1) or columns != 2 * size:
@@ -74,7 +74,7 @@ def surface_mesh(values: Floats, tolerance: float, most: int = MAX_TRIANGLES) ->
 
 @lru_cache(maxsize=2)
 def grid_directions(rows: int) -> Points:
-    """Of a lat-long grid with rows on the poles and twice as many columns as intervals: (3, rows, 2 (rows - 1))."""
+    """Directions of a lat-long grid with rows on the poles and twice as many columns as intervals: (3, rows, 2 (rows - 1))."""
     theta = np.linspace(0, np.pi, rows)[:, None]
     last = directions_from_angles(theta, column_azimuths(2 * (rows - 1)))
     directions = np.ascontiguousarray(np.moveaxis(last, -1, 0), dtype=np.float32)
@@ -83,10 +83,10 @@ def grid_directions(rows: int) -> Points:
 
 
 def gradient(values: Floats) -> Points:
-    """Of a function on the unit sphere from its values on a grid with rows on the poles: (3, rows, columns), tangential.
+    """The gradient of a function on the unit sphere, tangential, (3, rows, columns); values: on a grid with rows on the poles.
 
-    Central differences, but at a jump only towards the larger radius: the rim of a wall is shaded as what it ends, and its
-    foot as the wall. At a pole the first harmonic of the row beside it.
+    Central differences, but at a jump only towards the larger radius: the rim of a wall is shaded as the ground above it,
+    and its foot as the wall. At a pole, the first harmonic of the row beside it.
     """
     rows, columns = values.shape
     step = np.pi / (rows - 1)
@@ -107,7 +107,7 @@ def gradient(values: Floats) -> Points:
 
 
 def _difference(before: Floats, here: Floats, after: Floats) -> Floats:
-    """Per step."""
+    """The derivative per step of the grid."""
     behind, ahead = here - before, after - here
     sign = np.sign(here)
     onward = np.where(sign == 0, np.abs(after) > np.abs(before), sign * after > sign * before)
@@ -116,9 +116,9 @@ def _difference(before: Floats, here: Floats, after: Floats) -> Floats:
 
 
 def _deviations(values: Floats, directions: Points, normals: Points) -> Floats:
-    """How far the surface at each point of the grid is from the middle of the side that the point would halve.
+    """The distance of the surface, at each point of the grid, from the middle of the side that the point would halve.
 
-    Or half of that side times the error of its normal there, if this is more: a crease must not be shaded across a side.
+    If it is more, half of that side times the error of the normal there: a crease must not be shaded across a side.
     """
     size, columns = len(values) - 1, values.shape[1]
     error = np.zeros_like(values)
@@ -142,14 +142,14 @@ def _halvings(size: int, columns: int, step: int) -> Iterator[tuple[Part, Part, 
     side = 2 * step
 
     def every(stride: int, first: int, stop: int) -> tuple[slice, slice]:
-        """From `first` on, and one side further."""
+        """Every `stride`-th point from `first` to `stop`, and the same one side further."""
         return slice(first, stop, stride), slice(first + side, stop + side, stride)
 
     (north, south), (west, east) = every(side, 0, size), every(side, 0, columns)
     rows, between = slice(0, size + 1, side), slice(step, None, side)
     yield (between, slice(0, columns, side)), (north, west), (south, west)
     yield (rows, between), (rows, west), (rows, east)
-    for down, right in ((0, 0), (0, 1), (1, 0), (1, 1)):  # the diagonal of a square falls, of its neighbour rises
+    for down, right in ((0, 0), (0, 1), (1, 0), (1, 1)):  # one square's diagonal falls, its neighbour's rises
         top, left = side * down, side * right
         (north, south), (west, east) = every(2 * side, top, size), every(2 * side, left, columns)
         if down != right:
@@ -167,7 +167,7 @@ def _measure(
     start_normal: Points,
     end_normal: Points,
 ) -> None:
-    """Into `error`: to first order the distance from the middle of a side to the surface; in a pinch, to its walls."""
+    """Write into `error` the distance from the middle of a side to the surface, to first order; in a pinch, to its walls."""
     middle, side, facing = (start + end) / 2, start - end, start_normal + end_normal
     turned = 1 - _dot(normal, facing) / np.maximum(np.sqrt(_dot(normal, normal) * _dot(facing, facing)), TINY)
     radius = np.abs(value)
@@ -205,7 +205,7 @@ def _saturate(error: Floats) -> Floats:
 
 
 def _triangles(split: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Indices into the flat grid, (t, 3): the long side's ends first. split: where a triangle is to be halved."""
+    """Triangles as indices into the flat grid, (t, 3), the long side's ends first. split: the points where one is halved."""
     rows, columns = split.shape
     size = rows - 1
     north, south = (0, size)
@@ -231,7 +231,7 @@ def _triangles(split: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _pinched(vertices: Floats, triangles: NDArray[np.uint32]) -> Mesh:
-    """Where a triangle has both signs the surface goes through the origin between them: there its lone corner is put."""
+    """The mesh without triangles of both signs. There the surface goes through the origin, and so does the lone corner."""
     negative = vertices[triangles, 0] < 0
     mixed = (negative.any(axis=1) & (vertices[triangles, 0] > 0).any(axis=1)).nonzero()[0]
     few = negative[mixed].sum(axis=1) == 1

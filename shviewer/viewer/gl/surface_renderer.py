@@ -1,4 +1,4 @@
-"""Draws surfaces of the lobe view into any framebuffer: triangles into a finer tile, which is averaged in linear light."""
+"""Draws surfaces of the lobe view into any framebuffer: triangles go into a finer tile, which is averaged in linear light."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ OVERSAMPLING = 3
 """Samples along a side of a pixel."""
 
 TILE = 512
-"""Pixels along a side of what is drawn at a time: large frames take time, not memory."""
+"""Pixels along a side of the tile drawn at a time: large frames take time, not memory."""
 
 TOLERANCE_PIXELS = 0.25
 """How far a surface may be from its triangles; between half of this and all of it is used."""
 
 RING_WIDTH, WIDEST_RING = 1 / 200, 2.0
-"""Of the circle of radius 1: in units of its radius, but at least a pixel, and in pixels."""
+"""The line of the circle of radius 1: its width in radii (but at least a pixel), and its largest width in pixels."""
 
 MOST_SURFACES = 4
-"""Kept on the GPU: one for each sphere of a frame, and one to come back to."""
+"""How many surfaces are kept on the GPU: one for each sphere of a frame, and one to come back to."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class SurfaceRenderer:
         self.resolve_program = Program(context, "surface_resolve.frag", {"TONE": "NONE"})
         self.tile: tuple[moderngl.Framebuffer, moderngl.Texture, moderngl.Renderbuffer] | None = None
         self.held: OrderedDict[tuple[Surface, int], _Drawable] = OrderedDict()
-        """By surface and fineness, the one used longest ago first."""
+        """Surface and fineness -> triangles, those used longest ago first."""
 
     def draw(
         self,
@@ -65,7 +65,7 @@ class SurfaceRenderer:
         surface: Surface,
         light_from_view: Array,
     ) -> None:
-        """The surface in place of a sphere, over BACKGROUND; pixels that it does not touch are left alone.
+        """Draw the surface in place of a sphere, over BACKGROUND; pixels that it does not touch are left alone.
 
         target: RGBA8, sRGB, `height` pixels high; sphere: its centre, the length of radius 1 in pixels, and where it is cut.
         light_from_view: 3 x 3, as for the spheres. What is bound, enabled and in view is left as found.
@@ -109,7 +109,7 @@ class SurfaceRenderer:
 
     @contextmanager
     def _using(self, framebuffer: moderngl.Framebuffer, enabled: int) -> Iterator[None]:
-        """Draw there, with that enabled; afterwards all is as before."""
+        """Draw into `framebuffer` with the flags `enabled`; afterwards everything is bound and enabled as before."""
         scope = self.context.scope(framebuffer, enabled)
         try:
             with scope:
@@ -118,7 +118,7 @@ class SurfaceRenderer:
             scope.release()
 
     def _drawable(self, surface: Surface, radius: float) -> _Drawable:
-        """Of the held, or made; fineness goes in steps of 2, so that zooming rarely makes another one."""
+        """The surface's triangles, held or made now; fineness goes in steps of 2, so that zooming rarely makes new ones."""
         fineness = ceil(log2(max(radius, 1.0) / TOLERANCE_PIXELS))
         key = surface, fineness
         if key not in self.held:

@@ -10,7 +10,7 @@ from shviewer.errors import GraphicsError
 
 
 class ArrayTexture:
-    """The texture of one array (height, width, components), float32 or uint8, known by its identity; or of none.
+    """The texture of one array (height, width, components), float32 or uint8, known by its identity; or no texture.
 
     Three components are held as four, with 1 for the last: graphics processors read those faster.
     """

@@ -1,1 +1,1 @@
-"""What Pillow draws over the spheres: text, figures, marks, sheets."""
+"""The overlay that Pillow draws over the spheres: text, figures, marks, sheets."""

@@ -1,4 +1,4 @@
-"""The axis of bands that the bars and the convergence plot share: how many it shows, and which it numbers."""
+"""The axis of bands that the bars and the convergence plot share: how many bands it shows, and which it numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def band_slots(n_bands: int) -> int:
 
 
 def band_step(pitch: float, apart: float) -> int:
-    """Of bands `pitch` pixels from each other, each how manieth can have a number `apart` pixels wide."""
+    """The step between numbered bands: the least for which bands `pitch` pixels apart have numbers `apart` pixels apart."""
     return next(step for step in (1, 2, 4, 8, 16, 32) if pitch * step > apart or step == 32)
 
 
@@ -35,5 +35,5 @@ class BandAxis:
         return self.start + n_bands * self.pitch
 
     def ticks(self, apart: float) -> list[int]:
-        """Numbers of bands at least `apart` pixels from each other."""
+        """Round band counts that stand at least `apart` pixels from each other."""
         return list(range(0, self.slots + 1, band_step(self.pitch, apart)))

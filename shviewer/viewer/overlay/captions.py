@@ -1,4 +1,4 @@
-"""What each sphere is; in the corners what light it is, and how it was projected and drawn."""
+"""Captions: what each sphere is, and in the corners which light it is, and how it was projected and drawn."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from shviewer.words import counted, grouped, grouped_number, radiance, shortened
 
 
 def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
-    """What each sphere is; in the corners what light it is and how it was projected."""
+    """Write what each sphere is, and in the corners which light it is and how it was projected and drawn."""
     at, state = painter.at, picture.state
     y = at.caption_y
     left, right = (sphere.x for sphere in at.spheres[:2])
@@ -72,7 +72,7 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
 
 
 def describe_light(picture: Picture) -> list[str]:
-    """The light in a few words, with what must not be missed; the description alone is the first thing to go."""
+    """The light in a few words, the longest text first: the description goes first, notes that must not be missed stay."""
     light = picture.subject.whole
     encoding = light.about.encoding or ""
     count = len(light.notes)
@@ -81,7 +81,7 @@ def describe_light(picture: Picture) -> list[str]:
 
 
 def describe_evaluation(picture: Picture, timing: bool) -> str:
-    """How the reconstruction is drawn; in a picture that does not depend on the machine only if it is not the sum."""
+    """How the reconstruction is drawn. timing: whether the picture may depend on the machine; if not, the sum is not named."""
     match picture.drawn:
         case DirectSum():
             return "summed per pixel" if timing else ""

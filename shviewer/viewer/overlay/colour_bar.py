@@ -16,7 +16,7 @@ from shviewer.viewer.picture import Picture
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 HEIGHT, TIP = 8, 7
-"""Of the bar, and length of the tips that say that there are errors beyond its ends; pixels of the design."""
+"""Height of the bar, and length of its tips, which stand for errors beyond its ends; in pixels of the design."""
 
 
 def round_ticks(low: float, high: float, most: int) -> list[float]:
@@ -32,7 +32,7 @@ def round_ticks(low: float, high: float, most: int) -> list[float]:
 
 
 def tick_text(value: float, ticks: list[float], *, percent: bool) -> str:
-    """All ticks with the same decimals; a share in percent. Where numbers get long, as a power of ten."""
+    """One of the ticks, with the decimals that all share; percent: a share. A power of ten where numbers get long."""
     scale = 100.0 if percent else 1.0
     unit = " %" if percent else ""
     largest = max(abs(tick) * scale for tick in ticks)
@@ -46,7 +46,7 @@ def tick_text(value: float, ticks: list[float], *, percent: bool) -> str:
 
 
 def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Composition) -> dict[str, Box]:
-    """The bar and its numbers; their boxes by name. None where there is no room for either."""
+    """Draw the bar and its numbers; return their boxes by name, none where there is no room."""
     place, scale = composition.colour_bar, picture.error_scale
     if (
         place is None

@@ -1,4 +1,4 @@
-"""Under the hairline: four numbers, and how the light's energy is spread over the bands."""
+"""The strip under the hairline: four figures, and how the light's energy is spread over the bands."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from shviewer.words import percent, radiance, whole_percent
 
 
 def write_figures(painter: Painter, picture: Picture) -> None:
-    """Four numbers in fixed places, each with the longest of its labels that fits there, then a bar per band."""
+    """Write four figures in fixed places, each with the longest of its labels that fits there, then a bar per band."""
     at, figures = painter.at, picture.figures
     y = at.hairline_y
     if 2 * at.margin < at.width:
@@ -42,7 +42,7 @@ def write_figures(painter: Painter, picture: Picture) -> None:
 
 
 def _swatch(painter: Painter, value: Box) -> None:
-    """Beside a value, the colour that negative radiance has on the sphere."""
+    """Draw, beside a value, the colour that negative radiance has on the sphere."""
     side = (value.bottom - value.top) * 0.6
     box = Box(value.right + side, value.bottom - side, value.right + 2 * side, value.bottom)
     if painter.free(box._replace(left=box.left + painter.at.px(6))):
@@ -51,7 +51,7 @@ def _swatch(painter: Painter, value: Box) -> None:
 
 
 def _band_bars(painter: Painter, picture: Picture) -> None:
-    """Energy of each band: filled as far as it is kept, hollow when muted, dim above n. A bar stays where it is."""
+    """Draw the energy of each band: a bar filled as far as it is kept, hollow when muted, dim above n."""
     at, state = painter.at, picture.state
     slots = band_slots(state.bands_ahead)
     left = max((box.right for box in painter.boxes.values() if box.top > at.hairline_y), default=0) + at.px(24)

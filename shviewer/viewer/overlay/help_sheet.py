@@ -12,7 +12,7 @@ from shviewer.viewer.state import State
 
 DIM = (10, 10, 12, 232)
 KEY_COLUMN = 10.5
-"""Width of the keys, in type sizes."""
+"""Width of the column of keys, in type sizes."""
 
 LEGEND = "blue: radiance below zero, the ringing of few bands; W takes it away"
 
@@ -52,7 +52,7 @@ def draw_help(sheet: Image.Image, state: State, composition: Composition, opengl
 
 
 def _split(groups: list[tuple[str, list[Binding]]]) -> int:
-    """Where to break the groups into two columns of the most equal height."""
+    """The index at which the groups break into two columns of nearly equal height."""
     return min(range(1, len(groups)), key=lambda at: max(_line_count(groups[:at]), _line_count(groups[at:])))
 
 

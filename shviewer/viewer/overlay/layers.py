@@ -1,4 +1,4 @@
-"""What Pillow has drawn, on its way over the spheres: images with a place in the frame."""
+"""Layers: images that Pillow has drawn, with a place in the frame, to be blended over the spheres."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Layer(NamedTuple):
 
 
 def strips(image: NDArray[np.uint8]) -> tuple[Layer, ...]:
-    """The layers of an image as large as the frame that hold all it shows: what is empty is neither uploaded nor blended."""
+    """Cut an image as large as the frame into layers, so that empty rows are neither uploaded nor blended."""
     rows = np.nonzero(image[..., 3].any(axis=1))[0]
     if not len(rows):
         return ()

@@ -1,4 +1,4 @@
-"""What everything that is written has in common: the inks and the face."""
+"""Lettering: the inks and the face that all text shares."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ Ink = tuple[int, int, int, int]
 INK, GREY, FAINT, RULE = (236, 236, 240, 255), (168, 168, 178, 255), (122, 122, 132, 255), (62, 62, 68, 255)
 ACCENT, ACCENT_MUTED = (100, 160, 255, 255), (100, 160, 255, 110)
 NEGATIVE = (35, 98, 152, 255)
-"""What shaders/display.glsl makes of a luminance about a tenth of white below zero."""
+"""The colour that shaders/display.glsl gives to a luminance about a tenth of white below zero."""
 
 UNUSED = (104, 104, 114, 255)
 WARNING = (255, 196, 92, 255)
 
 MIN_TYPE = 10
-"""Pixels; smaller type of the built-in face cannot be read."""
+"""The smallest type, in pixels: smaller letters of the built-in face cannot be read."""
 
 
 @lru_cache(maxsize=64)

@@ -1,4 +1,4 @@
-"""Where the reconstruction is lowest and where it errs most: a ring on the sphere, with the value beside it.
+"""Marks of the lowest radiance and of the largest error: a ring on the sphere, with the value beside it.
 
 Marks move with the spheres, so they are layers of their own: turning draws no text anew.
 """
@@ -20,11 +20,11 @@ from shviewer.viewer.picture import Picture
 from shviewer.words import percent, radiance
 
 RING, THICKNESS, SHADOW = 6.0, 1.5, 1.25
-"""Radius, line and dark rim of a ring, in pixels of the design."""
+"""Radius, line width and dark rim of a ring, in pixels of the design."""
 
 DARK: Ink = (10, 10, 12, 200)
 FINE = 4
-"""A ring is drawn so many times as large and averaged."""
+"""How many times larger a ring is drawn before it is averaged."""
 
 DASHES = 8
 RECONSTRUCTION, ERROR = 1, 2
@@ -32,7 +32,7 @@ RECONSTRUCTION, ERROR = 1, 2
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """A direction of the light on one of the spheres, and what is said of it."""
+    """A marked direction of the light on one of the spheres, and the text beside it."""
 
     name: str
     sphere: int
@@ -47,13 +47,13 @@ class Placed:
     x: float
     y: float
     behind: bool
-    """It is on the far side: the ring is broken, and stands where one would look through the sphere."""
+    """Whether it is on the far side: then the ring is broken, and stands where one would see it through the sphere."""
     label: Box
     layer: Layer
 
 
 def marks_of(picture: Picture) -> list[Mark]:
-    """The minimum, if it is negative, and the largest error, if the error is shown. None of surfaces."""
+    """Marks of the minimum, if it is negative, and of the largest error, if the error is shown; surfaces have no marks."""
     state, extremes = picture.state, picture.figures.extremes
     marks: list[Mark] = []
     if not state.view.marks or state.view.lobe_view or state.view.help_visible:
@@ -70,7 +70,7 @@ def marks_of(picture: Picture) -> list[Mark]:
 
 
 def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[Box] = ()) -> dict[str, Placed]:
-    """The marks that are in sight, by name: under an obstacle there is none, and their words keep clear of them."""
+    """The marks in sight, by name. A mark under an obstacle is left out, and no text of a mark touches an obstacle."""
     placed = {}
     for mark in marks_of(picture):
         sphere = composition.spheres[mark.sphere]
@@ -88,7 +88,7 @@ def mark_layers(picture: Picture, composition: Composition, obstacles: Sequence[
 def _place(
     text: str, x: float, y: float, behind: bool, sphere: Sphere, composition: Composition, obstacles: Sequence[Box]
 ) -> Placed:
-    """With the longest words that find room in the cell, to the right of the ring or to its left; or with none."""
+    """Place a mark with the longest text that finds room in the cell, right or left of the ring, or with no text."""
     size = max(round(composition.px(12)), MIN_TYPE)
     scale = max(composition.scale, MIN_TYPE / 12)
     half = round(scale * (RING + THICKNESS + SHADOW)) + 1
@@ -109,7 +109,7 @@ def _place(
 def _image(
     text: str, size: int, scale: float, half: int, gap: int, behind: bool, leftwards: bool
 ) -> tuple[np.ndarray, tuple[int, int, int, int]]:
-    """A ring in a square of 2 half + 1 pixels and its text beside it; and the box of the text within the image."""
+    """An image of a ring, in a square of 2 half + 1 pixels, with its text beside it; and the box of the text in the image."""
     face = font(size)
     side, length = 2 * half + 1, round(face.getlength(text))
     height = max(side, size + 6) | 1

@@ -1,4 +1,4 @@
-"""Captions, figures, band bars and the sheets over them: one RGBA image as large as the frame, drawn when something changes.
+"""Captions, figures, band bars and the sheets over them: one RGBA image as large as the frame, redrawn on every change.
 
 What does not fit is left out, least important first: the hint, then the bars, then all figures but the relative error.
 Every piece reports its box, so that a click finds its bar and a test can see that nothing overlaps.
@@ -40,28 +40,28 @@ class Overlay:
 
     image: NDArray[np.uint8]
     layers: tuple[Layer, ...]
-    """What of the image is not empty."""
+    """The parts of the image that are not empty."""
     boxes: dict[str, Box] = field(default_factory=dict)
     bars: dict[int, Box] = field(default_factory=dict)
     plane: Plane | None = None
-    """The time-error plane, if it is shown; what is written in it is among the boxes, too."""
+    """The time-error plane, if it is shown; the boxes of its texts are among `boxes`, too."""
     convergence: Convergence | None = None
-    """Likewise."""
+    """The convergence plot, if it is shown; likewise."""
 
     @property
     def sheet(self) -> Box | None:
-        """Where a sheet lies over the spheres."""
+        """The box of the sheet over the spheres, if there is one."""
         shown = self.plane or self.convergence
         return shown.box if shown else None
 
     @property
     def obstacles(self) -> tuple[Box, ...]:
-        """What is written, and the sheet: what else is laid over the spheres keeps clear of."""
+        """The boxes of all text and of the sheet, which marks and probed values keep clear of."""
         return (*self.boxes.values(), *((self.sheet,) if self.sheet else ()))
 
 
 def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "") -> Overlay:
-    """Everything that is written over the spheres.
+    """Draw all text and sheets that go over the spheres.
 
     timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
     """
@@ -84,7 +84,7 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
 
 
 def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
-    """A message, a remark, what was split off, or else the most useful keys; on the right the exposure."""
+    """Write a message, a remark, the suns that were split off, or else the most useful keys; at the right the exposure."""
     at, state = painter.at, picture.state
     y = at.hairline_y + at.px(104)
     message = state.view.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
@@ -108,7 +108,7 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
 
 
 def _describe_suns(picture: Picture) -> list[str]:
-    """What the suns are and what it buys to split them off, the longest form first; none if there are none."""
+    """The suns and what splitting them off saves, in words, the longest text first; empty if there are no suns."""
     suns, before = picture.subject.suns, picture.needs_unsplit
     if not suns or before is None:
         return []

@@ -1,4 +1,4 @@
-"""Pieces of text that find room or are left out: none leaves the frame, meets another, or covers a sphere."""
+"""Pieces of text that are drawn where they have room and else left out: inside the frame, clear of pieces and spheres."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Painter:
         return font(max(round(self.at.px(size)), MIN_TYPE))
 
     def text(self, name: str, x: float, y: float, text: str, size: float, ink: Ink, anchor: str) -> bool:
-        """Draw unless it would leave the frame or touch another piece; `size` in pixels of the design."""
+        """Draw a text unless it would leave the frame or touch a piece; return whether. size: in pixels of the design."""
         return self.texts(x, ((name, y, text, size, ink),), anchor)
 
     def texts(self, x: float, lines: Sequence[tuple[str, float, str, float, Ink]], anchor: str) -> bool:
-        """All of (name, y, text, size, ink) at one x, or none of them."""
+        """Draw all lines (name, y, text, size, ink) at one x, or none of them; return whether."""
         faces = [self.face(size) for _, _, _, size, _ in lines]
         boxes = {
             name: Box(*self.draw.textbbox((x, y), text, font=face, anchor=anchor))

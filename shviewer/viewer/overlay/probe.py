@@ -1,4 +1,4 @@
-"""What stands under the mouse: the direction, and the values there in float64, not what the shader made of them."""
+"""The probe under the mouse: the direction, and the values there, computed in float64 and not by the shader."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ DOT = 3
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """Values (3,) in a direction of the light."""
+    """The values (3,) in one direction of the light."""
 
     direction: Array
     original: Array
     reconstruction: Array
     error: Array
-    """Reconstruction minus original; where suns were split off, of what is left without them."""
+    """Reconstruction minus original; where suns were split off, both without them."""
 
     @property
     def theta_phi_degrees(self) -> tuple[float, float]:
@@ -37,7 +37,7 @@ class Probe:
 
 
 def probe(picture: Picture, composition: Composition, x: float, y: float) -> Probe | None:
-    """What the pixel at x, y of the frame shows; None beside the spheres, and of surfaces."""
+    """Probe the pixel at x, y of the frame; None beside the spheres, and where surfaces are shown."""
     places = [sphere.position(x, y) for sphere in composition.spheres]
     place = next((found for found in places if found is not None), None)
     if place is None or picture.state.view.lobe_view:
@@ -56,7 +56,7 @@ def probe(picture: Picture, composition: Composition, x: float, y: float) -> Pro
 
 
 def probe_layers(found: Probe, composition: Composition, x: float, y: float) -> tuple[Layer, ...]:
-    """The numbers beside the mouse, where they fit, and a dot in the same direction on the other spheres."""
+    """Layers of the numbers beside the mouse, where they fit, and of a cross in the same direction on the other spheres."""
     image = _table(found, composition)
     height, width = image.shape[:2]
     away = round(composition.px(AWAY))
@@ -84,7 +84,7 @@ def _dots(composition: Composition, x: float, y: float) -> list[Layer]:
 
 
 def _table(found: Probe, composition: Composition) -> np.ndarray:
-    """The numbers on a dark ground; one column where the light is grey."""
+    """An image of the numbers on a dark ground; one column where the light is grey."""
     size = max(round(composition.px(12)), MIN_TYPE)
     face, line, pad = font(size), round(1.5 * size), round(0.8 * size)
     theta, phi = found.theta_phi_degrees
@@ -122,5 +122,5 @@ def _table(found: Probe, composition: Composition) -> np.ndarray:
 
 
 def _numbers(values: Array) -> list[str]:
-    """Four digits each."""
+    """Values as text, four digits each."""
     return [f"{value:z.4g}" if value == 0 or 1e-3 <= abs(value) < 1e5 else f"{value:z.3e}" for value in values]

@@ -1,1 +1,1 @@
-"""Pictures as files: how they are written, what they say of themselves, and how they are compared."""
+"""Pictures as files: how they are written, the stamp that tells how they were made, and how they are compared."""

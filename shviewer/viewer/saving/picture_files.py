@@ -18,7 +18,7 @@ from shviewer.version import __version__
 
 
 def write_png(path: Path, pixels: NDArray[np.uint8], text: str, *, exclusive: bool = False) -> None:
-    """A PNG with `text` under the key shviewer. OutputError if it cannot be written; FileExistsError if exclusive and taken."""
+    """Write a PNG with `text` under the key shviewer, or OutputError. exclusive: FileExistsError if `path` exists."""
     information = PngInfo()
     information.add_itxt("shviewer", text)
     information.add_text("Software", f"shviewer {__version__}")
@@ -28,7 +28,7 @@ def write_png(path: Path, pixels: NDArray[np.uint8], text: str, *, exclusive: bo
 
 
 def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
-    """Float32 RGB with `text` in the attribute shviewer. OutputError if it cannot be written or OpenEXR is missing."""
+    """Write an EXR of float32 RGB with `text` in the attribute shviewer. OutputError if that fails or OpenEXR is missing."""
     try:
         import OpenEXR
     except ImportError as error:
@@ -41,7 +41,7 @@ def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
 
 
 def write_numbered(stem: str, pixels: NDArray[np.uint8], text: str) -> Path:
-    """A PNG under the next free name stem-001.png, stem-002.png, ... in the current folder."""
+    """Write a PNG under the next free name stem-001.png, stem-002.png, ... in the current folder; return its path."""
     for number in range(1, 10_000):
         path = Path(f"{stem}-{number:03d}.png")
         if not path.exists():

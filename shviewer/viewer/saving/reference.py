@@ -1,4 +1,4 @@
-"""A picture against a reference: which share of the pixels differs, and where."""
+"""A picture compared with a reference: the share of the pixels that differ, and an image of where."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from shviewer.errors import UsageError
 from shviewer.viewer.saving.picture_files import write_png
 
 PIXEL_STEP = 2
-"""Two pixels differ if any channel does by more than this many of 255: rounding differs by 1 between drivers."""
+"""Pixels differ if some channel differs by more than this, of 255: between drivers, rounding differs by 1."""
 
 
 def compare_with_reference(pixels: NDArray[np.uint8], reference: Path, difference: Path, threshold: float) -> str:

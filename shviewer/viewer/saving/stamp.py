@@ -1,6 +1,6 @@
-"""What a picture says of itself: everything that made it and its figures, as one JSON text, and the state read from it again.
+"""The stamp of a picture: everything that made it, and its figures, as one JSON text; and the state read back from it.
 
-Schema 1: `state` holds every field of recipe and view, by its name. Stamps before it had no schema and no `state`; they are
+Schema 1: `state` holds every field of recipe and view, by its name. Older stamps have no schema and no `state`; they are
 read as far as they go. Keys are added and never change their meaning.
 """
 
@@ -31,7 +31,7 @@ from shviewer.viewer.view import View
 SCHEMA = 1
 
 EVALUATED = {DirectSum: "direct", SplineMap: "map", Surfaces: "surfaces"}
-"""What the description of a picture says of how its reconstruction is drawn."""
+"""The word in a stamp for each way to draw the reconstruction."""
 
 NOT_SEEN = ("layout_tried",)
 """Fields of the view that no pixel depends on."""
@@ -56,7 +56,7 @@ BEFORE_SCHEMAS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "camera_degrees": ("camera", tuple),
     "zoom": ("zoom", float),
 }
-"""Keys of a stamp without a schema: the field each of them tells, and how."""
+"""Keys of a stamp without a schema: the field that each of them tells, and how."""
 
 
 def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
@@ -147,7 +147,7 @@ def _described(sun: Sun) -> dict[str, Any]:
 
 
 def _finite(value: Any) -> Any:
-    """JSON has no infinity: an infinite PSNR (no error at all) is null."""
+    """The value with null for infinity, which JSON has not: an infinite PSNR means no error at all."""
     if isinstance(value, dict):
         return {key: _finite(part) for key, part in value.items()}
     if isinstance(value, list | tuple):
@@ -156,7 +156,7 @@ def _finite(value: Any) -> Any:
 
 
 def state_of_stamp(text: str, light: str | Light | None = None, compare: CoefficientLight | None = None) -> State:
-    """The state that a stamp tells, with what no text can hold: a light that is an object, and given coefficients.
+    """The state that a stamp tells. `light` and `compare` give what no text can hold: a light object and coefficients.
 
     UsageError for a text that is no stamp, one of a later schema, or a value out of range.
     """
@@ -194,7 +194,7 @@ def _recorded(state: State) -> dict[str, Any]:
 
 
 def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Fields of recipe and view; what a later version may have added is left out."""
+    """The values of recipe and view; fields that a later version may have added are left out."""
     recipe = {part.name: said["recipe"][part.name] for part in fields(Recipe) if part.name in said["recipe"]}
     view = {part.name: said["view"][part.name] for part in fields(View) if part.name in said["view"]}
     reading = recipe["reading"]
@@ -212,6 +212,6 @@ def _told_before_schemas(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str
 
 
 def _taken(values: dict[str, Any], holder: type) -> dict[str, Any]:
-    """Those of the values that are options of a dataclass, as it holds them."""
+    """The values that belong to options of a dataclass, as the dataclass holds them."""
     rows = options_of(holder)
     return {name: rows[name].kind.taken(name, value) for name, value in values.items() if name in rows}

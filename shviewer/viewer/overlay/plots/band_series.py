@@ -1,4 +1,4 @@
-"""What is plotted against the number of bands, as numbers: errors with 1, 2, ... of them, and the energy of each."""
+"""The numbers that are plotted against bands: the error with 1, 2, ... bands, and the energy of each band."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from shviewer.viewer.picture import Picture
 
 @dataclass(frozen=True)
 class BandSeries:
-    """Relative L2 errors and shares of the light's energy. An error below the floor stands at it, an infinite one nowhere."""
+    """Relative L2 errors and shares of the light's energy. Errors below the floor count as it; infinite ones are left out."""
 
     slots: int
-    """Bands on the axis."""
+    """How many bands the axis shows."""
     errors: dict[int, float]
-    """n -> error with the first n bands, none muted and no window, by the method in use; up to one n beyond the axis."""
+    """n -> error with the first n bands, none muted and no window, by the method in use; up to one count beyond the axis."""
     exact: dict[int, float]
-    """Likewise by the best way; empty if that is in use."""
+    """The same by the best way; empty if that is in use."""
     shown: float | None
     """The error of what is shown, where bands are muted or windowed."""
     tolerance: float
     needed: int | None
-    """The smallest n within the tolerance, of the quantity shown; None if no n that was searched is."""
+    """The smallest n within the tolerance, for the quantity shown; None if the search found none."""
     energy: dict[int, float]
     """Band -> its share, where that can be told from rounding."""
     kept: dict[int, float]
-    """Band in use -> what the window leaves of that; 0 if muted."""
+    """Band in use -> the share that the window leaves of its energy; 0 if muted."""
 
     def span(self) -> tuple[float, float]:
-        """The least and largest error to be seen: a factor of 2 at least, with the tolerance unless it is far below."""
+        """The least and largest error of the axis: at least a factor of 2, and with the tolerance unless it is far below."""
         marked = [share for errors in (self.errors, self.exact) for n, share in errors.items() if n <= self.slots]
         marked += [self.shown] if self.shown is not None else []
         if not marked or self.tolerance > min(marked) / 30:
@@ -44,7 +44,7 @@ class BandSeries:
 
 
 def band_series(picture: Picture) -> BandSeries:
-    """What the convergence plot of a picture shows."""
+    """The numbers of a picture's convergence plot."""
     state, figures, needs = picture.state, picture.figures, picture.needs
     slots, floor = band_slots(state.bands_ahead), figures.floor
 
@@ -73,5 +73,5 @@ def errors_by_count(picture: Picture) -> Array:
     errors = errors_of(light, *sampling)
     if picture.state.recipe.n_bands <= len(errors):
         return errors
-    exact = project(light, *BEST, picture.projection.n_bands).coefficients  # beyond what samples were searched for
+    exact = project(light, *BEST, picture.projection.n_bands).coefficients  # samples were searched no further
     return errors_by_band_count(light.products(), exact, picture.projection.coefficients)

@@ -1,7 +1,7 @@
 """Error against bands: how the error of this light falls as bands are added, over the energy that each band holds.
 
-Both panels share the axis of bands. The error with n bands stands at n and band l between l and l + 1, so that the bars left
-of the line at the present n are in use, and those right of it are what its error leaves out.
+Both panels share the axis of bands. The error with n bands stands at n and band l between l and l + 1. So the bars left of
+the line at the present n are in use, and those right of it hold the energy that is left out.
 """
 
 from __future__ import annotations
@@ -24,34 +24,34 @@ from shviewer.viewer.state import describe_muted, describe_window
 from shviewer.words import percent, round_percent, short_count
 
 MOST, LEAST = Size(440, 330), Size(230, 150)
-"""Of the sheet; a smaller one would not hold its curve."""
+"""Largest and smallest size of the sheet; a smaller one would not hold its curve."""
 
 TWO_PANELS = 140
-"""Pixels of the design that the energy, its caption and the curve need together."""
+"""Height, in pixels of the design, that the energy, its caption and the curve need together."""
 
 EXACT: Ink = (112, 112, 122, 255)
-"""The curve of the best way behind that of samples."""
+"""The ink of the best way's curve, behind that of samples."""
 
 LEFT_OUT: Ink = (84, 84, 94, 255)
-"""The bars above n."""
+"""The ink of bars above n."""
 
 HERE: Ink = (48, 74, 116, 255)
-"""The line at the present n: the accent, far back."""
+"""The ink of the line at the present n: the accent, much darker."""
 
 
 @dataclass(frozen=True)
 class Convergence:
-    """What was drawn where, in pixels: the sheet, its axes, the curve, the marks, the bars, and the boxes of all texts."""
+    """The places of a drawn plot, in pixels: sheet, axes, curve, marks, bars, and the boxes of all texts."""
 
     box: Box
     bands: BandAxis
     error: Axis
     energy: Axis | None
-    """None if there is no room for it, or no energy."""
+    """The axis of the energy; None if there is no room for it, or no energy."""
     points: dict[int, Place]
     """n -> the point of the curve; none where the error is infinite."""
     shown: Place | None
-    """Where the error of what is shown stands, if bands are muted or windowed."""
+    """The mark of the error as shown, if bands are muted or windowed."""
     needed: Place | None
     """The first point within the tolerance, if it is on the axis."""
     bars: dict[int, Box] = field(default_factory=dict)
@@ -62,7 +62,7 @@ class Convergence:
 def draw_convergence(
     image: Image.Image, picture: Picture, composition: Composition, taken: Iterable[Box]
 ) -> Convergence | None:
-    """Draw it clear of the boxes that are taken; None, and nothing drawn, where it does not fit."""
+    """Draw the plot clear of the boxes that are taken; None, and nothing drawn, where it does not fit."""
     box = place(composition, taken, MOST, LEAST)
     if box is None:
         return None
@@ -104,7 +104,7 @@ class _Drawing:
         self.found = Convergence(box, bands, error, energy, points, shown, needed, boxes=sheet.boxes)
 
     def axes(self) -> None:
-        """Title, captions, round values, and the line at the present n."""
+        """Draw title, captions, round values, and the line at the present n."""
         sheet, found, area, unit = self.sheet, self.found, self.area, self.sheet.unit
         caption = sheet.title(["error against bands"], "relative L2 error")
         if self.series.exact:
@@ -127,7 +127,7 @@ class _Drawing:
             )
 
     def energy(self) -> None:
-        """A bar per band: filled as far as it is kept, hollow when muted, dim above n."""
+        """Draw a bar per band: filled as far as it is kept, hollow when muted, dim above n."""
         sheet, axis, bands, lower = self.sheet, self.found.energy, self.found.bands, self.lower
         if not self.split:
             return
@@ -151,7 +151,7 @@ class _Drawing:
                 sheet.rule(bar._replace(top=round(axis.at(self.series.kept[band]))), ACCENT)
 
     def curves(self) -> None:
-        """The tolerance, dashed; the exact curve, faint; the curve."""
+        """Draw the tolerance, dashed, the exact curve, faint, and the curve."""
         sheet, found, area, series = self.sheet, self.found, self.area, self.series
         if found.error.low < series.tolerance < found.error.high:
             sheet.dashes(area.left, area.right, found.error.at(series.tolerance), FAINT)
@@ -162,7 +162,7 @@ class _Drawing:
                 sheet.curve(area, places, ink, 1.5 * sheet.unit, dot if dot > 1.2 * sheet.unit else 0)
 
     def marks(self) -> None:
-        """The first point within the tolerance; the present n in a ring; what is shown, where it is not on the curve."""
+        """Mark the first point within the tolerance, the present n in a ring, and the error as shown, if off the curve."""
         sheet, found = self.sheet, self.found
         if found.needed:
             sheet.point("disc", sheet.radius, found.needed, INK)
@@ -174,7 +174,7 @@ class _Drawing:
             sheet.point("diamond", sheet.radius, found.shown, ACCENT)
 
     def labels(self) -> None:
-        """The present error, that of what is shown, and what the tolerance needs, in as many words as there is room for."""
+        """Write the present error, the error as shown and the bands that the tolerance needs, in as many words as fit."""
         sheet, found, area, state, series = self.sheet, self.found, self.area, self.state, self.series
         share = self._percent(series.errors.get(state.recipe.n_bands, float("inf")))
         texts = [f"{state.recipe.n_bands} band{'' if state.recipe.n_bands == 1 else 's'}: {share}", share]
@@ -191,7 +191,7 @@ class _Drawing:
             sheet.put("floor", text, GREY, sheet.row(text, top, area)[::-1], area)
 
     def _beside(self, name: str, spot: Place | None, texts: list[str], ink: Ink, reach: float) -> None:
-        """The first text for which there is room beside the mark; of one that is nowhere, at the top or half-way."""
+        """Write the first text that fits beside the mark; for a mark that is nowhere, at the top or half-way up."""
         sheet, area = self.sheet, self.area
         if spot is None:
             tops = area.top + 6 * sheet.unit, (area.top + area.bottom) / 2
@@ -204,7 +204,7 @@ class _Drawing:
         )
 
     def _tolerance(self) -> None:
-        """What the tolerance needs: over its line right of the curve or under it left of the curve, else in a corner."""
+        """Write what the tolerance needs: over its line right of the curve, or under it left of the curve, else in a corner."""
         sheet, area, needs = self.sheet, self.area, self.picture.needs
         count = self.series.needed or f"over {needs.searched}"
         share = f"{100 * needs.tolerance:g} %"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 MANTISSAS = ((1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0))
-"""Of ticks where fewer than two powers of ten are on an axis; any factor of two has two of the last."""
+"""Mantissas of ticks where an axis holds fewer than two powers of ten; every factor of two holds two of the last row."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Axis:
 def padded_axis(
     low: float, high: float, least: float, start: float, end: float, before: float, after: float, *, centred: bool
 ) -> Axis:
-    """An axis with low to high, or a factor of `least`, between its ends, and so many pixels before and after."""
+    """An axis from low to high, or over a factor of `least` if that is more, with so many pixels free before and after."""
     if high < low * least:
         centre = math.sqrt(low * high) if centred else low * math.sqrt(least)
         low, high = centre / math.sqrt(least), centre * math.sqrt(least)

@@ -15,10 +15,10 @@ LOOKS: dict[str, tuple[str, Ink]] = {
     "jittered": ("disc", (240, 164, 66, 255)),
     "gauss-legendre": ("square", (60, 190, 150, 255)),
 }
-"""Shape and colour of each method: told apart by either alone, and by any kind of colour vision."""
+"""Shape and colour of each method: either alone tells them apart, to any kind of colour vision."""
 
 MARKER_FINE, CURVE_FINE = 8, 4
-"""How many times larger they are drawn."""
+"""How many times larger markers and curves are drawn before they are averaged."""
 
 Place = tuple[float, float]
 """x and y in pixels; the middle of the first pixel is at 0.5, 0.5."""
@@ -48,7 +48,7 @@ def marker_mask(shape: str, radius: int, thickness: float) -> Image.Image:
 
 
 def curve_mask(area: Box, places: Sequence[Place], thickness: float, dot: float) -> Image.Image:
-    """Coverage, as large as the area of whole pixels, of a line through the places and of a dot on each; of radius 0: none."""
+    """Coverage, over an area of whole pixels, of a line through the places with a dot of radius `dot` on each; 0: no dots."""
     width, height = round(area.right - area.left), round(area.bottom - area.top)
     image = Image.new("L", (CURVE_FINE * width, CURVE_FINE * height))
     draw = ImageDraw.Draw(image)

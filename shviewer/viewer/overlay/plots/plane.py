@@ -1,7 +1,7 @@
-"""Time against error: what each way to project the light has cost in this session, and how good it was, on log axes.
+"""Time against error: how long each way to project the light has taken in this session, and how good it was, on log axes.
 
-All errors are of the bands shown, neither muted nor windowed, so that points differ by their method alone. What lies lower
-and further left is better.
+All errors are those with the bands shown, neither muted nor windowed, so that points differ by their method alone. A point
+that lies lower and further left is better.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from shviewer.viewer.picture import Picture
 from shviewer.words import grouped_number, percent, round_percent, short_count
 
 MOST, LEAST = Size(440, 270), Size(380, 190)
-"""Of the sheet; a smaller one would not hold its legend."""
+"""Largest and smallest size of the sheet; a smaller one would not hold its legend."""
 
 SHORTEST = 1e-4
-"""Milliseconds: a step of a coarse clock, so that a log axis can show what takes no time on it."""
+"""The least time, in milliseconds: a log axis has no place for the 0 that a coarse clock may measure."""
 
 MORE = "M changes the method, S the samples"
 
 Sampling = tuple[str, int, int]
-"""Method, samples, seed."""
+"""A way to project: method, samples, seed."""
 
 
 @dataclass
 class Plane:
-    """What was drawn where: the sheet, its axes, the middle of each point, and the boxes of all texts."""
+    """The places of a drawn plane, in pixels: the sheet, its axes, the middle of each point, and the boxes of all texts."""
 
     box: Box
     milliseconds: Axis
@@ -51,12 +51,12 @@ class Plane:
 
 
 def measured(picture: Picture) -> tuple[Measurement, ...]:
-    """What the plane of a picture shows."""
+    """The measurements that a picture's plane shows."""
     return measurements(picture.light, picture.projection.n_bands)
 
 
 def draw_plane(image: Image.Image, picture: Picture, composition: Composition, taken: Iterable[Box]) -> Plane | None:
-    """Draw it clear of the boxes that are taken; None, and nothing drawn, where it does not fit."""
+    """Draw the plane clear of the boxes that are taken; None, and nothing drawn, where it does not fit."""
     box = place(composition, taken, MOST, LEAST)
     known = measured(picture)
     if box is None or not known:
@@ -104,7 +104,7 @@ class _Drawing:
         self.plane = Plane(box, milliseconds, error, floor, present, places, front, sheet.boxes)
 
     def axes(self) -> None:
-        """Title, captions, and a light grid with round values."""
+        """Draw title, captions, and a faint grid with round values."""
         sheet, area, unit, state = self.sheet, self.area, self.sheet.unit, self.picture.state
         title = f"time against error, {state.recipe.n_bands} band{'' if state.recipe.n_bands == 1 else 's'}"
         apart = [
@@ -122,7 +122,7 @@ class _Drawing:
         sheet.levels("share", self.plane.error, self.error_ticks, area)
 
     def legend(self) -> None:
-        """Right of the caption what each mark stands for, unless there is but one; the best way by its own name if it fits."""
+        """Write right of the caption what each mark stands for, unless there is only one; name the best way if that fits."""
         words = {found.method: found.words for found in self.known.values()}
         if len(words) < 2:
             return
@@ -133,7 +133,7 @@ class _Drawing:
                 break
 
     def lines(self) -> None:
-        """The floor, dashed, and the front as steps down to it: the best way is the last point of any front."""
+        """Draw the floor, dashed, and the front as steps down to it: the best way is the last point of any front."""
         area, plane, sheet = self.area, self.plane, self.sheet
         sheet.dashes(area.left, area.right, plane.error.at(plane.floor), FAINT)
         corners = [(round(x), round(y)) for x, y in (plane.places[key] for key in plane.front)]
@@ -142,7 +142,7 @@ class _Drawing:
             sheet.bar(Box(right, high, right + sheet.line, low + sheet.line), GREY)
 
     def points(self) -> None:
-        """Slow ones first, so that the front stays on top; the present choice last, in a ring."""
+        """Draw the points, slow ones first, so that the front stays on top; the present choice last, in a ring."""
         plane, sheet = self.plane, self.sheet
         order = sorted(plane.places, key=lambda key: (key == plane.present, -self.times[key]))
         for key in order:
@@ -152,7 +152,7 @@ class _Drawing:
             sheet.stamp("ring", sheet.ring, plane.places[plane.present], ACCENT)
 
     def labels(self) -> None:
-        """The present choice and the floor, in as many words as there is room for; then the samples of the others."""
+        """Write the present choice and the floor in as many words as fit, then the samples of the others."""
         plane, area, sheet = self.plane, self.area, self.sheet
         if plane.present in plane.places:
             found = self.known[plane.present]

@@ -1,7 +1,7 @@
-"""A sheet over the spheres on which something is plotted: where it lies, and how axes, marks and words are put on it.
+"""A sheet over the spheres on which something is plotted: where it lies, and how axes, marks and texts are put on it.
 
-Words are placed where nothing else is: the sheet knows which of its pixels hold a word or a mark, and which a line. The box
-of every word is reported.
+Texts are placed where nothing else is: the sheet knows which of its pixels hold a text or a mark, and which a line. The box
+of every text is reported.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ GROUND: Ink = (14, 14, 16, 236)
 
 
 class Size(NamedTuple):
-    """In pixels of the design."""
+    """A size in pixels of the design."""
 
     width: float
     height: float
 
 
 class Entry(NamedTuple):
-    """Of a legend: what a mark of this shape and ink stands for."""
+    """An entry of a legend: what a mark of this shape and ink stands for."""
 
     name: str
     shape: str
@@ -39,7 +39,7 @@ class Entry(NamedTuple):
 
 
 def place(composition: Composition, taken: Iterable[Box], most: Size, least: Size) -> Box | None:
-    """Where a sheet covers least, clear of the boxes that are taken; None if it would be smaller than `least`.
+    """The box in which a sheet covers least, clear of the boxes that are taken; None if it would be smaller than `least`.
 
     Low between two spheres side by side; where there are more, over the first, so that what is compared with it is seen.
     """
@@ -61,7 +61,7 @@ def place(composition: Composition, taken: Iterable[Box], most: Size, least: Siz
 
 
 def _cell(composition: Composition, spheres: Sequence[Sphere]) -> tuple[Box, float]:
-    """What a sheet has to stay in, and x of its middle."""
+    """The box that a sheet has to stay in, and the x of its middle."""
     first, second = spheres[:2]
     if len(spheres) == 2 and first.y == second.y:
         margin, width = composition.margin, composition.width
@@ -76,10 +76,10 @@ def _unit(composition: Composition) -> float:
 
 
 class Sheet:
-    """One sheet being drawn: first what is behind, then what is in front, and labels where there is room."""
+    """One sheet being drawn: first the things behind, then those in front, and labels where there is room."""
 
     def __init__(self, image: Image.Image, composition: Composition, box: Box, name: str) -> None:
-        """Cover the box of the image; the boxes of all words are named after `name`."""
+        """Cover the box of the image; the boxes of all texts are named after `name`."""
         self.image, self.draw = image, ImageDraw.Draw(image)
         self.box, self.name = box, name
         self.unit = _unit(composition)
@@ -110,20 +110,20 @@ class Sheet:
         anchor: str,
         face: ImageFont.FreeTypeFont | None = None,
     ) -> Box:
-        """Where nothing else can be."""
+        """Write a text at a place where nothing else can be; return its box."""
         self.draw.text((x, y), text, ink, face or self.face, anchor=anchor)
         box = Box(*self.draw.textbbox((x, y), text, font=face or self.face, anchor=anchor))
         return self._report(name, box)
 
     def title(self, texts: Sequence[str], caption: str) -> Box:
-        """The first of the texts that fits, or the last, over a caption, whose box is returned."""
+        """Write the first of the texts that fits, or else the last, over a caption; return the caption's box."""
         left, room = self.box.left + 16 * self.unit, self.box.right - self.box.left - 32 * self.unit
         fitting = next((text for text in texts if self.title_face.getlength(text) <= room), texts[-1])
         self.write("title", left, self.box.top + 20 * self.unit, fitting, INK, "lm", self.title_face)
         return self.write("error", left, self.box.top + 41 * self.unit, caption, FAINT, "lm")
 
     def legend(self, room: Box, entries: Sequence[Entry]) -> bool:
-        """What each mark stands for, in a row that ends at the right of the room; nothing is drawn if it is too narrow."""
+        """Draw what each mark stands for, in a row that ends at the right of the room; nothing if the room is too narrow."""
         gap, apart = 14 * self.unit, self.radius + self.gap
         step = apart + self.radius + gap
         if sum(self.width_of(entry.text) + step for entry in entries) > room.right - room.left:
@@ -137,32 +137,32 @@ class Sheet:
         return True
 
     def levels(self, name: str, axis: Axis, ticks: Iterable[float], area: Box) -> None:
-        """Rules across the area at round shares, and what they are in percent left of it."""
+        """Draw rules across the area at round shares, and write the shares in percent left of it."""
         for number, value in enumerate(ticks):
             y = round(axis.at(value))
             self.rule(Box(area.left, y, area.right + 1, y + self.line), RULE)
             self.write(f"{name}_{number}", area.left - 8 * self.unit, y, round_percent(value), GREY, "rm")
 
     def level_ticks(self, axis: Axis, lines: float = 1.6) -> list[float]:
-        """Round values at least so many lines of type from each other."""
+        """Round values that stand at least so many lines of type from each other."""
         return axis.ticks(lines * self.face.size)
 
     def rule(self, box: Box, ink: Ink) -> None:
-        """A filled box of whole pixels, which words may cover; nothing of an empty one."""
+        """Fill a box of whole pixels, which texts may cover; nothing for an empty box."""
         if box.left < box.right and box.top < box.bottom:
             self.draw.rectangle((box.left, box.top, box.right - 1, box.bottom - 1), fill=ink)
 
     def frame(self, box: Box, ink: Ink) -> None:
-        """The outline of a box of whole pixels."""
+        """Draw the outline of a box of whole pixels."""
         self.draw.rectangle((box.left, box.top, box.right - 1, box.bottom - 1), outline=ink, width=self.line)
 
     def bar(self, box: Box, ink: Ink) -> None:
-        """A rule that words keep away from."""
+        """Fill a box that texts keep away from."""
         self.rule(box, ink)
         self._lined[self._part(Box(box.left - 1, box.top - 1, box.right + 1, box.bottom + 1))] = True
 
     def dashes(self, left: float, right: float, y: float, ink: Ink) -> None:
-        """A level line that words keep away from."""
+        """Draw a dashed level line that texts keep away from."""
         y, dash = round(y), 5 * self.unit
         for i in range(math.ceil((right - left) / (2 * dash))):
             x = left + 2 * i * dash
@@ -170,20 +170,20 @@ class Sheet:
         self._lined[self._part(Box(left, y - 1, right, y + self.line + 1))] = True
 
     def curve(self, area: Box, places: Sequence[Place], ink: Ink, thickness: float, dot: float = 0) -> None:
-        """A line through the places as far as they are in the area, with a dot of that radius on each."""
+        """Draw a line through the places, as far as it is in the area, with a dot of radius `dot` on each."""
         mask = curve_mask(area, places, thickness, dot)
         self.image.paste(ink, (round(area.left), round(area.top)), mask)
         self._lined[self._part(area)] |= np.asarray(mask) > 0
 
     def stamp(self, shape: str, radius: int, place: Place, ink: Ink) -> None:
-        """A marker."""
+        """Draw a marker."""
         mask = marker_mask(shape, radius, max(1.5, 0.35 * self.radius))
         corner = round(place[0] - mask.width / 2), round(place[1] - mask.height / 2)
         self.image.paste(ink, (*corner, corner[0] + mask.width, corner[1] + mask.height), mask)
         self._marked[self._part(Box(*(middle + side for side in (-radius, radius) for middle in place)))] = True
 
     def point(self, shape: str, radius: int, place: Place, ink: Ink) -> None:
-        """A marker with a rim of the ground's colour around it."""
+        """Draw a marker with a rim in the ground's colour around it."""
         self.stamp(shape, radius + self.line, place, (*GROUND[:3], 255))
         self.stamp(shape, radius, place, ink)
 
@@ -199,7 +199,7 @@ class Sheet:
         away: bool = False,
         over_lines: bool = False,
     ) -> bool:
-        """Write beside a mark of that reach, if there is room. away: or else some lines off."""
+        """Write beside a mark of radius `reach`, if there is room; return whether. away: or else some lines off."""
         x, y = place
         width, height = self.size_of(text)
         above, below = y - reach - height, y + reach
@@ -211,12 +211,12 @@ class Sheet:
         return self.put(name, text, ink, spots + [(left, top) for top in tops for left in lefts], area, over_lines)
 
     def row(self, text: str, top: float, area: Box) -> list[Place]:
-        """Spots for a text along a level line, from the left of the area to its right."""
+        """Places for a text along a level line, from the left of the area to its right."""
         first, last = area.left + 4, area.right - self.width_of(text) - 4
         return [(first + k / 20 * (last - first), top) for k in range(21)]
 
     def put(self, name: str, text: str, ink: Ink, spots: Iterable[Place], area: Box, over_lines: bool = False) -> bool:
-        """Write at the first spot (left, top) where the text is within the area and touches nothing."""
+        """Write at the first spot (left, top) where the text is within the area and touches nothing; return whether."""
         for spot in spots:
             at = round(spot[0]), round(spot[1])
             box = Box(*self.draw.textbbox(at, text, font=self.face, anchor="lt"))
