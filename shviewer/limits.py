@@ -19,9 +19,13 @@ DIMMEST, BRIGHTEST = 1e-30, 1e30
 """The largest radiance of a light that can be drawn: beyond, sums and products would leave float32."""
 
 
+ROUNDED = 1 + 2**-23
+"""A float32 image of exactly BRIGHTEST is brighter by less than this factor."""
+
+
 def check_radiance(largest: float, name: str) -> None:
     """LightError unless float32 can show the largest radiance of the light `name`; it can show black."""
-    if not (largest == 0 or DIMMEST <= largest <= BRIGHTEST):
+    if not (largest == 0 or DIMMEST <= largest <= BRIGHTEST * ROUNDED):
         raise LightError(
             f"{name}: its largest radiance is {largest:.3g}; float32 shows {DIMMEST:g} to {BRIGHTEST:g}: scale the light"
         )
@@ -29,7 +33,7 @@ def check_radiance(largest: float, name: str) -> None:
 
 def check_brightness(radiance: float, name: str) -> None:
     """LightError for a radiance above what float32 can show: the check for a light that is only being made."""
-    if radiance > BRIGHTEST:
+    if radiance > BRIGHTEST * ROUNDED:
         check_radiance(radiance, name)
 
 

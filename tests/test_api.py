@@ -190,6 +190,8 @@ def test_reconstruct_and_evaluate_basis_say_what_is_wrong() -> None:
         ({"camera": (1,)}, "azimuth and elevation"),
         ({"basis": (1.5, 0)}, "basis 1.5: it must be a whole number"),
         ({"zoom": 99}, "zoom 99: it must be 0.25 to 16"),
+        ({"zoom": 10**400}, "it must be a finite number"),
+        ({"marks": "no"}, "marks 'no': it must be True or False"),
         ({"colour": 1}, "option 'colour': there is .*samples.*zoom"),
         ({"tone": "filmic", "bands": 0}, "tone 'filmic'"),
     ],

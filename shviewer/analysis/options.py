@@ -118,7 +118,7 @@ class Number:
             return None
         if not is_number(value):
             raise UsageError(f"{name} {value!r}: it must be a finite number")
-        return value
+        return float(value)
 
     def check(self, name: str, value: Any) -> None:
         if value is None and self.optional:
@@ -138,7 +138,9 @@ class Flag:
     """True or False."""
 
     def taken(self, name: str, value: Any) -> Any:
-        return value
+        if not (isinstance(value, bool) or type(value).__name__ in ("bool", "bool_") or value in (0, 1)):
+            raise UsageError(f"{name} {value!r}: it must be True or False")
+        return bool(value)
 
     def check(self, name: str, value: Any) -> None:
         """Accept both values."""
@@ -194,7 +196,7 @@ def is_number(value: object) -> bool:
     """Whether a value is a finite number, of Python's or numpy's types."""
     try:
         return not isinstance(value, str | bytes) and math.isfinite(value)  # type: ignore[arg-type]
-    except TypeError:
+    except (TypeError, OverflowError):
         return False
 
 

@@ -72,7 +72,8 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     if options.rotate_light:
         chosen["light_rotation"] = towards(*options.rotate_light)
     view = View(**chosen)
-    State(Recipe(), view).check(tuple(options.size))
+    asked = Recipe.n_bands if options.n_bands is None else options.n_bands
+    State(Recipe(n_bands=asked), view).check(tuple(options.size))
     recipe, said = recipe_from(options, options.light)
     lights = tuple(built_in_lights()) if all_lights else (options.light,)
     state = open_light(State(recipe, view, lights), options.light)

@@ -45,7 +45,9 @@ class CoefficientLight(RadianceLight):
 
     def __post_init__(self) -> None:
         """LightError for more radiance than can be shown: the largest is at least the root of the mean square."""
-        check_brightness(float(np.sqrt((self.given**2).sum(axis=0).max() / (4 * np.pi))), self.name)
+        largest = float(np.abs(self.given).max())
+        shares = self.given / (largest or 1.0)  # whose squares stay within float64
+        check_brightness(largest * float(np.sqrt((shares**2).sum(axis=0).max() / (4 * np.pi))), self.name)
 
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> CoefficientLight:

@@ -88,7 +88,7 @@ def next_light(step: int) -> Action:
     """Show the light `step` places further in the list, which is a ring."""
 
     def action(state: State) -> State:
-        at = state.lights.index(state.recipe.light) + step
+        at = (state.lights.index(state.recipe.light) if state.recipe.light in state.lights else 0) + step
         return changed(state, light=state.lights[at % len(state.lights)], layout_tried="")
 
     return action

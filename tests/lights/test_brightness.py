@@ -64,3 +64,12 @@ def test_what_is_too_bright_says_what_can_be_shown() -> None:
     with pytest.raises(LightError) as caught:
         MAKERS["lobes"](Path(), 4e31)
     assert str(caught.value) == "lobes: its largest radiance is 4e+31; float32 shows 1e-30 to 1e+30: scale the light"
+
+
+def test_an_image_of_exactly_the_limit_is_no_brighter_for_its_rounding() -> None:
+    EnvironmentLight(np.full((4, 8, 3), 1e30, np.float32))
+
+
+def test_coefficients_whose_squares_leave_float64_are_refused_by_value() -> None:
+    with pytest.raises(LightError, match=r"its largest radiance is 5\.64e\+199"):
+        CoefficientLight(np.full((4, 3), 1e200))

@@ -26,6 +26,7 @@ from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.desktop.glfw_window import key_name, open_window
 from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State, changed
 
 IDLE_SECONDS = 0.25
@@ -70,7 +71,10 @@ class Window:
         glfw.set_drop_callback(handle, self._on_drop)  # type: ignore[arg-type]  # the stub shows the C signature
         glfw.set_framebuffer_size_callback(handle, lambda *_: self.redraw())
         glfw.set_window_refresh_callback(handle, lambda *_: self.redraw())
-        glfw.set_window_title(handle, self.session.title)
+        self.title = self.session.title
+        self.shown: Picture | None = None
+        """The last picture that this OpenGL could hold."""
+        glfw.set_window_title(handle, self.title)
 
     def loop(self) -> None:
         """Draw what is due, then sleep until something happens or a sweep takes its next step."""
@@ -115,16 +119,19 @@ class Window:
         if message:
             self.canvas.say(message, session.picture, composition)
             glfw.swap_buffers(self.handle)
-        last = session.picture
         session.prepare(self.canvas.by_map(session.state, composition))
         composition = self.composition() or composition  # a state that was refused has left another one
         try:
             self.canvas.show(session.picture, composition)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
-            session.keep(error, last)
+            if self.shown is None:
+                raise
+            session.keep(error, self.shown)
             self.canvas.show(session.picture, composition)
-        if session.picture.light is not last.light:
-            glfw.set_window_title(self.handle, session.title)
+        self.shown = session.picture
+        if session.title != self.title:
+            self.title = session.title
+            glfw.set_window_title(self.handle, self.title)
         if self.canvas.draw(composition, self.mouse if self.hovering and not self.dragged else None):
             self._due()
         glfw.swap_buffers(self.handle)

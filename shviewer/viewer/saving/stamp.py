@@ -9,24 +9,25 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from dataclasses import asdict, fields
+from dataclasses import asdict, astuple, fields
 from typing import Any
 
-from shviewer.analysis.options import options_of
+from shviewer.analysis.options import Flag, Kind, Number, Whole, options_of, whole
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
-from shviewer.lights.reading import Reading
+from shviewer.lights.reading import LAYOUT_CHOICES, Reading
 from shviewer.lights.suns.sun import Sun
-from shviewer.limits import Limits
+from shviewer.limits import MAX_BANDS, Limits
 from shviewer.version import __version__
+from shviewer.viewer.camera import Quaternion
 from shviewer.viewer.colour_maps import map_of
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State
-from shviewer.viewer.view import View
+from shviewer.viewer.view import MAX_EXPOSURE, View
 
 SCHEMA = 1
 
@@ -35,6 +36,15 @@ EVALUATED = {DirectSum: "direct", SplineMap: "map", Surfaces: "surfaces"}
 
 NOT_SEEN = ("layout_tried",)
 """Fields of the view that no pixel depends on."""
+
+BESIDE: dict[str, Kind] = {
+    "exposure_offset": Number(-MAX_EXPOSURE, MAX_EXPOSURE, f"it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops"),
+    "cursor": Whole(0, MAX_BANDS - 1, "cursor {}", f"bands are counted from 0 to {MAX_BANDS - 1}"),
+    "cursor_visible": Flag(),
+    "help_visible": Flag(),
+    "sweep_to": Whole(1, MAX_BANDS, "a sweep to {} bands", f"the viewer shows 1 to {MAX_BANDS}"),
+}
+"""Fields of the view that are no options, and their kinds."""
 
 BEFORE_SCHEMAS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "bands": ("n_bands", int),
@@ -165,10 +175,17 @@ def state_of_stamp(text: str, light: str | Light | None = None, compare: Coeffic
         if said.get("schema", 0) > SCHEMA:
             raise UsageError(f"a picture of schema {said['schema']}: this version reads {SCHEMA}; update shviewer")
         recipe, view = _told(said["state"]) if "state" in said else _told_before_schemas(said)
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
+    except (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
         raise UsageError(f"no stamp of a picture ({error}): save the picture again") from error
-    told = recipe.pop("light", None)
-    shown = light or told or Recipe.light
+    name = recipe.pop("light", None)
+    given = (said["state"]["recipe"] if "state" in said else said).get("compare")
+    if light is None and name is None:
+        raise UsageError("the picture is of a light that has no text to name it: give the light")
+    if given and compare is None:
+        raise UsageError(f"the picture compares with {given['name']}: give those coefficients")
+    if compare is not None and recipe.get("n_bands", 1) > compare.n_bands:
+        raise UsageError(f"{recipe['n_bands']} bands: {compare.extent}; give the coefficients of the picture")
+    shown = light or name or Recipe.light
     state = State(Recipe(light=shown, compare=compare, **recipe), View(**view), (shown,))
     state.check()
     return state
@@ -197,18 +214,40 @@ def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """The values of recipe and view; fields that a later version may have added are left out."""
     recipe = {part.name: said["recipe"][part.name] for part in fields(Recipe) if part.name in said["recipe"]}
     view = {part.name: said["view"][part.name] for part in fields(View) if part.name in said["view"]}
-    reading = recipe["reading"]
-    recipe |= _taken(recipe, Recipe) | {"reading": Reading(**reading | {"limits": Limits(**reading["limits"])})}
-    view |= _taken(view, View) | {"light_rotation": tuple(view["light_rotation"])}
+    recipe |= _taken(recipe, Recipe) | {"reading": _told_reading(recipe["reading"])}
+    view |= _taken(view, View) | {"light_rotation": _told_rotation(view["light_rotation"])}
+    for name, kind in BESIDE.items():
+        if view[name] is not None or name != "sweep_to":
+            view[name] = kind.taken(name, view[name])
+            kind.check(name, view[name])
+    if not isinstance(view["message"], str) or not isinstance(recipe["light"], str | None):
+        raise ValueError("light and message are texts")
     recipe.pop("compare")
     return recipe, view
+
+
+def _told_reading(said: dict[str, Any]) -> Reading:
+    limits = Limits(**{name: whole(value, name) for name, value in said["limits"].items()})
+    if said["layout"] not in LAYOUT_CHOICES or not isinstance(said["convention"], str) or min(astuple(limits)) < 1:
+        raise ValueError("a reading that there is not")
+    return Reading(Flag().taken("sanitize", said["sanitize"]), said["layout"], limits, said["convention"])
+
+
+def _told_rotation(said: list[Any]) -> Quaternion:
+    x, y, z, w = map(float, said)
+    if not abs(math.hypot(x, y, z, w) - 1) < 1e-6:
+        raise ValueError(f"a light rotation of length {math.hypot(x, y, z, w):g}")
+    return x, y, z, w
 
 
 def _told_before_schemas(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     told = {name: make(said[key]) for key, (name, make) in BEFORE_SCHEMAS.items() if said.get(key) is not None}
     recipe, view = _taken(told, Recipe), _taken(told, View)
     reading = Reading(sanitize=bool(said.get("sanitize", False)), layout=str(said.get("layout", "auto")))
-    return {"light": said.get("light_argument"), "reading": reading, **recipe}, view
+    light = said.get("light_argument")
+    if not isinstance(light, str | None) or reading.layout not in LAYOUT_CHOICES:
+        raise ValueError("a light or a layout that there is not")
+    return {"light": light, "reading": reading, **recipe}, view
 
 
 def _taken(values: dict[str, Any], holder: type) -> dict[str, Any]:

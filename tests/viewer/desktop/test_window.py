@@ -261,3 +261,46 @@ def test_a_sweep_goes_on_under_other_keys_until_space_or_a_band_key(start: Start
         assert stopped < 32
         viewer.rest(seconds=1.2 * SWEEP_SECONDS)
         assert json.loads(viewer.saved_picture()[1])["bands"] == stopped
+
+
+TWO_KEYS_SCRIPT = """
+import glfw
+from shviewer.errors import GraphicsError
+from shviewer.viewer.desktop import window
+from shviewer.viewer.state import state_of
+titles = []
+glfw.set_window_title = lambda handle, title: titles.append(title)
+with window.open_window((320, 160)) as handle:
+    shown = window.Window(handle, state_of("green", "constant", "studio"), False)
+    shown.frame()
+    for key in ("Right", "T"):
+        shown.press(key)
+    shown.frame()
+    print(titles[-1])
+    show = shown.canvas.show
+
+    def too_large(picture, composition):
+        if picture.light.name == "studio":
+            raise GraphicsError("a map too large")
+        show(picture, composition)
+
+    shown.canvas.show = too_large
+    for key in ("Right", "T"):
+        shown.press(key)
+    shown.frame()
+    print(titles[-1], shown.session.state.recipe.light, shown.session.state.view.message, sep="|")
+"""
+
+
+def test_keys_between_two_frames_leave_neither_an_old_title_nor_what_opengl_cannot_hold(display: str) -> None:
+    """T makes the picture before the frame does, so that the frame finds nothing new."""
+    done = subprocess.run(
+        [sys.executable, "-c", TWO_KEYS_SCRIPT],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["shviewer - constant", "shviewer - constant|constant|a map too large"]
