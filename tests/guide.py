@@ -15,25 +15,9 @@ import re
 
 from documents import PAGES
 
-from shviewer.cli.options import (
-    EXIT_CODES,
-    info_parser,
-    project_parser,
-    report_parser,
-    screenshot_parser,
-    sweep_parser,
-    view_parser,
-)
+from shviewer.cli.main import PARSERS
+from shviewer.cli.options import EXIT_CODES, view_parser
 from shviewer.viewer.keys import key_table
-
-PARSERS = {
-    "view": view_parser,
-    "screenshot": screenshot_parser,
-    "sweep": sweep_parser,
-    "info": info_parser,
-    "project": project_parser,
-    "report": report_parser,
-}
 
 MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 

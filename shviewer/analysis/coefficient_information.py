@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, stamp_of
+from shviewer.coefficients.stamp import stamp_of
 from shviewer.lights.light import About
-from shviewer.words import counted
-
-FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
 
 
 @dataclass(frozen=True)
@@ -49,39 +46,3 @@ def describe_coefficients(about: About) -> CoefficientInformation | None:
         stamped=bool(file.stamp),
         stamp=dict(file.stamp),
     )
-
-
-def coefficient_rows(found: CoefficientInformation) -> list[tuple[str, str]]:
-    """The lines to print: label and text."""
-    said = "as the file says" if found.stamped else "as named on the command line; the file does not say"
-    rows = [
-        (
-            "coefficients",
-            f"{counted(found.bands, 'band')}, {counted(found.bands**2, 'row')}, {found.quantity.replace('-', ' ')}",
-        ),
-        ("convention", f"{found.convention} ({found.program}), {said}"),
-        ("basis", f"{found.basis}; {found.phase}; index {found.index}"),
-        ("axes", found.axes),
-    ]
-    return rows + _origin(found.stamp)
-
-
-def _origin(stamp: Stamp) -> list[tuple[str, str]]:
-    if SCHEMA_KEY not in stamp:
-        return []
-    parts = [f"{stamp.get('light', 'an unnamed light')} ({stamp.get('light-is', 'not described')})"]
-    parts += [str(stamp[key]) for key in ("method",) if key in stamp]
-    parts += [
-        f"{key} {stamp[key]}" for key in ("samples", "seed", "window", "muted") if stamp.get(key) not in (None, "none")
-    ]
-    parts.append(f"written by {stamp.get('written-by', 'an unknown program')}")
-    figures = [f"{words} {float(str(stamp[key])):.4g}" for key, words in FIGURES.items() if _is_number(stamp.get(key))]
-    return [("origin", ", ".join(parts)), *([("figures there", ", ".join(figures))] if figures else [])]
-
-
-def _is_number(value: object) -> bool:
-    try:
-        float(str(value))
-    except ValueError:
-        return False
-    return True

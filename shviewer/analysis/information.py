@@ -9,7 +9,6 @@ import numpy as np
 
 from shviewer.analysis.coefficient_information import (
     CoefficientInformation,
-    coefficient_rows,
     describe_coefficients,
 )
 from shviewer.analysis.figures import error_grid, grid_rows, needs
@@ -139,40 +138,6 @@ def as_json_object(information: Information) -> dict[str, object]:
     return asdict(information)
 
 
-def as_text(information: Information) -> str:
-    """The information as aligned lines, one screen at most."""
-    values, size, peak = information.values, information.size, information.peak_direction
-    rows = [("file", f"{information.file}, {_bytes(information.file_bytes)}")]
-    if information.encoding:
-        rows.append(("encoding", information.encoding))
-    if size and information.layout:
-        rows.append(("layout", f"{information.layout}, {size[0]} x {size[1]}"))
-    if information.coefficients:
-        rows += coefficient_rows(information.coefficients)
-    if information.refused:
-        rows += [("refused", information.refused), ("", "what follows is said of the image as --sanitize repairs it")]
-    rows += [("note", note) for note in information.notes]
-    rows.append(
-        ("radiance", f"{_number(values.minimum)} to {_number(values.maximum)} in any channel ({values.source})")
-    )
-    if size and not information.refused:
-        repaired = any(note.startswith("sanitised") for note in information.notes)
-        none = f"no NaN, no infinity, {values.negative_values or 'none'} negative"
-        rows.append(("bad values", "repaired, see note" if repaired else none))
-    rows.append(("mean", f"{_numbers(information.mean)}, luminance {_number(information.mean_luminance)}"))
-    rows += _dynamic_range(values)
-    theta, phi = information.peak_theta_phi_degrees
-    place = f"x y z {' '.join(f'{component:z.4f}' for component in peak)}"
-    rows.append(("peak", f"{_number(information.peak)} at theta {theta:.2f}, phi {phi:z.2f} degrees; {place}"))
-    rows.append(("irradiance up", _numbers(information.irradiance_up)))
-    shares = " ".join(f"{100 * share:.2f}" for share in information.energy_share)
-    rows.append(("energy, %", f"{shares} in bands 0 to {len(information.energy_share) - 1}; {information.method}"))
-    rows += _bands("bands", information.bands_needed)
-    rows += _suns(information)
-    lines = [f"{information.light}: {information.description}"]
-    return "\n".join(lines + [f"  {label:<18}{text}" for label, text in rows])
-
-
 def _describe(text: str, reading: Reading) -> Information:
     recipe = Recipe(text, reading)
     found = reconstruction_of(recipe)
@@ -279,58 +244,6 @@ def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
         dynamic_range_stops=max(0.0, float(np.log2(brightest / darkest))) if darkest else None,
         source=source,
     )
-
-
-def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:
-    return [
-        (
-            f"{what}, {quantity}",
-            ", ".join(
-                f"{getattr(need, quantity) or f'over {need.searched}'} for {100 * need.tolerance:g} %"
-                for need in counts
-            ),
-        )
-        for quantity in ("radiance", "irradiance")
-    ]
-
-
-def _suns(information: Information) -> list[tuple[str, str]]:
-    rows = []
-    for sun in information.suns:
-        theta, phi = sun.theta_phi_degrees
-        share = f"{100 * sun.share_of_flux:.3g} % of the flux"
-        place = f"at theta {theta:.2f}, phi {phi:z.2f}, {sun.width_degrees:.3g} deg wide"
-        colour = " ".join(f"{value:.3g}" for value in sun.irradiance)
-        rows.append(("sun", f"{share} {place}; irradiance {colour}"))
-    return rows + (_bands("rest", information.bands_needed_without_suns) if rows else [])
-
-
-def _dynamic_range(values: Values) -> list[tuple[str, str]]:
-    black = values.negative_or_black_area
-    rows = [("black", f"{100 * black:.3g} % of the sphere has no luminance above 0")] if black else []
-    if values.dynamic_range_stops is None or values.darkest is None:
-        return rows
-    ends = f"from {_number(values.darkest)}, the darkest {100 * DARK_PERCENTILE:g} % above 0 left out, to"
-    text = f"{values.dynamic_range_stops:.1f} stops of luminance, {ends} {_number(values.brightest_luminance)}"
-    return [("dynamic range", text), *rows]
-
-
-def _bytes(count: int) -> str:
-    return (
-        f"{count} bytes"
-        if count < 2**10
-        else f"{count / 2**10:.1f} KiB"
-        if count < 2**20
-        else f"{count / 2**20:.1f} MiB"
-    )
-
-
-def _number(value: float) -> str:
-    return f"{value:z.4g}"
-
-
-def _numbers(values: Triple) -> str:
-    return " ".join(map(_number, values))
 
 
 def _triple(values: Array) -> Triple:

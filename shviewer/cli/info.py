@@ -6,9 +6,23 @@ import argparse
 import json
 import sys
 
-from shviewer.analysis.information import as_json_object, as_text, describe
+from shviewer.analysis.coefficient_information import CoefficientInformation
+from shviewer.analysis.information import (
+    DARK_PERCENTILE,
+    BandsNeeded,
+    Information,
+    Triple,
+    Values,
+    as_json_object,
+    describe,
+)
 from shviewer.cli.from_options import reading_from
+from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError, ShviewerError
+from shviewer.words import counted
+
+FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
+"""Figures of the stamp of a coefficient file, in words."""
 
 
 def run(options: argparse.Namespace) -> int:
@@ -35,3 +49,125 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(objects, indent=2, allow_nan=False))
     return exit_code
+
+
+def as_text(information: Information) -> str:
+    """The information as aligned lines, one screen at most."""
+    values, size, peak = information.values, information.size, information.peak_direction
+    rows = [("file", f"{information.file}, {_bytes(information.file_bytes)}")]
+    if information.encoding:
+        rows.append(("encoding", information.encoding))
+    if size and information.layout:
+        rows.append(("layout", f"{information.layout}, {size[0]} x {size[1]}"))
+    if information.coefficients:
+        rows += _coefficients(information.coefficients)
+    if information.refused:
+        rows += [("refused", information.refused), ("", "what follows is said of the image as --sanitize repairs it")]
+    rows += [("note", note) for note in information.notes]
+    rows.append(
+        ("radiance", f"{_number(values.minimum)} to {_number(values.maximum)} in any channel ({values.source})")
+    )
+    if size and not information.refused:
+        repaired = any(note.startswith("sanitised") for note in information.notes)
+        none = f"no NaN, no infinity, {values.negative_values or 'none'} negative"
+        rows.append(("bad values", "repaired, see note" if repaired else none))
+    rows.append(("mean", f"{_numbers(information.mean)}, luminance {_number(information.mean_luminance)}"))
+    rows += _dynamic_range(values)
+    theta, phi = information.peak_theta_phi_degrees
+    place = f"x y z {' '.join(f'{component:z.4f}' for component in peak)}"
+    rows.append(("peak", f"{_number(information.peak)} at theta {theta:.2f}, phi {phi:z.2f} degrees; {place}"))
+    rows.append(("irradiance up", _numbers(information.irradiance_up)))
+    shares = " ".join(f"{100 * share:.2f}" for share in information.energy_share)
+    rows.append(("energy, %", f"{shares} in bands 0 to {len(information.energy_share) - 1}; {information.method}"))
+    rows += _bands("bands", information.bands_needed)
+    rows += _suns(information)
+    lines = [f"{information.light}: {information.description}"]
+    return "\n".join(lines + [f"  {label:<18}{text}" for label, text in rows])
+
+
+def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:
+    return [
+        (
+            f"{what}, {quantity}",
+            ", ".join(
+                f"{getattr(need, quantity) or f'over {need.searched}'} for {100 * need.tolerance:g} %"
+                for need in counts
+            ),
+        )
+        for quantity in ("radiance", "irradiance")
+    ]
+
+
+def _suns(information: Information) -> list[tuple[str, str]]:
+    rows = []
+    for sun in information.suns:
+        theta, phi = sun.theta_phi_degrees
+        share = f"{100 * sun.share_of_flux:.3g} % of the flux"
+        place = f"at theta {theta:.2f}, phi {phi:z.2f}, {sun.width_degrees:.3g} deg wide"
+        colour = " ".join(f"{value:.3g}" for value in sun.irradiance)
+        rows.append(("sun", f"{share} {place}; irradiance {colour}"))
+    return rows + (_bands("rest", information.bands_needed_without_suns) if rows else [])
+
+
+def _dynamic_range(values: Values) -> list[tuple[str, str]]:
+    black = values.negative_or_black_area
+    rows = [("black", f"{100 * black:.3g} % of the sphere has no luminance above 0")] if black else []
+    if values.dynamic_range_stops is None or values.darkest is None:
+        return rows
+    ends = f"from {_number(values.darkest)}, the darkest {100 * DARK_PERCENTILE:g} % above 0 left out, to"
+    text = f"{values.dynamic_range_stops:.1f} stops of luminance, {ends} {_number(values.brightest_luminance)}"
+    return [("dynamic range", text), *rows]
+
+
+def _bytes(count: int) -> str:
+    return (
+        f"{count} bytes"
+        if count < 2**10
+        else f"{count / 2**10:.1f} KiB"
+        if count < 2**20
+        else f"{count / 2**20:.1f} MiB"
+    )
+
+
+def _number(value: float) -> str:
+    return f"{value:z.4g}"
+
+
+def _numbers(values: Triple) -> str:
+    return " ".join(map(_number, values))
+
+
+def _coefficients(found: CoefficientInformation) -> list[tuple[str, str]]:
+    """The lines to print: label and text."""
+    said = "as the file says" if found.stamped else "as named on the command line; the file does not say"
+    rows = [
+        (
+            "coefficients",
+            f"{counted(found.bands, 'band')}, {counted(found.bands**2, 'row')}, {found.quantity.replace('-', ' ')}",
+        ),
+        ("convention", f"{found.convention} ({found.program}), {said}"),
+        ("basis", f"{found.basis}; {found.phase}; index {found.index}"),
+        ("axes", found.axes),
+    ]
+    return rows + _origin(found.stamp)
+
+
+def _origin(stamp: Stamp) -> list[tuple[str, str]]:
+    if SCHEMA_KEY not in stamp:
+        return []
+    parts = [f"{stamp.get('light', 'an unnamed light')} ({stamp.get('light-is', 'not described')})"]
+    parts += [str(stamp[key]) for key in ("method",) if key in stamp]
+    parts += [
+        f"{key} {stamp[key]}" for key in ("samples", "seed", "window", "muted") if stamp.get(key) not in (None, "none")
+    ]
+    parts.append(f"written by {stamp.get('written-by', 'an unknown program')}")
+    figures = [f"{words} {float(str(stamp[key])):.4g}" for key, words in FIGURES.items() if _is_number(stamp.get(key))]
+    return [("origin", ", ".join(parts)), *([("figures there", ", ".join(figures))] if figures else [])]
+
+
+def _is_number(value: object) -> bool:
+    try:
+        float(str(value))
+    except ValueError:
+        return False
+    return True

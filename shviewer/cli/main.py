@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = _meant(arguments)
         mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
-        options = _PARSERS[mode]().parse_intermixed_args(rest)
+        options = PARSERS[mode]().parse_intermixed_args(rest)
         code: int = import_module(f"shviewer.cli.{mode}").run(options)
         return code
     except ShviewerError as error:
@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 0
 
 
-_PARSERS = {
+PARSERS = {
     "view": view_parser,
     "screenshot": screenshot_parser,
     "sweep": sweep_parser,
@@ -57,7 +57,7 @@ _PARSERS = {
 }
 """Mode -> its parser. The mode's code is the function `run` in the file of its name."""
 
-MODES = tuple(mode for mode in _PARSERS if mode != "view")
+MODES = tuple(mode for mode in PARSERS if mode != "view")
 
 
 def _meant(arguments: list[str]) -> list[str]:

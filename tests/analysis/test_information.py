@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 import shviewer
 from shviewer.analysis.figures import needs
-from shviewer.analysis.information import BINS_PER_STOP, as_json_object, as_text, describe
+from shviewer.analysis.information import BINS_PER_STOP, as_json_object, describe
+from shviewer.cli.info import as_text
 from shviewer.errors import LightError
 from shviewer.lights.find import built_in_lights
 from shviewer.lights.reading import DEFAULT_READING, Reading

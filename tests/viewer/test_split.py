@@ -8,9 +8,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from shviewer.analysis.figures import needs
-from shviewer.analysis.information import as_text, describe
+from shviewer.analysis.information import describe
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import subject
+from shviewer.cli.info import as_text
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.reading import DEFAULT_READING
