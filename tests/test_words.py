@@ -1,0 +1,44 @@
+"""How numbers, shares, angles, times and counts read. Percent and radiance beside figures: tests/viewer/overlay."""
+
+from __future__ import annotations
+
+import pytest
+
+from shviewer.words import brief_percent, counted, grouped, grouped_number, shortened, theta_phi_degrees, three_digits
+
+
+@pytest.mark.parametrize(
+    ("said", "reads"),
+    [
+        (counted(1, "band"), "1 band"),
+        (counted(0, "band"), "0 bands"),
+        (counted(25, "coefficient"), "25 coefficients"),
+        (three_digits(0), "0"),
+        (three_digits(0.012345), "0.0123"),
+        (three_digits(1e-9), "0.000000"),
+        (three_digits(4.5678), "4.57"),
+        (three_digits(1234.5), "1234"),
+        (brief_percent(1.04), "104 %"),
+        (brief_percent(0.0144), "1.4 %"),
+        (brief_percent(1e-6), "0.0001 %"),
+        (grouped(1_000_000), "1 000 000"),
+        (grouped_number(3.14159), "3.14"),
+        (grouped_number(31415.9), "31 416"),
+        (shortened("environment-of-noon", 12), "envir...noon"),
+        (shortened("noon", 12), "noon"),
+    ],
+)
+def test_a_number_reads_as_it_should(said: str, reads: str) -> None:
+    assert said == reads
+
+
+@pytest.mark.parametrize(
+    ("direction", "theta", "phi"),
+    [((0, 0, 2), 0, 0), ((0, 0, -1), 180, 0), ((3, 0, 0), 90, 0), ((0, 1, 0), 90, 90), ((-1, -1, 0), 90, -135)],
+)
+def test_theta_is_from_z_and_phi_from_x_towards_y(direction: tuple[int, int, int], theta: float, phi: float) -> None:
+    assert theta_phi_degrees(direction) == pytest.approx((theta, phi))
+
+
+def test_an_azimuth_is_no_negative_zero() -> None:
+    assert str(theta_phi_degrees((1.0, -0.0, 0.0))[1]) == "0.0"
