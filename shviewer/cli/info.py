@@ -27,7 +27,6 @@ FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "mi
 
 def run(options: argparse.Namespace) -> int:
     """Every light that can be read is described; the exit code is that of the first that cannot."""
-
     reading = reading_from(options)
     exit_code = 0
     objects: list[dict[str, object]] = []

@@ -8,7 +8,7 @@ from PIL import ImageFont
 
 Ink = tuple[int, int, int, int]
 INK, GREY, FAINT, RULE = (236, 236, 240, 255), (168, 168, 178, 255), (122, 122, 132, 255), (62, 62, 68, 255)
-ACCENT, ACCENT_MUTED = (100, 160, 255, 255), (100, 160, 255, 110)
+ACCENT = (100, 160, 255, 255)
 NEGATIVE = (35, 98, 152, 255)
 """The colour that shaders/display.glsl gives to a luminance about a tenth of white below zero."""
 

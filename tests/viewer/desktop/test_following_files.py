@@ -230,7 +230,7 @@ import sys
 from pathlib import Path
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.viewer.desktop import window
-from shviewer.viewer.state import State, changed, state_of
+from shviewer.viewer.state import state_of
 
 isolated, read = [], EnvironmentLight.read
 EnvironmentLight.read = classmethod(

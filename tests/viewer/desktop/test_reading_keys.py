@@ -17,8 +17,7 @@ SCRIPT = """
 import json
 import sys
 from shviewer.viewer.desktop import window
-from shviewer.viewer.keys import press
-from shviewer.viewer.state import State, changed, state_of
+from shviewer.viewer.state import state_of
 
 first, *steps = sys.argv[1:]
 with window.open_window((640, 320)) as handle:

@@ -81,8 +81,7 @@ import json
 import operator
 import sys
 from shviewer.viewer.desktop import canvas, window
-from shviewer.viewer.keys import press
-from shviewer.viewer.state import State, changed, state_of
+from shviewer.viewer.state import state_of
 from shviewer.viewer.actions import orbit, rotate_light
 
 drawn = []

@@ -167,7 +167,7 @@ def test_pictures_are_numbered_and_never_overwritten(start: Start, tmp_path: Pat
 DROP_SCRIPT = """
 import sys
 from shviewer.viewer.desktop import window
-from shviewer.viewer.state import State, changed, state_of
+from shviewer.viewer.state import state_of
 with window.open_window((640, 320)) as handle:
     shown = window.Window(handle, state_of(), False)
     for path in sys.argv[1:]:
@@ -198,10 +198,9 @@ def test_a_dropped_file_opens_and_a_bad_one_leaves_the_present_light_and_says_wh
 
 
 REFUSED_SWEEP_SCRIPT = """
-from dataclasses import replace
 from shviewer.viewer.desktop import window
 from shviewer.viewer.actions import step_sweep
-from shviewer.viewer.state import State, changed, state_of
+from shviewer.viewer.state import state_of
 with window.open_window((640, 320)) as handle:
     shown = window.Window(handle, state_of(n_bands=32, window="dering", sweep_to=40), False)
     shown.frame()

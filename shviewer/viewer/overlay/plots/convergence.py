@@ -21,7 +21,7 @@ from shviewer.viewer.overlay.plots.markers import LOOKS, Place
 from shviewer.viewer.overlay.plots.sheet import Entry, Sheet, Size, place
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_muted, describe_window
-from shviewer.words import percent, round_percent, short_count
+from shviewer.words import counted, percent, round_percent, short_count
 
 MOST, LEAST = Size(440, 330), Size(230, 150)
 """Largest and smallest size of the sheet; a smaller one would not hold its curve."""
@@ -177,7 +177,7 @@ class _Drawing:
         """Write the present error, the error as shown and the bands that the tolerance needs, in as many words as fit."""
         sheet, found, area, state, series = self.sheet, self.found, self.area, self.state, self.series
         share = self._percent(series.errors.get(state.recipe.n_bands, float("inf")))
-        texts = [f"{state.recipe.n_bands} band{'' if state.recipe.n_bands == 1 else 's'}: {share}", share]
+        texts = [f"{counted(state.recipe.n_bands, 'band')}: {share}", share]
         self._beside("present", found.points.get(state.recipe.n_bands), texts, INK, sheet.ring + sheet.gap + 1)
         changes = ", ".join(filter(None, (describe_window(state.recipe), describe_muted(state.recipe))))
         if changes:

@@ -21,7 +21,7 @@ from shviewer.viewer.overlay.plots.log_axis import Axis, padded_axis
 from shviewer.viewer.overlay.plots.markers import LOOKS, Place
 from shviewer.viewer.overlay.plots.sheet import Entry, Sheet, Size, place
 from shviewer.viewer.picture import Picture
-from shviewer.words import grouped_number, percent, round_percent, short_count
+from shviewer.words import counted, grouped_number, percent, round_percent, short_count
 
 MOST, LEAST = Size(440, 270), Size(380, 190)
 """Largest and smallest size of the sheet; a smaller one would not hold its legend."""
@@ -106,7 +106,7 @@ class _Drawing:
     def axes(self) -> None:
         """Draw title, captions, and a faint grid with round values."""
         sheet, area, unit, state = self.sheet, self.area, self.sheet.unit, self.picture.state
-        title = f"time against error, {state.recipe.n_bands} band{'' if state.recipe.n_bands == 1 else 's'}"
+        title = f"time against error, {counted(state.recipe.n_bands, 'band')}"
         apart = [
             words
             for words, so in (("none muted", state.recipe.muted_shown), ("no window", state.recipe.window != "none"))
