@@ -69,8 +69,22 @@ def quadrant_points(n_texels: int, n_points: int) -> tuple[Array, Array]:
 
     The middle one of an odd number counts half. The half [-1, 0] is the same, mirrored.
     """
-    edges = np.maximum((2 * np.arange(n_texels // 2, n_texels + 1) - n_texels) / n_texels, 0.0)
-    return texel_weights(edges, n_points)
+    return texel_weights(quadrant_edges(n_texels), n_points)
+
+
+def quadrant_edges(n_texels: int) -> Array:
+    """The edges, from 0 to 1, of the texels in the half [0, 1]; the middle one of an odd number begins at 0."""
+    return np.maximum((2 * np.arange(n_texels // 2, n_texels + 1) - n_texels) / n_texels, 0.0)
+
+
+def four_quadrants(quadrant: Array, n_texels: int) -> Array:
+    """The values of a quadrant for the whole image (n_texels, n_texels), with the halves of middle texels added up."""
+    odd = n_texels % 2
+    if odd:
+        twice = np.where(np.arange(len(quadrant)) == 0, 2, 1)
+        quadrant = quadrant * twice * twice[:, None]
+    rows = np.concatenate([quadrant[::-1], quadrant[odd:]])
+    return np.concatenate([rows[:, ::-1], rows[:, odd:]], axis=1)
 
 
 def quadrant_weights(

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.patches import project_mirrored, quadrant_weights
+from shviewer.harmonics.patches import four_quadrants, project_mirrored, quadrant_edges, quadrant_weights
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import Indices
 
@@ -56,54 +56,17 @@ class Arrangement:
         return size if size * self.rows == height and size * self.columns == width else 0
 
 
-_STRIP = (
-    ("-y", "-x", "-z"),
-    ("+y", "+x", "-z"),
-    ("+z", "-y", "+x"),
-    ("-z", "-y", "-x"),
-    ("+x", "-y", "-z"),
-    ("-x", "+y", "-z"),
-)
-_OPENEXR = (
-    ("+y", "+x", "-z"),
-    ("-y", "-x", "-z"),
-    ("+z", "+y", "-x"),
-    ("-z", "+y", "+x"),
-    ("+x", "-y", "-z"),
-    ("-x", "+y", "-z"),
-)
+_LEFT, _FRONT, _RIGHT, _BACK = ("+y", "+x", "-z"), ("+x", "-y", "-z"), ("-y", "-x", "-z"), ("-x", "+y", "-z")
 _UP, _DOWN = ("+z", "-y", "+x"), ("-z", "-y", "-x")
-_LEFT, _FRONT, _RIGHT = ("+y", "+x", "-z"), ("+x", "-y", "-z"), ("-y", "-x", "-z")
+_STRIP = _RIGHT, _LEFT, _UP, _DOWN, _FRONT, _BACK
+_OPENEXR = _LEFT, _RIGHT, ("+z", "+y", "-x"), ("-z", "+y", "+x"), _FRONT, _BACK
+_CROSS = Face(0, 1, *_UP), Face(1, 0, *_LEFT), Face(1, 1, *_FRONT), Face(1, 2, *_RIGHT), Face(2, 1, *_DOWN)
 
 VERTICAL_STRIP = Arrangement("vertical strip", 6, 1, tuple(Face(i, 0, *axes) for i, axes in enumerate(_STRIP)))
 HORIZONTAL_STRIP = Arrangement("horizontal strip", 1, 6, tuple(Face(0, i, *axes) for i, axes in enumerate(_STRIP)))
 OPENEXR = Arrangement("OpenEXR order", 6, 1, tuple(Face(i, 0, *axes) for i, axes in enumerate(_OPENEXR)))
-VERTICAL_CROSS = Arrangement(
-    "vertical cross",
-    4,
-    3,
-    (
-        Face(0, 1, *_UP),
-        Face(1, 0, *_LEFT),
-        Face(1, 1, *_FRONT),
-        Face(1, 2, *_RIGHT),
-        Face(2, 1, *_DOWN),
-        Face(3, 1, "-x", "-y", "+z"),
-    ),
-)
-HORIZONTAL_CROSS = Arrangement(
-    "horizontal cross",
-    3,
-    4,
-    (
-        Face(0, 1, *_UP),
-        Face(1, 0, *_LEFT),
-        Face(1, 1, *_FRONT),
-        Face(1, 2, *_RIGHT),
-        Face(1, 3, "-x", "+y", "-z"),
-        Face(2, 1, *_DOWN),
-    ),
-)
+VERTICAL_CROSS = Arrangement("vertical cross", 4, 3, (*_CROSS, Face(3, 1, "-x", "-y", "+z")))
+HORIZONTAL_CROSS = Arrangement("horizontal cross", 3, 4, (*_CROSS, Face(1, 3, *_BACK)))
 
 
 @dataclass(frozen=True)
@@ -191,19 +154,17 @@ class CubeLayout:
         directions = np.empty((3, n_points, n_points, 3))
         for face in self.arrangement.faces:
             points, weights = quadrant_weights(pixels[self._cell(face)], n_points)
-            axes = ["xyz".index(axis[1]) for axis in (face.centre, face.right, face.down)]
-            backward = [int(axis[0] == "-") for axis in (face.centre, face.right, face.down)]
+            names = face.centre, face.right, face.down
+            axes = ["xyz".index(name[1]) for name in names]
+            backward = [int(name[0] == "-") for name in names]
             towards = directions[axes[0]]
             towards[..., axes[0]], towards[..., axes[1]], towards[..., axes[2]] = 1.0, points, points[:, None]
             density = (towards**2).sum(axis=-1) ** -1.5
             for down, right in np.ndindex(2, 2):
-                mirror = [0, 0, 0]
-                mirror[axes[0]], mirror[axes[1]], mirror[axes[2]] = (
-                    backward[0],
-                    backward[1] ^ (1 - right),
-                    backward[2] ^ (1 - down),
+                mirrored = dict(
+                    zip(axes, (backward[0], backward[1] ^ (1 - right), backward[2] ^ (1 - down)), strict=True)
                 )
-                values[mirror[0], mirror[1], mirror[2], axes[0]] = weights[down, right] * density[..., None]
+                values[mirrored[0], mirrored[1], mirrored[2], axes[0]] = weights[down, right] * density[..., None]
         return project_mirrored(directions.reshape(-1, 3), values.reshape(2, 2, 2, -1, 3), n_bands)
 
     def _cell(self, face: Face) -> tuple[slice, slice]:
@@ -254,20 +215,15 @@ class CubeLayout:
 
         The integral of (1 + u^2 + v^2)^(-3/2) over v is v / (a sqrt(a + v^2)) with a = 1 + u^2.
         """
-        half = self.face - self.face // 2
-        edges = np.maximum((2 * np.arange(self.face // 2, self.face + 1) - self.face) / self.face, 0.0)
+        edges = quadrant_edges(self.face)
         lower, upper = edges[:-1, None], edges[1:, None]
-        quadrant = np.zeros((half, half))
+        quadrant = np.zeros((len(lower), len(lower)))
         for node, weight in zip(*np.polynomial.legendre.leggauss(12 if self.face < 16 else 6), strict=True):
             a = 1 + (lower.T + (upper - lower).T * (1 + node) / 2) ** 2
             low, high = np.sqrt(a + lower**2), np.sqrt(a + upper**2)
             between = (upper - lower) * (upper + lower) / (low * high * (upper * low + lower * high))
             quadrant += weight / 2 * (upper - lower).T * between
-        if self.face % 2:
-            quadrant[0] *= 2
-            quadrant[:, 0] *= 2
-        rows = np.concatenate([quadrant[::-1], quadrant[self.face % 2 :]])
-        return np.asarray(np.concatenate([rows[:, ::-1], rows[:, self.face % 2 :]], axis=1))
+        return four_quadrants(quadrant, self.face)
 
 
 def quadrant_point_count(n_bands: int) -> int:

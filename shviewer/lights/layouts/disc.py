@@ -17,12 +17,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.patches import four_quadrants, quadrant_edges
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import Indices
-from shviewer.lights.layouts.rim import RimPoints, rim_points
 
 _RIM_BLOCK = 512
 """How many texels on the rim have their points in memory at a time."""
+
+
+@dataclass(frozen=True, eq=False)
+class RimPoints:
+    """Points (k, n) in k pieces of rectangles. x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation.
+
+    weights: their areas. texels: the index of each piece's rectangle, (k,).
+    """
+
+    x: Array
+    y: Array
+    depth: Array
+    weights: Array
+    texels: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -50,12 +64,16 @@ class DiscLayout:
         raise NotImplementedError
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
-        x, y, z = directions.T
+        down, right, _ = self._places(directions)
+        return self._texel(down), self._texel(right)
+
+    def _places(self, directions: Array) -> tuple[Array, Array, Array]:
+        """Down and right, in [-1, 1] within the image, and the radius there, (k,) each, of unit directions (k, 3)."""
+        x, y, z = np.ascontiguousarray(directions.T)
         across = np.hypot(y, z)
         radius = self.radius(np.arctan2(across, x))
         scale = np.divide(radius, across, where=across > 0, out=np.zeros_like(across))
-        right = np.where((across == 0) & (x < 0), 1.0, -y * scale)
-        return self._texel(-z * scale), self._texel(right)
+        return -z * scale, np.where((across == 0) & (x < 0), 1.0, -y * scale), radius
 
     def _texel(self, position: Array) -> Indices:
         return np.clip(((1 + position) / 2 * self.side).astype(np.int64), 0, self.side - 1)
@@ -80,7 +98,7 @@ class DiscLayout:
         return np.stack([np.cos(theta), -right * scale, -down * scale], axis=-1)
 
     def solid_angles(self) -> Array:
-        return self.whole_sphere(self.quadrant_solid_angles)
+        return four_quadrants(self.quadrant_solid_angles, self.side)
 
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
         inside, edge = self.side // 2, self.half - 1
@@ -95,12 +113,8 @@ class DiscLayout:
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
         """As in Layout. Texels whose centres are outside the disc do not count: beyond the rim comes the opposite side."""
-        x, y, z = np.ascontiguousarray(directions.T)
-        across = np.hypot(y, z)
-        radius = self.radius(np.arctan2(across, x))
-        scale = np.divide(radius, across, where=across > 0, out=np.zeros_like(across))
-        column = (1 + np.where((across == 0) & (x < 0), 1.0, -y * scale)) / 2 * self.side - 0.5
-        row = (1 - z * scale) / 2 * self.side - 0.5
+        below, beside, radius = self._places(directions)
+        row, column = ((1 + place) / 2 * self.side - 0.5 for place in (below, beside))
         left, top = np.floor(column), np.floor(row)
         down, right = row - top, column - left
         result = between_texels(pixels, top.astype(np.int64), left.astype(np.int64), down, right)
@@ -134,7 +148,7 @@ class DiscLayout:
     @cached_property
     def edges(self) -> Array:
         """The edges of these texels, (half + 1,), from 0 to 1."""
-        return np.maximum((2 * np.arange(self.side // 2, self.side + 1) - self.side) / self.side, 0.0)
+        return quadrant_edges(self.side)
 
     @cached_property
     def whole(self) -> NDArray[np.int64]:
@@ -170,20 +184,41 @@ class DiscLayout:
 
         repeat: the texels along each side that one of the pixels stands for. Places beyond the image give any texel.
         """
-        up, down = (np.clip(i, 0, self.side - 1) // repeat for i in (self.half - 1 - rows, self.side // 2 + rows))
-        left, right = (
-            np.clip(i, 0, self.side - 1) // repeat for i in (self.half - 1 - columns, self.side // 2 + columns)
+        both_rows, both_columns = (
+            [np.clip(i, 0, self.side - 1) // repeat for i in (self.half - 1 - places, self.side // 2 + places)]
+            for places in (rows, columns)
         )
-        return np.stack([np.stack([pixels[row, column] for row in (up, down)]) for column in (left, right)])
+        return np.stack([np.stack([pixels[row, column] for row in both_rows]) for column in both_columns])
 
-    def whole_sphere(self, quadrant: Array) -> Array:
-        """The values of a quadrant (half, half) for the whole image (side, side), with the halves of middle texels added up."""
-        odd = self.side % 2
-        if odd:
-            quadrant = (
-                quadrant
-                * np.where(np.arange(self.half) == 0, 2, 1)
-                * np.where(np.arange(self.half) == 0, 2, 1)[:, None]
-            )
-        rows = np.concatenate([quadrant[::-1], quadrant[odd:]])
-        return np.asarray(np.concatenate([rows[:, ::-1], rows[:, odd:]], axis=1))
+
+def rim_points(x0: Array, x1: Array, y0: Array, y1: Array, n_points: int) -> RimPoints:
+    """Gauss's rule on the part of rectangles [x0, x1] x [y0, y1] inside the unit circle; limits (k,) each, not negative.
+
+    With y = sin(p) and x = cos(p) sin(t) the circle is t = pi/2 and sqrt(1 - x^2 - y^2) = cos(p) cos(t), so that nothing is
+    singular there. Where the circle leaves the rectangle through a side x = x', which is p' = acos(x'), the limits in t go
+    like sqrt(p' - p): substituting p = p' - s^2 makes them smooth as well. Below p' of the outer side the rectangle is whole,
+    above it the circle bounds it: two parts of n_points^2 points. Both roots and polynomials in x and y are analytic.
+    """
+    node, weight = np.polynomial.legendre.leggauss(n_points)
+    node, weight = (1 + node) / 2, weight / 2
+    lowest, highest = np.arcsin(np.minimum(y0, 1)), np.arcsin(np.minimum(y1, 1))
+    outer, inner = np.arccos(np.minimum(x1, 1)), np.arccos(np.minimum(x0, 1))
+    parts = []
+    for leaves, start, stop, bound in (
+        (outer, lowest, np.minimum(highest, outer), x1),
+        (inner, np.maximum(lowest, outer), np.minimum(highest, inner), np.full_like(x1, np.inf)),
+    ):
+        texels = np.flatnonzero(stop > start)
+        leaves, start, stop, bound, left = (a[texels, None, None] for a in (leaves, start, stop, bound, x0))
+        first, last = np.sqrt(leaves - stop), np.sqrt(leaves - start)
+        s = first + (last - first) * node[:, None]
+        angle = leaves - s * s
+        c = np.cos(angle)
+        t0, t1 = np.arcsin(np.minimum(left / c, 1)), np.arcsin(np.minimum(bound / c, 1))
+        t = t0 + (t1 - t0) * node
+        depth = c * np.cos(t)
+        weights = (2 * s * (last - first) * weight[:, None] * c) * ((t1 - t0) * weight) * depth
+        y = np.broadcast_to(np.sin(angle), t.shape)
+        parts.append([a.reshape(len(texels), n_points**2) for a in (c * np.sin(t), y, depth, weights)] + [texels])
+    x, y, depth, weights = (np.concatenate([part[i] for part in parts]) for i in range(4))
+    return RimPoints(x, y, depth, weights, np.concatenate([part[4] for part in parts]))

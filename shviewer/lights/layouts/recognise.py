@@ -46,13 +46,14 @@ def recognise(
     height, width = pixels.shape[:2]
     if wanted != "auto":
         return _fitting(wanted, height, width, stated), ()
+    misfits: _Notes = ()
     if stated is not None:
         try:
             return _fitting(stated, height, width, stated), ()
         except LightError as misfit:
-            layout, notes = _by_shape(pixels, lossy)
-            return layout, (f"the file states another layout, but {misfit}", *notes)
-    return _by_shape(pixels, lossy)
+            misfits = (f"the file states another layout, but {misfit}",)
+    layout, note = _by_shape(pixels, lossy)
+    return layout, (*misfits, f"{width} x {height} {note}") if note else misfits
 
 
 def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
@@ -77,30 +78,22 @@ def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
     raise LightError(f"unknown layout {name!r}; choose auto, {', '.join(LAYOUTS)}")
 
 
-def _by_shape(pixels: NDArray[np.float32], lossy: bool) -> tuple[Layout, _Notes]:
+def _by_shape(pixels: NDArray[np.float32], lossy: bool) -> tuple[Layout, str]:
+    """The layout, and what to say of the image's size: how the layout was guessed; "" where nothing was."""
     height, width = pixels.shape[:2]
-    shown = f"{width} x {height}"
     arrangement = _arrangement(height, width)
-    if arrangement is not None:
-        if _has_empty_cells(pixels, arrangement, lossy):
-            layout = CubeLayout(arrangement, arrangement.face_size(height, width))
-            return layout, (f"{shown} is taken as a cube, {arrangement.name}: --layout lat-long if it is not",)
-        return LatLongLayout(height, width), (
-            f"{shown} is not 2:1 and no cube cross, whose corners are empty; taken as lat-long: --layout cube if it is one",
-        )
+    if arrangement is not None and _has_empty_cells(pixels, arrangement, lossy):
+        layout = CubeLayout(arrangement, arrangement.face_size(height, width))
+        return layout, f"is taken as a cube, {arrangement.name}: --layout lat-long if it is not"
     if width == height and _is_disc(pixels, lossy):
-        return AngularLayout(height), (
-            f"{shown} with a disc is taken as an angular map: --layout mirror-ball for a ball",
-        )
-    if width == height:
-        return LatLongLayout(height, width), (
-            f"{shown} is not 2:1 and no disc on one colour; taken as lat-long: --layout angular or mirror-ball if it is one",
-        )
-    if width != 2 * height:
-        return LatLongLayout(height, width), (
-            f"{shown} is not 2:1; taken as lat-long all the same: --layout to change it",
-        )
-    return LatLongLayout(height, width), ()
+        return AngularLayout(height), "with a disc is taken as an angular map: --layout mirror-ball for a ball"
+    if arrangement is not None:
+        note = "is not 2:1 and no cube cross, whose corners are empty; taken as lat-long: --layout cube if it is one"
+    elif width == height:
+        note = "is not 2:1 and no disc on one colour; taken as lat-long: --layout angular or mirror-ball if it is one"
+    else:
+        note = "is not 2:1; taken as lat-long all the same: --layout to change it" if width != 2 * height else ""
+    return LatLongLayout(height, width), note
 
 
 def _arrangement(height: int, width: int) -> Arrangement | None:
