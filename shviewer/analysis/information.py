@@ -7,20 +7,17 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from shviewer.analysis.coefficient_information import (
-    CoefficientInformation,
-    describe_coefficients,
-)
 from shviewer.analysis.figures import error_grid, grid_rows, needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import load_light, subject
+from shviewer.coefficients.stamp import stamp_of
 from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes import LUMINANCE, SEARCH_ROUNDS, climb
 from shviewer.lights.find import file_version, split_light
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
-from shviewer.lights.light import Light
+from shviewer.lights.light import About, Light
 from shviewer.lights.reading import Reading
 from shviewer.lights.suns.sun import Sun
 from shviewer.words import theta_phi_degrees
@@ -77,6 +74,26 @@ class SunInformation:
     """The irradiance of a surface that faces it."""
     share_of_flux: float
     """Its part of the light's flux, both as the mean of the channels."""
+
+
+@dataclass(frozen=True)
+class CoefficientInformation:
+    """The convention and the origin of the numbers in a file."""
+
+    bands: int
+    quantity: str
+    """The quantity in the file: radiance, irradiance or irradiance-over-pi."""
+    convention: str
+    program: str
+    basis: str
+    phase: str
+    index: str
+    axes: str
+    normalisation: str
+    stamped: bool
+    """Whether the file itself names its convention; if not, the user named it."""
+    stamp: dict[str, str | int | float | None]
+    """Everything the file says; empty for a bare list."""
 
 
 @dataclass(frozen=True)
@@ -174,7 +191,7 @@ def _describe(text: str, reading: Reading) -> Information:
         bands_needed=_needed(recipe),
         suns=tuple(_sun(sun, total) for sun in split.suns),
         bands_needed_without_suns=_needed(replace(recipe, split_sun=True)) if split.suns else (),
-        coefficients=describe_coefficients(about),
+        coefficients=_coefficients(about),
     )
 
 
@@ -192,6 +209,21 @@ def _sun(sun: Sun, total: float) -> SunInformation:
         radiance=_triple(sun.radiance),
         irradiance=_triple(sun.irradiance),
         share_of_flux=float(sun.flux.mean()) / total,
+    )
+
+
+def _coefficients(about: About) -> CoefficientInformation | None:
+    """The information on a coefficient file; None for a light that is none."""
+    if (file := about.file) is None:
+        return None
+    stamp = stamp_of(file.convention, file.quantity, file.n_bands)
+    keys = ("quantity", "program", "basis", "phase", "index", "axes", "normalisation")
+    return CoefficientInformation(
+        bands=file.n_bands,
+        convention=about.convention or "",
+        stamped=bool(file.stamp),
+        stamp=dict(file.stamp),
+        **{key: str(stamp[key]) for key in keys},
     )
 
 

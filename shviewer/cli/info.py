@@ -6,10 +6,10 @@ import argparse
 import json
 import sys
 
-from shviewer.analysis.coefficient_information import CoefficientInformation
 from shviewer.analysis.information import (
     DARK_PERCENTILE,
     BandsNeeded,
+    CoefficientInformation,
     Information,
     Triple,
     Values,
