@@ -21,7 +21,6 @@ from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.row import Row, not_measured, timed
 from shviewer.benchmark.timing import Timing, time_interleaved, wall_milliseconds
 from shviewer.harmonics.basis import Array, evaluate_basis
-from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import camera
@@ -170,7 +169,7 @@ class _Stage:
     def sum_at(self, directions: Array) -> Array:
         """The sum by Synthesis, in blocks: directions (k, 3) -> (k, 3)."""
         return _in_blocks(
-            lambda part: self.synthesis.at(*angles_from_directions(part)),
+            self.synthesis.in_directions,
             directions,
         )
 

@@ -14,12 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quadrature import (
-    angles_from_directions,
-    column_azimuths,
-    directions_from_angles,
-    evaluate_rows,
-)
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, evaluate_rows
 from shviewer.harmonics.synthesis import Synthesis
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -93,7 +88,7 @@ class ErrorGrid:
         error, error_direction = self._largest_error(values, synthesis)
         row, _, column = np.unravel_index(int(values.argmin()), values.shape)
         start = self._direction(int(row), int(column))
-        lowest, place = climb(lambda d: -at_directions(synthesis, d).min(axis=1), start, self._step, DISPLAY_ROUNDS)
+        lowest, place = climb(lambda d: -synthesis.in_directions(d).min(axis=1), start, self._step, DISPLAY_ROUNDS)
         luminance = sum(weight * values[:, channel] for channel, weight in enumerate(LUMINANCE))
         area = float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share)
         minimum, energy = -float(lowest[0]), self._negative_energy(values, shown)
@@ -110,14 +105,14 @@ class ErrorGrid:
         difference = values - self.original
         rows, columns = _highest_in_blocks(np.abs(difference, out=difference).max(axis=1))
         errors, places = climb(
-            lambda d: np.abs(at_directions(synthesis, d) - self.radiance(d)).max(axis=1),
+            lambda d: np.abs(synthesis.in_directions(d) - self.radiance(d)).max(axis=1),
             directions_from_angles(self.theta[rows], self.phi[columns]),
             self._step,
             DISPLAY_ROUNDS,
         )
         best = float(errors.max()), _triple(places[int(errors.argmax())])
         if len(self.landmarks):
-            there = np.abs(at_directions(synthesis, self.landmarks) - self.landmark_radiance).max(axis=1)
+            there = np.abs(synthesis.in_directions(self.landmarks) - self.landmark_radiance).max(axis=1)
             best = max(best, (float(there.max()), _triple(self.landmarks[int(there.argmax())])))
         return best
 
@@ -164,7 +159,7 @@ def valleys(
         candidates = directions_from_angles(theta[rows], phi[columns])
         starts = candidates[_spread_out(candidates, depth, np.pi / synthesis.n_bands, most)]
         negated, places = climb(
-            lambda d, channel=channel: -at_directions(synthesis, d)[:, channel],  # type: ignore[misc]
+            lambda d, channel=channel: -synthesis.in_directions(d)[:, channel],  # type: ignore[misc]
             starts,
             float(np.pi / n_rows),
             rounds,
@@ -261,11 +256,6 @@ def _tangents(places: Array) -> tuple[Array, Array]:
     b = x * y * a
     right = np.stack([1 + sign * x * x * a, sign * b, -sign * x], axis=-1)
     return right, np.stack([b, sign + y * y * a, -y], axis=-1)
-
-
-def at_directions(synthesis: Synthesis, directions: Array) -> Array:
-    """The reconstruction (k, 3) in unit directions (k, 3)."""
-    return synthesis.at(*angles_from_directions(directions))
 
 
 def _triple(direction: Array) -> Triple:

@@ -28,9 +28,8 @@ def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
     ValueError if n**2 is no square, or for a direction that is zero or not finite.
     """
     unit = normalise(directions)
-    angles = angles_from_directions(unit.reshape(-1, 3))
-    values = Synthesis(np.asarray(coefficients, dtype=np.float64)).at(*angles)
-    return values.reshape(unit.shape)
+    synthesis = Synthesis(np.asarray(coefficients, dtype=np.float64))
+    return synthesis.in_directions(unit.reshape(-1, 3)).reshape(unit.shape)
 
 
 class Synthesis:
@@ -49,6 +48,10 @@ class Synthesis:
         flat = self._along_theta(theta).reshape(-1, 2 * self.n_bands)
         azimuth = azimuth_functions(self.n_bands, n_columns).reshape(2 * self.n_bands, n_columns)
         return np.asarray(flat @ azimuth).reshape(len(theta), 3, n_columns)
+
+    def in_directions(self, directions: Array) -> Array:
+        """Evaluate in directions (k, 3) of any length but 0: (k, 3)."""
+        return self.at(*angles_from_directions(directions))
 
     def at(self, theta: Array, phi: Array) -> Array:
         """Evaluate at scattered angles (k,), radians: (k, 3)."""

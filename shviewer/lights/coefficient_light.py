@@ -18,12 +18,10 @@ from shviewer.coefficients.programs import CONVENTIONS, OURS, convention_text
 from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.irradiance import BandLimitedIrradiance
+from shviewer.lights.irradiance import BandLimitedIrradiance, FiniteSum, RadianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import About, Light
-from shviewer.lights.radiance import RadianceLight
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import check_brightness
 from shviewer.words import counted
@@ -32,7 +30,7 @@ MAP_SIZE = (1025, 2048)
 
 
 @dataclass(frozen=True, eq=False)
-class CoefficientLight(RadianceLight):
+class CoefficientLight(FiniteSum, RadianceLight):
     """The light of given coefficients; `given`: radiance in our convention, (n**2, 3), float64."""
 
     given: Array
@@ -57,17 +55,14 @@ class CoefficientLight(RadianceLight):
     @classmethod
     def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
         """The light of a file that has been read, which holds the coefficients of the light or of its irradiance."""
-        held = file.coefficients
-        return cls(held if file.quantity == RADIANCE else recovered_radiance(held)[0], name, file)
+        return cls(_radiance(file.coefficients, file.quantity), name, file)
 
     @classmethod
     def of_numbers(
         cls, numbers: NDArray[np.generic], convention: Convention, name: str = "coefficients"
     ) -> CoefficientLight:
         """The light of a program's own numbers (n**2, 3). ValueError for more bands than the program has."""
-        held = convention.quantity or RADIANCE
-        coefficients = convention.to_ours(numbers)
-        return cls(coefficients if held == RADIANCE else recovered_radiance(coefficients)[0], name)
+        return cls(_radiance(convention.to_ours(numbers), convention.quantity or RADIANCE), name)
 
     @property
     def n_bands(self) -> int:
@@ -106,27 +101,16 @@ class CoefficientLight(RadianceLight):
             return ()
         suns = str(self.file.stamp.get(SUNS_KEY, 0))
         left_out = (f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright",)
-        return (left_out if suns != "0" else ()) + self._recovery(self.file)
-
-    def _recovery(self, file: CoefficientFile) -> tuple[str, ...]:
-        """A note on how radiance comes from irradiance, if it has to."""
+        notes = left_out if suns != "0" else ()
         if self.quantity == RADIANCE:
-            return ()
-        lost = recovered_radiance(file.coefficients)[1]
-        unknown = (
-            f", which tells nothing of band{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}" if lost else ""
-        )
-        return (f"holds irradiance; the radiance is recovered from it{unknown}",)
-
-    def radiance(self, directions: Array) -> Array:
-        return self._synthesis.at(*angles_from_directions(directions))
-
-    def rows(self, theta: Array, n_columns: int) -> Array:
-        """As in Light; costs a fraction of `radiance` in as many directions."""
-        return self._synthesis.on_rows(theta, n_columns)
+            return notes
+        lost = recovered_radiance(self.file.coefficients)[1]
+        bands = f"band{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}"
+        unknown = f", which tells nothing of {bands}" if lost else ""
+        return (*notes, f"holds irradiance; the radiance is recovered from it{unknown}")
 
     @cached_property
-    def _synthesis(self) -> Synthesis:
+    def synthesis(self) -> Synthesis:
         return Synthesis(self.given)
 
     def coefficients(self, n_bands: int) -> Array:
@@ -143,4 +127,9 @@ class CoefficientLight(RadianceLight):
 
     @cached_property
     def map(self) -> LatLongMap:
-        return LatLongMap(self._synthesis.pole_to_pole(*MAP_SIZE), rows_on_poles=True)
+        return LatLongMap(self.synthesis.pole_to_pole(*MAP_SIZE), rows_on_poles=True)
+
+
+def _radiance(held: Array, quantity: str) -> Array:
+    """The radiance of which coefficients (n**2, 3) hold that quantity."""
+    return held if quantity == RADIANCE else recovered_radiance(held)[0]

@@ -15,12 +15,12 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.lights.images.radiance_files import read_radiance_image
+from shviewer.lights.irradiance import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Indices, Layout
 from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.light import About, Split
-from shviewer.lights.radiance import RadianceLight
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import check_brightness
 

@@ -18,8 +18,8 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import gauss_legendre
+from shviewer.lights.irradiance import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.radiance import RadianceLight
 from shviewer.limits import check_brightness
 
 SAMPLED_BANDS = 128

@@ -7,6 +7,7 @@ Divided by pi, it is the radiance of a white surface.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,12 +16,11 @@ import numpy as np
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
-from shviewer.harmonics.quadrature import angles_from_directions
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, gegenbauer_ratios
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import About, Light, LightBase
-from shviewer.lights.lobe import Lobe, angle_between
+from shviewer.lights.lobe import Lobe, angle_between, pair_products
 
 SERIES_BANDS = 1024
 """Bands in the products of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of its norm."""
@@ -104,17 +104,26 @@ class MappedIrradiance(IrradianceLight):
         return LatLongMap.pole_to_pole(Synthesis(self.coefficients(self.bands)).on_rows)
 
 
-class BandLimitedIrradiance(IrradianceLight):
-    """The irradiance of coefficients: a finite sum, like the light itself."""
+class FiniteSum(LightBase):
+    """A light that is the sum of its first bands."""
+
+    @property
+    @abstractmethod
+    def synthesis(self) -> Synthesis: ...
 
     def radiance(self, directions: Array) -> Array:
-        return self._synthesis.at(*angles_from_directions(directions))
+        return self.synthesis.in_directions(directions)
 
     def rows(self, theta: Array, n_columns: int) -> Array:
-        return self._synthesis.on_rows(theta, n_columns)
+        """As in Light; costs a fraction of `radiance` in as many directions."""
+        return self.synthesis.on_rows(theta, n_columns)
+
+
+class BandLimitedIrradiance(FiniteSum, IrradianceLight):
+    """The irradiance of coefficients: a finite sum, like the light itself."""
 
     @cached_property
-    def _synthesis(self) -> Synthesis:
+    def synthesis(self) -> Synthesis:
         return Synthesis(self.coefficients(self.bands))
 
 
@@ -137,18 +146,31 @@ class LobeIrradiance(IrradianceLight):
         return _lobe_products(self.source.lobes)
 
 
+class RadianceLight(LightBase):
+    """A light that is radiance, not the irradiance of another: its own source."""
+
+    @property
+    def source(self: Light) -> Light:
+        return self
+
+    def from_source(self, coefficients: Array) -> Array:
+        return coefficients
+
+    def irradiance(self: Light) -> Light:
+        return MappedIrradiance(self)
+
+
 def _lobe_products(lobes: tuple[Lobe, ...]) -> Array:
     """Sum over bands and pairs of lobes, by the addition theorem: (2l+1)/4pi A^2 lambda lambda' P(l)(cos of the angle)."""
     strength = irradiance_factors(SERIES_BANDS) ** 2 * (2 * np.arange(SERIES_BANDS) + 1) / (4 * np.pi)
-    zonal = [lobe.profile.zonal(SERIES_BANDS) for lobe in lobes]
-    products = np.zeros((3, 3))
-    for i, first in enumerate(lobes):
-        for j, second in enumerate(lobes[: i + 1]):
-            angle = angle_between(first, second)
-            legendre = gegenbauer_ratios(np.cos(angle), 2 * np.sin(angle / 2) ** 2, 0, SERIES_BANDS)
-            pair = float((strength * zonal[i] * zonal[j] * legendre).sum()) * np.outer(first.radiance, second.radiance)
-            products += pair if i == j else pair + pair.T
-    return products
+    zonal = {lobe: lobe.profile.zonal(SERIES_BANDS) for lobe in lobes}
+
+    def integral(one: Lobe, two: Lobe) -> float:
+        angle = angle_between(one, two)
+        legendre = gegenbauer_ratios(np.cos(angle), 2 * np.sin(angle / 2) ** 2, 0, SERIES_BANDS)
+        return float((strength * zonal[one] * zonal[two] * legendre).sum())
+
+    return pair_products(lobes, integral)
 
 
 def _table(lobe: Lobe) -> tuple[Array, Array]:

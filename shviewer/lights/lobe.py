@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,3 +28,13 @@ def angle_between(first: Lobe, second: Lobe) -> float:
     """The angle between two axes, radians, with all its digits near 0 and near pi."""
     apart, along = np.linalg.norm(first.axis - second.axis), np.linalg.norm(first.axis + second.axis)
     return float(2 * np.arctan2(apart, along))
+
+
+def pair_products(lobes: tuple[Lobe, ...], integral: Callable[[Lobe, Lobe], float]) -> Array:
+    """The products (3, 3) of a sum of lobes; integral: of the product of two lobes as if their radiance were 1."""
+    total = np.zeros((3, 3))
+    for i, first in enumerate(lobes):
+        for j, second in enumerate(lobes[: i + 1]):
+            product = integral(first, second) * np.outer(first.radiance, second.radiance)
+            total += product if i == j else product + product.T
+    return total

@@ -10,10 +10,9 @@ import numpy as np
 from shviewer.harmonics.basis import Array, normalise
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Constant, Disc, orient
-from shviewer.lights.irradiance import LobeIrradiance
+from shviewer.lights.irradiance import LobeIrradiance, RadianceLight
 from shviewer.lights.light import Light, Split
-from shviewer.lights.lobe import Lobe, angle_between
-from shviewer.lights.radiance import RadianceLight
+from shviewer.lights.lobe import Lobe, angle_between, pair_products
 from shviewer.limits import check_brightness
 
 EDGE = 1e-9
@@ -69,13 +68,9 @@ class LobeLight(RadianceLight):
 
     @cached_property
     def _products(self) -> Array:
-        total = np.zeros((3, 3))
-        for i, first in enumerate(self.lobes):
-            for j, second in enumerate(self.lobes[: i + 1]):
-                product = inner_product(first.profile, second.profile, angle_between(first, second))
-                overlap = product * np.outer(first.radiance, second.radiance)
-                total += overlap if i == j else overlap + overlap.T
-        return total
+        return pair_products(
+            self.lobes, lambda one, two: float(inner_product(one.profile, two.profile, angle_between(one, two)))
+        )
 
     def landmarks(self) -> Array:
         """The axes, and points just inside and outside the edge of every profile that has one."""

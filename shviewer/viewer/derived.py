@@ -10,7 +10,7 @@ from shviewer.analysis.figures import error_grid, grid_rows, reconstruct
 from shviewer.analysis.projections import BEST, Projection, project
 from shviewer.analysis.recipe import Shown
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.extremes import DISPLAY_ROUNDS, at_directions, climb
+from shviewer.harmonics.extremes import DISPLAY_ROUNDS, climb
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
@@ -99,7 +99,7 @@ def error_scale(
     errors = error_values(kind, original, reconstruction, floor)
 
     def error_at(directions: Array) -> Array:
-        return error_values(kind, light.radiance(directions), at_directions(synthesis, directions), floor)
+        return error_values(kind, light.radiance(directions), synthesis.in_directions(directions), floor)
 
     direction = np.array(figures.extremes.max_error_direction)
     if kind == "relative":
