@@ -1,22 +1,21 @@
-"""Actions: functions from one state to the next. keys.py binds them to keys."""
+"""Actions: functions from a state, and perhaps a value, to the next state. keys.py binds them to keys."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum, auto
+from typing import Any
 
-from shviewer.analysis.recipe import METHODS, QUANTITIES, WINDOWS, Recipe
+from shviewer.analysis.options import Choice, options_of
+from shviewer.analysis.recipe import WINDOWS, Recipe
 from shviewer.harmonics.basis import degree_order, index
 from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.camera import turned_by_drag
-from shviewer.viewer.state import State, changed
-from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, TONES, ZOOM_RANGE, View
-
-Action = Callable[[State], State]
+from shviewer.viewer.state import IN_RECIPE, State, changed
+from shviewer.viewer.view import MAX_EXPOSURE, ZOOM_RANGE, View
 
 
 class Command(Enum):
@@ -32,15 +31,27 @@ class Command(Enum):
     CLOSE = auto()
 
 
-EXPOSURE_STEP = 0.5
+OPTIONS = options_of(Recipe, View)
 MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
 
 SWEEP_BANDS = 10
 """The last band count of a sweep that starts with one band in use."""
 
 
-def more_bands(count: int) -> Action:
-    return lambda state: with_bands(state, state.recipe.n_bands + count)
+def next_choice(state: State, name: str) -> State:
+    """Give an option of recipe or view the choice after the present one; after the last comes the first."""
+    kind = OPTIONS[name].kind
+    assert isinstance(kind, Choice)
+    return changed(state, **{name: _after(_held(state, name), kind.choices)})
+
+
+def toggle(state: State, name: str) -> State:
+    """Make a field of recipe or view False if it is True, and True if it is False."""
+    return changed(state, **{name: not _held(state, name)})
+
+
+def more_bands(state: State, count: int) -> State:
+    return with_bands(state, state.recipe.n_bands + count)
 
 
 def with_bands(state: State, n_bands: int) -> State:
@@ -70,28 +81,20 @@ def solo_band(state: State, band: int) -> State:
     return changed(state, muted=frozenset() if state.recipe.muted == others else others)
 
 
-def move_cursor(step: int) -> Action:
+def move_cursor(state: State, step: int) -> State:
     """Move the cursor along the band bars; the first press only shows where it is."""
-
-    def action(state: State) -> State:
-        moved = (state.view.cursor + step) % state.recipe.n_bands if state.view.cursor_visible else state.view.cursor
-        return changed(state, cursor=moved, cursor_visible=True)
-
-    return action
+    moved = (state.view.cursor + step) % state.recipe.n_bands if state.view.cursor_visible else state.view.cursor
+    return changed(state, cursor=moved, cursor_visible=True)
 
 
 def toggle_cursor(state: State) -> State:
     return changed(toggle_band(state, state.view.cursor), cursor_visible=True)
 
 
-def next_light(step: int) -> Action:
+def next_light(state: State, step: int) -> State:
     """Show the light `step` places further in the list, which is a ring."""
-
-    def action(state: State) -> State:
-        at = (state.lights.index(state.recipe.light) if state.recipe.light in state.lights else 0) + step
-        return changed(state, light=state.lights[at % len(state.lights)], layout_tried="")
-
-    return action
+    at = (state.lights.index(state.recipe.light) if state.recipe.light in state.lights else 0) + step
+    return changed(state, light=state.lights[at % len(state.lights)], layout_tried="")
 
 
 def next_layout(state: State) -> State:
@@ -113,56 +116,30 @@ def next_window(state: State) -> State:
     return changed(state, window=names[(at + 1) % len(names)])
 
 
-def next_quantity(state: State) -> State:
-    return changed(state, quantity=_after(state.recipe.quantity, QUANTITIES))
-
-
-def toggle_split(state: State) -> State:
-    return changed(state, split_sun=not state.recipe.split_sun)
-
-
 def next_method(state: State) -> State:
     if state.recipe.compare:
         return changed(state, message=f"the coefficients are those of {state.recipe.compare.name}, and no method's")
-    return changed(state, method=_after(state.recipe.method, METHODS))
+    return next_choice(state, "method")
 
 
-def scale_samples(factor: float) -> Action:
-    def action(state: State) -> State:
-        if state.recipe.method == "best":
-            return changed(state, message="no samples are drawn in this light's best way: M changes the method")
-        return changed(
-            state,
-            samples=int(
-                min(max(state.recipe.samples * factor, MIN_SAMPLES), max(state.recipe.samples, MAX_KEY_SAMPLES))
-            ),
-        )
-
-    return action
+def scale_samples(state: State, factor: float) -> State:
+    last = state.recipe.samples
+    if state.recipe.method == "best":
+        return changed(state, message="no samples are drawn in this light's best way: M changes the method")
+    return changed(state, samples=int(min(max(last * factor, MIN_SAMPLES), max(last, MAX_KEY_SAMPLES))))
 
 
-def expose(step: float) -> Action:
-    def action(state: State) -> State:
-        return changed(state, exposure_offset=min(max(state.view.exposure_offset + step, -MAX_EXPOSURE), MAX_EXPOSURE))
-
-    return action
+def expose(state: State, step: float) -> State:
+    return changed(state, exposure_offset=min(max(state.view.exposure_offset + step, -MAX_EXPOSURE), MAX_EXPOSURE))
 
 
 def auto_exposure(state: State) -> State:
     return changed(state, exposure_stops=None, exposure_offset=0.0)
 
 
-def next_tone(state: State) -> State:
-    return changed(state, tone=_after(state.view.tone, TONES))
-
-
-def next_error(state: State) -> State:
-    return changed(state, error=_after(state.view.error, ERRORS))
-
-
-def toggle_sheet(sheet: str) -> Action:
+def toggle_sheet(state: State, sheet: str) -> State:
     """Show that sheet over the spheres instead of any other, or take it away."""
-    return lambda state: changed(state, sheet="" if state.view.sheet == sheet else sheet)
+    return changed(state, sheet="" if state.view.sheet == sheet else sheet)
 
 
 def toggle_lobe_view(state: State) -> State:
@@ -170,16 +147,12 @@ def toggle_lobe_view(state: State) -> State:
     return changed(state, lobe_view=not state.view.lobe_view, basis=None)
 
 
-def step_basis(step: int) -> Action:
+def step_basis(state: State, step: int) -> State:
     """Show the next function Y(l, m) of the bands in use, in the sequence of their coefficients; beyond the ends, none."""
-
-    def action(state: State) -> State:
-        count = state.recipe.n_bands**2
-        at = count if state.view.basis is None else index(*state.view.basis)
-        at = (at + step) % (count + 1)
-        return changed(state, lobe_view=True, basis=None if at == count else degree_order(at))
-
-    return action
+    count = state.recipe.n_bands**2
+    at = count if state.view.basis is None else index(*state.view.basis)
+    at = (at + step) % (count + 1)
+    return changed(state, lobe_view=True, basis=None if at == count else degree_order(at))
 
 
 def toggle_sweep(state: State) -> State:
@@ -237,6 +210,10 @@ def open_light(state: State, light: str | Light) -> State:
     """Show `light`, adding it to those that Left and Right go through."""
     lights = state.lights if light in state.lights else (*state.lights, light)
     return changed(state, lights=lights, light=light, layout_tried="", message="")
+
+
+def _held(state: State, name: str) -> Any:
+    return getattr(state.recipe if name in IN_RECIPE else state.view, name)
 
 
 def _after(present: str, choices: tuple[str, ...]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import fields
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -34,14 +35,14 @@ def pressed(state: State, *keys: str) -> State:
 
 
 def test_no_key_is_bound_twice() -> None:
-    count = Counter(key for binding in BINDINGS for key in binding.actions)
+    count = Counter(key for rows in BINDINGS.values() for binding in rows for key in binding.actions)
     assert [key for key, times in count.items() if times > 1] == []
     assert len(ACTIONS) == sum(count.values())
 
 
 def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
     text = key_table()
-    for binding in BINDINGS:
+    for binding in chain(*BINDINGS.values()):
         assert binding.label
         assert binding.help
         assert f"  {binding.label:<20}{binding.help}\n" in text + "\n"

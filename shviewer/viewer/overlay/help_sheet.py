@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import groupby
-
 from PIL import Image, ImageDraw, ImageFont
 
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.keys import BINDINGS, Binding
 from shviewer.viewer.state import State
 
+Group = tuple[str, tuple[Binding, ...]]
 DIM = (10, 10, 12, 232)
 KEY_COLUMN = 10.5
 """Width of the column of keys, in type sizes."""
@@ -23,8 +22,8 @@ def draw_help(sheet: Image.Image, state: State, composition: Composition, opengl
     """Dim the sheet and write the table in two columns, as large as fits."""
     draw = ImageDraw.Draw(sheet)
     draw.rectangle((0, 0, composition.width, composition.height), fill=DIM)
-    groups = [(name, list(rows)) for name, rows in groupby(BINDINGS, key=lambda binding: binding.group)]
-    half = _split(groups)
+    groups = list(BINDINGS.items())
+    half = min(range(1, len(groups)), key=lambda at: max(_line_count(groups[:at]), _line_count(groups[at:])))
     columns = [groups[:half], groups[half:]]
     size = _fitting_size(columns, state, composition)
     face = ImageFont.load_default(size)
@@ -51,16 +50,11 @@ def draw_help(sheet: Image.Image, state: State, composition: Composition, opengl
             draw.text((composition.width - composition.margin, y), LEGEND, TEXT, face, anchor="ra")
 
 
-def _split(groups: list[tuple[str, list[Binding]]]) -> int:
-    """The index at which the groups break into two columns of nearly equal height."""
-    return min(range(1, len(groups)), key=lambda at: max(_line_count(groups[:at]), _line_count(groups[at:])))
-
-
-def _line_count(column: list[tuple[str, list[Binding]]]) -> float:
+def _line_count(column: list[Group]) -> float:
     return sum(1.6 + len(rows) for _, rows in column)
 
 
-def _fitting_size(columns: list[list[tuple[str, list[Binding]]]], state: State, composition: Composition) -> float:
+def _fitting_size(columns: list[list[Group]], state: State, composition: Composition) -> float:
     """The largest type, up to 15 pixels of the design, with which every line and column fits."""
     size = composition.px(15)
     width = (composition.width - 3 * composition.margin) / 2
