@@ -22,6 +22,7 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.limits import check_brightness
 
 if TYPE_CHECKING:  # each function imports what it needs: mathematics alone loads no light, and a projection no OpenGL
     from shviewer.analysis.projected import Projected
@@ -104,11 +105,20 @@ def _array_light(array: NDArray[np.generic]) -> Light:
     from shviewer.lights.coefficient_light import CoefficientLight
     from shviewer.lights.environment import EnvironmentLight
 
+    if isinstance(array, np.ma.MaskedArray):
+        raise UsageError("a masked array is no light: fill what is masked, array.filled(0)")
+    if array.dtype.kind not in "fiu":
+        raise UsageError(f"an array of type {array.dtype} is no light; radiance and coefficients are real numbers")
+    if array.ndim == 3 and array.dtype.kind in "iu":
+        raise UsageError(
+            f"an image of type {array.dtype}: radiance is linear; divide by 255 and linearise, or give the file"
+        )
     if not np.isfinite(array).all():
         raise UsageError("an array with NaN or infinite values is no light; radiance and coefficients are finite")
     if array.ndim == 3 and array.shape[2] == 3 and array.size:
+        check_brightness(float(np.abs(array).max()), "image")  # before float32 makes it infinite
         return EnvironmentLight(np.ascontiguousarray(array, dtype=np.float32))
-    if array.ndim == 2 and array.shape[1] == 3 and not np.iscomplexobj(array):
+    if array.ndim == 2 and array.shape[1] == 3:
         try:
             count_bands(array)
         except ValueError as error:

@@ -4,6 +4,8 @@ A `ShviewerError` becomes one line on stderr and the exit code of its class; eve
 programming error and keeps its traceback. The codes are part of the interface (assets/guide/command-line.md).
 """
 
+from shviewer.words import one_line
+
 
 class ShviewerError(Exception):
     """One line that names the value, the rule and the next step."""
@@ -11,7 +13,7 @@ class ShviewerError(Exception):
     exit_code = 1
 
     def __init__(self, message: str) -> None:
-        super().__init__(" ".join(line.strip() for line in message.splitlines()))
+        super().__init__(one_line(message))
 
 
 class UsageError(ShviewerError):

@@ -8,13 +8,14 @@ import os
 import re
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from shviewer.errors import LightError, OutputError
 from shviewer.limits import Limits
+from shviewer.words import one_line
 
 
 @contextlib.contextmanager
@@ -27,6 +28,24 @@ def naming(name: str) -> Iterator[None]:
         raise LightError(f"{shown}: {error}") from None
     except MemoryError:
         raise LightError(f"{shown}: not enough memory to decode it; close something or make it smaller") from None
+
+
+DEBUG = "SHVIEWER_DEBUG"
+"""The environment variable that lets errors of parsers keep their traceback."""
+
+
+@contextlib.contextmanager
+def decoding(what: str) -> Iterator[None]:
+    """Let whatever a parser raises on the content of a file be that file's LightError. what: the format, such as "NPZ"."""
+    try:
+        yield
+    except (LightError, MemoryError):
+        raise
+    except Exception as error:  # parsers raise what they like: KeyError, OverflowError, zlib.error, TokenError, ...
+        if os.environ.get(DEBUG):
+            raise
+        said = one_line(str(error), 120)
+        raise LightError(f"no {what} ({type(error).__name__}: {said}); save it again") from error
 
 
 def read_bytes(path: Path, limits: Limits) -> bytes:
@@ -88,19 +107,33 @@ def version_of(path: Path) -> FileVersion | None:
 
 
 def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> None:
-    """Write a file beside and move it into place: `path` is never half written. exclusive: FileExistsError if it exists."""
+    """Write a file beside and move it into place: `path` is never half written. exclusive: FileExistsError if it exists.
+
+    A link is followed, and what it leads to keeps its mode and owner. Pipes and devices are written through. OutputError if
+    that is impossible, or the file there is read-only.
+    """
     try:
-        handle, name = tempfile.mkstemp(prefix=".shv-", suffix=".tmp", dir=path.parent)
+        target, there = _target(path)
+        if there is not None and exclusive:
+            raise FileExistsError(path)
+        if there is not None and not stat.S_ISREG(there.st_mode):
+            with open(os.open(target, os.O_WRONLY), "wb") as through:
+                through.write(data)
+            return
+        handle, name = tempfile.mkstemp(prefix=".shv-", suffix=".tmp", dir=target.parent)
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-            os.chmod(name, 0o666 & ~_umask())
+            if there is not None and hasattr(os, "chown"):
+                with suppress(OSError):  # only root may give files away
+                    os.chown(name, there.st_uid, there.st_gid)
+            os.chmod(name, 0o666 & ~_umask() if there is None else stat.S_IMODE(there.st_mode))
             if exclusive:
-                _place_exclusively(name, path, data)
+                _place_exclusively(name, target, data)
             else:
-                os.replace(name, path)
+                os.replace(name, target)
         finally:
             with suppress(FileNotFoundError):
                 os.unlink(name)
@@ -110,15 +143,43 @@ def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> Non
         raise _refused(path, error) from error
 
 
+def writing_folder(path: Path) -> Path | None:
+    """The folder in which a file is made before it becomes `path`; None, the system's own, for a pipe or a device."""
+    target, there = _target(path)
+    return target.parent if there is None or stat.S_ISREG(there.st_mode) else None
+
+
 def check_place(path: Path) -> None:
     """OutputError if nothing can be written at `path`: a check to make before long work on what goes there."""
     try:
-        if path.is_dir():
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        with tempfile.TemporaryFile(dir=path.parent):
-            pass
+        target, there = _target(path)
+        if there is None or stat.S_ISREG(there.st_mode):
+            with tempfile.TemporaryFile(dir=target.parent):
+                pass
     except OSError as error:
         raise _refused(path, error) from error
+
+
+def check_is_not_read(path: Path, inputs: Iterable[Path]) -> None:
+    """OutputError if `path` is one of the files that are read, under whatever name: writing it would destroy it."""
+    for source in inputs:
+        with suppress(OSError, ValueError):  # what does not exist is not destroyed
+            if os.path.samefile(path, source):
+                raise OutputError(f"{path}: the light or a comparison is read from this file; write another one")
+
+
+def _target(path: Path) -> tuple[Path, os.stat_result | None]:
+    """The file that `path` leads to, and its status; None where there is none. OSError for a folder or a read-only file."""
+    target = Path(os.path.realpath(path))
+    try:
+        there = os.stat(path)
+    except FileNotFoundError:
+        return target, None
+    if stat.S_ISDIR(there.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if stat.S_ISREG(there.st_mode) and not there.st_mode & 0o222:
+        raise PermissionError(errno.EACCES, f"it is read-only (mode {stat.S_IMODE(there.st_mode):04o})")
+    return target, there
 
 
 def _refused(path: Path, error: OSError) -> OutputError:

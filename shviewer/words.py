@@ -5,6 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+MOST_CHARACTERS = 1000
+"""The longest line that is made of text from outside: names of files, descriptions, what a library says."""
+
+
+def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
+    """A text from outside made safe for a terminal: on one line, its control characters escaped, not longer than `most`."""
+    shown = " ".join(text.split()) if not text.isprintable() else text
+    if not shown.isprintable():
+        shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in shown)
+    return shortened(shown, most)
+
 
 def counted(count: int, noun: str) -> str:
     """ "1 band", "5 bands" """

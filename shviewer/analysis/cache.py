@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable
-from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+from functools import wraps
+from threading import RLock
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar, cast
 
 import numpy as np
 
@@ -29,24 +31,42 @@ Results = OrderedDict[Hashable, Any]
 """The results of one function for one light and its irradiance, the one used longest ago first."""
 
 
+_Method = TypeVar("_Method", bound=Callable[..., Any])
+
+
+def _alone(method: _Method) -> _Method:
+    """Decorator: only one thread at a time is in such a method of one memory."""
+
+    @wraps(method)
+    def locked(self: Memory, *arguments: Any) -> Any:
+        with self.lock:
+            return method(self, *arguments)
+
+    return cast(_Method, locked)
+
+
 class Memory:
     """Lights by name, and results by light. A look-up counts as a use; the light used longest ago is forgotten first."""
 
     def __init__(self, most_lights: int = MOST_LIGHTS, most_bytes: int = MOST_BYTES) -> None:
         self.most_lights = most_lights
         self.most_bytes = most_bytes
+        self.lock = RLock()
         self._known: OrderedDict[Light, dict[object, Results]] = OrderedDict()
         self._names: dict[Hashable, Light] = {}
         self._wholes: dict[Light, Light] = {}
         """Part -> whole: the light that another one was made from."""
 
+    @_alone
     def __contains__(self, light: Light) -> bool:
         return self._source(light) in self._known
 
+    @_alone
     def belongs(self, part: Light, whole: Light) -> None:
         """Let `part` count as `whole`: it is remembered and forgotten with it."""
         self._wholes[part] = self._source(whole)
 
+    @_alone
     def named(self, name: Hashable) -> Light | None:
         """The light of that name, if it is still known."""
         light = self._names.get(name)
@@ -54,6 +74,7 @@ class Memory:
             self._use(light)
         return light
 
+    @_alone
     def name(self, name: Hashable, light: Light) -> None:
         """Let `name` mean `light` from now on; the light that it meant before is forgotten."""
         light, before = self._source(light), self._names.get(name)
@@ -62,10 +83,12 @@ class Memory:
         self._names[name] = light
         self._use(light)
 
+    @_alone
     def results(self, light: Light, function: object) -> Results:
         """The remembered results of `function` for the light; the caller may add to them."""
         return self._use(self._source(light)).setdefault(function, OrderedDict())
 
+    @_alone
     def forget(self, light: Light) -> None:
         """Forget the light, its names and all its results."""
         light = self._source(light)
@@ -74,11 +97,13 @@ class Memory:
         for name in [name for name, meant in self._names.items() if meant is light]:
             del self._names[name]
 
+    @_alone
     def forget_results(self, function: object) -> None:
         """Forget the results of one function for every light."""
         for results in self._known.values():
             results.pop(function, None)
 
+    @_alone
     def clear(self) -> None:
         self._known.clear()
         self._names.clear()
@@ -116,14 +141,17 @@ class Remembered(Generic[P, R]):
 
     def __call__(self, light: Light, *arguments: P.args, **named: P.kwargs) -> R:
         key = light, arguments, tuple(sorted(named.items()))
-        results = MEMORY.results(light, self)
-        if key in results:
-            results.move_to_end(key)
-        else:
-            results[key] = self.function(light, *arguments, **named)
+        with MEMORY.lock:
+            results = MEMORY.results(light, self)
+            if key in results:
+                results.move_to_end(key)
+                known: R = results[key]
+                return known
+        found = self.function(light, *arguments, **named)  # outside: threads that want other results need not wait
+        with MEMORY.lock:
+            results[key] = found
             if len(results) > self.most:
                 results.popitem(last=False)
-        found: R = results[key]
         return found
 
     def cache_clear(self) -> None:
@@ -156,9 +184,9 @@ def array_bytes(*roots: object) -> int:
 
 def _parts(item: object) -> Iterable[object]:
     if isinstance(item, dict):
-        return item.values()
+        return list(item.values())
     if isinstance(item, list | tuple | set | frozenset):
         return item
     if type(item).__module__.startswith("shviewer."):
-        return vars(item).values() if hasattr(item, "__dict__") else ()
+        return list(vars(item).values()) if hasattr(item, "__dict__") else ()
     return ()

@@ -148,4 +148,4 @@ def _errors(figures: Figures) -> dict[str, Value]:
 def _one_line(text: str) -> str:
     """A text made fit for a comment: without line breaks and `*/`, which could end it."""
     printable = "".join(character if character.isprintable() else " " for character in text)
-    return " ".join(printable.replace("*/", "* /").split())
+    return " ".join(printable.replace("*/", "* /").split()).rstrip("\\ ")  # a backslash would continue the comment

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shviewer.analysis.options import options_of
@@ -51,6 +52,16 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
         any_bands = options.n_bands is None and options.tolerance is None
         recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
     return (recipe if options.tolerance is None else _fitted(recipe, options)), said
+
+
+def files_read(options: argparse.Namespace) -> list[Path]:
+    """The files that a command line names to be read: lights, coefficients to compare, and a reference."""
+    from shviewer.lights.find import split_light
+
+    given = vars(options)
+    lights: list[str] = given.get("lights") or [given.get("light") or "green"]
+    others = [given.get(name) for name in ("compare", "reference")]
+    return [*(split_light(light)[0] for light in lights), *(Path(other) for other in others if other)]
 
 
 def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:

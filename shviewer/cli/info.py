@@ -19,7 +19,7 @@ from shviewer.analysis.information import (
 from shviewer.cli.from_options import reading_from
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError, ShviewerError
-from shviewer.words import counted
+from shviewer.words import counted, one_line
 
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
 """Figures of the stamp of a coefficient file, in words."""
@@ -80,8 +80,8 @@ def as_text(information: Information) -> str:
     rows.append(("energy, %", f"{shares} in bands 0 to {len(information.energy_share) - 1}; {information.method}"))
     rows += _bands("bands", information.bands_needed)
     rows += _suns(information)
-    lines = [f"{information.light}: {information.description}"]
-    return "\n".join(lines + [f"  {label:<18}{text}" for label, text in rows])
+    lines = [one_line(f"{information.light}: {information.description}")]
+    return "\n".join(lines + [f"  {label:<18}{one_line(text)}" for label, text in rows])
 
 
 def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:

@@ -7,9 +7,12 @@ that wait for each other on a busy machine take ten times as long.
 from __future__ import annotations
 
 import difflib
+import errno
 import os
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -21,7 +24,7 @@ from shviewer.cli.options import (
     sweep_parser,
     view_parser,
 )
-from shviewer.errors import ShviewerError, UsageError
+from shviewer.errors import OutputError, ShviewerError, UsageError
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
@@ -31,20 +34,72 @@ def main(argv: Sequence[str] | None = None) -> int:
     for name in THREADS:
         os.environ.setdefault(name, "1")
     arguments = list(sys.argv[1:] if argv is None else argv)
+    with _ended_by_signals():
+        return _run(arguments)
+
+
+def _run(arguments: list[str]) -> int:
     try:
         arguments = _meant(arguments)
         mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
         options = PARSERS[mode]().parse_intermixed_args(rest)
         code: int = import_module(f"shviewer.cli.{mode}").run(options)
+        if sys.stdout is not None:
+            sys.stdout.flush()  # here, where a full disk can still be said
         return code
     except ShviewerError as error:
         print(f"shviewer: {error}", file=sys.stderr)
         return error.exit_code
+    except Ended as ended:
+        return 128 + ended.signal
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # the reader has stopped, as in `shviewer --list-lights | head -1`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _silence_stdout()
         return 0
+    except OSError as error:
+        if error.filename is not None or error.errno not in STDOUT_FAILS:
+            raise
+        _silence_stdout()
+        print(f"shviewer: stdout cannot be written: {error.strerror}; send it elsewhere", file=sys.stderr)
+        return OutputError.exit_code
+
+
+STDOUT_FAILS = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
+
+
+class Ended(BaseException):
+    """A signal that asks this program to end: what is half written is taken away on the way out."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.signal = number
+
+
+@contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """Let SIGTERM and SIGHUP raise Ended, unless they are ignored already, as under nohup, or this is no main thread."""
+    caught: list[int] = []
+
+    def end(number: int, frame: object) -> None:
+        raise Ended(number)
+
+    try:
+        for name in ("SIGTERM", "SIGHUP"):
+            number = getattr(signal, name, None)
+            if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+                with suppress(ValueError):
+                    signal.signal(number, end)
+                    caught.append(number)
+        yield
+    finally:
+        for number in caught:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _silence_stdout() -> None:
+    """Point stdout nowhere, so that what it still holds troubles nobody at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 PARSERS = {

@@ -7,11 +7,12 @@ import sys
 from shviewer.analysis.comparison import verdict
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import Subject, load_light
+from shviewer.words import one_line
 
 
 def print_notes(subject: Subject) -> None:
     for note in subject.light.notes:
-        print(f"shviewer: note: {subject.light.name}: {note}", file=sys.stderr)
+        print(one_line(f"shviewer: note: {subject.light.name}: {note}"), file=sys.stderr)
     if subject.refusal:
         print(f"shviewer: note: {subject.refusal}", file=sys.stderr)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.cli.from_options import recipe_from
+from shviewer.cli.from_options import files_read, recipe_from
 from shviewer.cli.status_line import bar, status_line
 from shviewer.coefficients.axes import Axes
 from shviewer.coefficients.convention import OVER_PI, Convention
@@ -23,9 +24,9 @@ from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, ShviewerError, UsageError
-from shviewer.files import file_stem, write_atomically
+from shviewer.files import check_is_not_read, file_stem, write_atomically
 from shviewer.lights.find import split_light
-from shviewer.words import counted
+from shviewer.words import counted, one_line
 
 STDOUT = "-"
 BATCH_FAILED = 1
@@ -64,7 +65,8 @@ def run(options: argparse.Namespace) -> int:
     lights = options.lights or ["green"]
     with status_line() as line:
         show = line.show if line else None
-        return project_lights(lights, options.output, options.format, convention, recipe_of, show)
+        read = files_read(options)
+        return project_lights(lights, options.output, options.format, convention, recipe_of, show, read)
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
@@ -107,8 +109,11 @@ def project_lights(
     convention: Convention,
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None = None,
+    read: Sequence[Path] = (),
 ) -> int:
     """Project and write; return the exit code. status: shows a line of progress, or clears it for "".
+
+    read: files that must not be written, since something is read from them.
 
     One light: `out` is a file, a folder that exists, or "-". Several: `out` is a folder, made if need be; the code is
     BATCH_FAILED if any of them failed. ShviewerError for one light that fails, or arguments that fit no light.
@@ -116,12 +121,14 @@ def project_lights(
     if kind is not None and kind not in FORMATS:
         raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
     if len(lights) > 1:
-        return _batch(lights, out, kind or "json", convention, recipe_of, status)
+        return _batch(lights, out, kind or "json", convention, recipe_of, status, read)
     (light,) = lights
     if out == STDOUT:
         if kind is None:
             raise UsageError(f"-o -: stdout has no suffix to go by; name a format: --format {', '.join(FORMATS)}")
         projected = _noted(light, recipe_of, convention)
+        if sys.stdout is None:  # closed by whoever started this
+            raise OutputError("-o -: stdout is closed; name a file")
         sys.stdout.buffer.write(projected.encode(convention, kind))
         sys.stdout.buffer.flush()
         _warn_below_zero(projected)
@@ -132,8 +139,9 @@ def project_lights(
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
     else:
         kind = _kind_of(path, kind)
-        _check_is_not_read(path, light)
+        check_is_not_read(path, read)
         projected = _noted(light, recipe_of, convention)
+    check_is_not_read(path, read)
     write_atomically(path, projected.encode(convention, kind or "json"))
     radiance, irradiance = (_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
     print(
@@ -150,6 +158,7 @@ def _batch(
     convention: Convention,
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None,
+    read: Sequence[Path],
 ) -> int:
     folder = Path(out)
     if out == STDOUT or folder.suffix[1:] in FORMATS:
@@ -162,7 +171,7 @@ def _batch(
     for number, light in enumerate(lights):
         if status:
             status(f"{bar(number / len(lights))} {number + 1} of {len(lights)}  {light[:60]}")
-        rows.append(_one_of_many(light, folder, kind, convention, recipe_of, {row.file for row in rows}))
+        rows.append(_one_of_many(light, folder, kind, convention, recipe_of, {row.file for row in rows}, read))
         if rows[-1].error:
             if status:
                 status("")
@@ -174,7 +183,13 @@ def _batch(
 
 
 def _one_of_many(
-    light: str, folder: Path, kind: str, convention: Convention, recipe_of: RecipeOf, taken: set[str]
+    light: str,
+    folder: Path,
+    kind: str,
+    convention: Convention,
+    recipe_of: RecipeOf,
+    taken: set[str],
+    read: Sequence[Path],
 ) -> Row:
     """Project one light of a batch and write it under a name of its own; return its row of the summary."""
     try:
@@ -182,22 +197,28 @@ def _one_of_many(
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)
-        _check_is_not_read(path, light)
+        check_is_not_read(path, read)
         write_atomically(path, projected.encode(convention, kind))
         _warn_below_zero(projected)
     except ShviewerError as error:
         return Row(light, "", error=str(error))
+    except Exception as error:  # a fault of this program fails this light alone
+        traceback.print_exc()
+        return Row(light, "", error=one_line(f"{light}: internal error, {type(error).__name__}: {error}"))
     return Row(light, str(path), projected)
 
 
 def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected:
     """Project a light; stderr says what was done to it and what became of its suns."""
+    file, part = split_light(light)
+    if part and file.suffix.lower() == ".py":
+        print(f"shviewer: note: {one_line(light)}: runs the code in {one_line(str(file))}", file=sys.stderr)
     recipe = recipe_of(light)
     projected = project_recipe(recipe)
     shown = subject(recipe)
     suns = [sun_left_out(sun.directional_light, convention.axes) for sun in projected.suns]
     for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else []), *suns):
-        print(f"shviewer: note: {shown.light.name}: {note}", file=sys.stderr)
+        print(one_line(f"shviewer: note: {shown.light.name}: {note}"), file=sys.stderr)
     return projected
 
 
@@ -219,16 +240,6 @@ def _kind_of(path: Path, kind: str | None) -> str:
     if kind is not None and suffix in FORMATS and suffix != kind:
         raise UsageError(f"{path} and --format {kind} contradict each other; leave out --format")
     return kind or suffix
-
-
-def _check_is_not_read(path: Path, light: str) -> None:
-    source = split_light(light)[0]
-    try:
-        same = path.exists() and source.exists() and path.samefile(source)
-    except OSError:
-        same = False
-    if same:
-        raise UsageError(f"{path}: the light is read from this file; write another one")
 
 
 def summary(rows: Sequence[Row]) -> str:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import sys
 
-from shviewer.cli.from_options import state_from
+from shviewer.cli.from_options import files_read, state_from
 from shviewer.cli.notes import print_notes, print_verdict
 from shviewer.errors import UsageError
+from shviewer.files import check_is_not_read
 from shviewer.viewer.composition import compose
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.reference import compare_with_reference
@@ -22,6 +23,10 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(f"{options.out}: --reference compares PNG pictures; let OUT end in .png")
     if options.reference and options.reference.resolve() == options.out.resolve():
         raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
+    difference = options.out.with_name(f"{options.out.stem}-difference.png")
+    check_is_not_read(options.out, files_read(options))
+    if options.reference:
+        check_is_not_read(difference, files_read(options))
     state = state_from(options, all_lights=False)
     if state.view.lobe_view and options.out.suffix.lower() == ".exr":
         raise UsageError(
@@ -34,7 +39,6 @@ def run(options: argparse.Namespace) -> int:
     print_verdict(state.recipe)
     if options.reference is None or pixels is None:
         return 0
-    difference = options.out.with_name(f"{options.out.stem}-difference.png")
     verdict = compare_with_reference(pixels, options.reference, difference, options.threshold)
     if verdict:
         print(f"shviewer: {verdict}", file=sys.stderr)

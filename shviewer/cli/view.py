@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
@@ -36,7 +37,9 @@ def run(options: argparse.Namespace) -> int:
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
-        out = Path(f"shviewer-{file_stem(subject(state.recipe).light.name)}.png")
+        stem = f"shviewer-{file_stem(subject(state.recipe).light.name)}"
+        names = (Path(f"{stem}{f'-{number:03d}' if number else ''}.png") for number in range(10_000))
+        out = next(name for name in names if not os.path.lexists(name))
         save_picture(
             prepare(state),
             compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres),

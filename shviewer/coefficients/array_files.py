@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import io
 import json
+import warnings
 import zipfile
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,30 +14,17 @@ from numpy.typing import NDArray
 from shviewer.coefficients.numbers import MAX_NUMBERS
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError
+from shviewer.files import decoding
+from shviewer.words import one_line
+
+NPY = ".npy"
 
 
 def read_arrays(data: bytes) -> tuple[NDArray[Any], Stamp]:
     """The numbers and the stamp in an .npz with `coefficients` and, if project wrote it, `stamp`; or in an .npy. LightError."""
     most = 16 * MAX_NUMBERS + 2**16
-    try:
-        if not data.startswith(b"PK"):
-            return np.lib.format.read_array(_small_npy(data, most), allow_pickle=False), {}
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            members = {Path(info.filename).stem: info for info in archive.infolist()}
-            if "coefficients" not in members:
-                there = ", ".join(sorted(members)[:8]) or "nothing"
-                raise LightError(f'no array "coefficients" in it; there is: {there}')
-            arrays = {
-                name: np.lib.format.read_array(_member(archive, members[name], most), allow_pickle=False)
-                for name in ("coefficients", "stamp")
-                if name in members
-            }
-    except (ValueError, zipfile.BadZipFile, NotImplementedError, EOFError, RuntimeError, OSError) as error:
-        if "pickle" in str(error) or "Object arrays" in str(error):
-            raise LightError(
-                "holds pickled Python objects, which are never loaded; save plain arrays of numbers"
-            ) from None
-        raise LightError(f"no readable NPZ or NPY ({str(error)[:80]}): save it again") from error
+    with decoding("readable NPZ or NPY"), warnings.catch_warnings(action="ignore"):  # of headers that Python 2 wrote
+        arrays = _arrays(data, most)
     numbers = arrays["coefficients"]
     if numbers.dtype.kind not in "fiuc" or numbers.ndim not in (1, 2) or not numbers.size:
         raise LightError(f"coefficients of type {numbers.dtype} and shape {numbers.shape}; they are (n^2, 3) numbers")
@@ -46,10 +33,37 @@ def read_arrays(data: bytes) -> tuple[NDArray[Any], Stamp]:
     return numbers, _stamp_text(str(arrays["stamp"]))
 
 
+def _arrays(data: bytes, most: int) -> dict[str, NDArray[Any]]:
+    """Name -> array, for "coefficients" and, if it is there, "stamp"; each of at most `most` bytes."""
+    if not data.startswith(b"PK"):
+        return {"coefficients": _array(_small_npy(data, most))}
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        members = {info.filename: info for info in archive.infolist()}
+        if f"coefficients{NPY}" not in members:
+            there = ", ".join(sorted(name.removesuffix(NPY) for name in members)[:8]) or "nothing"
+            raise LightError(f'no array "coefficients" in it; there is: {one_line(there)}')
+        return {
+            name: _array(_member(archive, members[name + NPY], most))
+            for name in ("coefficients", "stamp")
+            if name + NPY in members
+        }
+
+
+def _array(file: io.BytesIO) -> NDArray[Any]:
+    try:
+        return np.lib.format.read_array(file, allow_pickle=False)
+    except ValueError as error:
+        if "pickle" in str(error) or "Object arrays" in str(error):
+            raise LightError(
+                "holds pickled Python objects, which are never loaded; save plain arrays of numbers"
+            ) from None
+        raise
+
+
 def _stamp_text(text: str) -> Stamp:
     try:
         found = json.loads(text)
-    except (json.JSONDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict) or SCHEMA_KEY not in found:
         raise LightError("its stamp is no JSON object of a coefficient file: project the light again")

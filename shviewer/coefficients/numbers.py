@@ -18,7 +18,7 @@ from shviewer.limits import MAX_BANDS
 MAX_NUMBERS = 6 * MAX_BANDS**2
 """The most numbers in a file: real and imaginary parts of three channels."""
 
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|#[^\n]*", flags=re.DOTALL)
+_COMMENT_OPENS = re.compile(r"//|#|/\*")
 _PUNCTUATION = re.compile(r"[\s,;(){}\[\]]+")
 
 
@@ -27,13 +27,15 @@ def plain_numbers(text: str) -> NDArray[np.float64]:
 
     Comments are those of C, GLSL and Python. LightError, with the line, for anything else in the text.
     """
-    bare = _COMMENT.sub(lambda found: "\n" * found[0].count("\n"), text)
+    bare = _without_comments(text)
     words = [word for word in _PUNCTUATION.split(bare) if word]
     if len(words) > MAX_NUMBERS:
         raise LightError(
             f"{len(words)} numbers: {MAX_BANDS} bands of three channels, real and imaginary, have {MAX_NUMBERS}"
         )
     try:
+        if not bare.isascii() or "_" in bare:  # Python would read 1_0 and the digits of all scripts
+            raise ValueError
         return np.array([float(word.removesuffix("f")) for word in words])
     except ValueError:
         bad = next(word for word in words if not _is_number(word))
@@ -43,7 +45,28 @@ def plain_numbers(text: str) -> NDArray[np.float64]:
         ) from None
 
 
+def _without_comments(text: str) -> str:
+    """The text with only the line breaks of its comments, in one pass; one that is never closed is left as it is."""
+    parts, at, last_end = [], 0, text.rfind("*/")
+    while opens := _COMMENT_OPENS.search(text, at):
+        start, end = opens.span()
+        if opens[0] != "/*":
+            end = text.find("\n", start)
+            end = len(text) if end < 0 else end
+        elif end <= last_end:
+            end = text.find("*/", end) + 2
+        else:
+            parts.append(text[at:end])
+            at = end
+            continue
+        parts += text[at:start], "\n" * text.count("\n", start, end)
+        at = end
+    return "".join([*parts, text[at:]])
+
+
 def _is_number(word: str) -> bool:
+    if not word.isascii() or "_" in word:
+        return False
     try:
         float(word.removesuffix("f"))
     except ValueError:

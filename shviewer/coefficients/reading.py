@@ -24,7 +24,7 @@ from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp
 from shviewer.coefficients.suffixes import HOLDS
 from shviewer.errors import LightError
-from shviewer.files import naming, read_bytes
+from shviewer.files import decoding, naming, read_bytes
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
@@ -124,10 +124,8 @@ def interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientF
 
 
 def _read_json(data: bytes) -> tuple[NDArray[Any], Stamp]:
-    try:
-        found = json.loads(_text(data), parse_constant=_no_constant)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise LightError(f"no JSON ({str(error)[:80]}): export it again") from error
+    with decoding("JSON"):
+        found = json.loads(_text(data), parse_constant=_no_constant, object_pairs_hook=_no_key_twice)
     stamp: Stamp = {}
     if isinstance(found, dict):
         if "coefficients" not in found:
@@ -137,11 +135,22 @@ def _read_json(data: bytes) -> tuple[NDArray[Any], Stamp]:
         found = found["coefficients"]
     try:
         numbers = np.array(found)
-    except ValueError:  # rows of different lengths
+    except (ValueError, OverflowError):  # rows of different lengths
         numbers = np.array([])
+    rows = found if isinstance(found, list) else []
+    if any(type(value) is bool for row in rows for value in (row if isinstance(row, list) else [row])):
+        raise LightError("true or false among the coefficients; they are numbers")
     if numbers.ndim not in (1, 2) or not numbers.size or numbers.dtype.kind not in "fiu":
         raise LightError("coefficients must be rows of three numbers each, or one list of numbers")
     return numbers.astype(np.float64), stamp
+
+
+def _no_key_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        twice = next(key for number, (key, _) in enumerate(pairs) if key in dict(pairs[:number]))
+        raise LightError(f"the key {twice!r} stands there twice; keep one of them")
+    return found
 
 
 def _no_constant(name: str) -> float:
@@ -150,10 +159,8 @@ def _no_constant(name: str) -> float:
 
 def _read_csv(data: bytes) -> tuple[NDArray[Any], Stamp]:
     """Read a CSV file. A header names the columns; without one there are three: red, green and blue."""
-    try:
+    with decoding("CSV"):
         return _csv_table(_text(data))
-    except csv.Error as error:
-        raise LightError(f"no CSV ({error}): save it again") from error
 
 
 def _csv_table(text: str) -> tuple[NDArray[Any], Stamp]:

@@ -113,9 +113,10 @@ class EnvironmentLight(RadianceLight):
 
     def coefficients(self, n_bands: int) -> Array:
         """As in Light. The most bands asked for so far are kept; fewer bands are their first rows."""
-        held = self._projected
+        held = self._projected[-1:]
         if not held or len(held[0]) < n_bands**2:
-            held[:] = [self.layout.project(self.pixels, n_bands)]
+            held = [self.layout.project(self.pixels, n_bands)]
+            self._projected[:] = held
         return held[0][: n_bands**2]
 
     @cached_property

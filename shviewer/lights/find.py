@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,11 +28,12 @@ def built_in_lights() -> dict[str, Path]:
 def split_light(text: str) -> tuple[Path, str]:
     """The file that LIGHT names, and the layer of "file.exr:layer" or the function of "file.py:function", or "".
 
-    A built-in name comes first, then a file of that very name.
+    A built-in name comes first, then whatever has that very name, a link that leads nowhere too: a name that a folder holds
+    is never taken for code to run.
     """
     path = built_in_lights().get(text) or Path(text)
     file, _, part = text.rpartition(":")
-    if part and file.lower().endswith((".exr", ".py")) and not _exists(path):
+    if part and file.lower().endswith((".exr", ".py")) and not os.path.lexists(path):
         return Path(file), part
     return path, ""
 

@@ -78,8 +78,8 @@ class FunctionLight(RadianceLight):
         try:
             with np.errstate(all="ignore"):  # what is not finite is refused below
                 found = np.asarray(self.function(directions.copy()))  # it may write into its argument
-            if np.iscomplexobj(found):
-                raise TypeError("radiance is real, and these values are complex")
+            if found.dtype.kind in "cMm" or isinstance(found, np.ma.MaskedArray):
+                raise TypeError(f"radiance is plain real numbers, and these values are of type {found.dtype}")
             values = found.astype(np.float64)
         except (Exception, SystemExit) as error:
             last = traceback.extract_tb(error.__traceback__)[-1]

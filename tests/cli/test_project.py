@@ -206,7 +206,7 @@ def test_the_file_that_is_read_is_not_written(tmp_path: Path, capsys: Capture) -
     assert project("-o", tmp_path / "a.json") == 0
     before = (tmp_path / "a.json").read_bytes()
     assert project(tmp_path / "a.json", "-o", tmp_path / "a.json") == 2
-    assert "read from this file" in capsys.readouterr().err
+    assert "is read from this file" in capsys.readouterr().err
     assert (tmp_path / "a.json").read_bytes() == before
 
 

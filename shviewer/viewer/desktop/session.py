@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import traceback
 from dataclasses import replace
 from time import perf_counter
 
@@ -10,6 +11,7 @@ from shviewer.analysis.figures import needs
 from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError
 from shviewer.files import file_stem
+from shviewer.lights.find import split_light
 from shviewer.lights.light import Light
 from shviewer.viewer.actions import Command, open_light, step_sweep, with_bands
 from shviewer.viewer.animation.metronome import Metronome
@@ -25,6 +27,7 @@ from shviewer.viewer.saving.picture_files import write_numbered
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import State, changed
+from shviewer.words import one_line
 
 LOOK_SECONDS = 0.2
 """The least time between two looks at a watched file, also while events come."""
@@ -76,7 +79,12 @@ class Session:
         return None
 
     def drop(self, path: str) -> None:
-        """Open a file, which may have been edited since it was last opened."""
+        """Open a file, which may have been edited since it was last opened; never code, which is no file."""
+        file, part = split_light(path)
+        if part and file.suffix.lower() == ".py":
+            message = one_line(f"{path}: code runs only when the command line names it")
+            self.state = changed(self.state, message=message)
+            return
         self.state = open_light(self.state, path)
         self._read_anew = True
 
@@ -104,6 +112,10 @@ class Session:
             picture = prepare(self.state, by_map=by_map)
         except ShviewerError as error:
             self.keep(error)
+            return
+        except Exception:  # a fault of this program: the session goes on with the picture there is
+            traceback.print_exc()
+            self.keep(ShviewerError("internal error, see the terminal"))
             return
         if picture.light is not last.light:
             message = self._news(picture.light, again=anew and self.state.recipe.light == last.state.recipe.light)

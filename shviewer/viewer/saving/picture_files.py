@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from shviewer.errors import OutputError
-from shviewer.files import write_atomically
+from shviewer.files import write_atomically, writing_folder
 from shviewer.version import __version__
 
 
@@ -34,10 +35,20 @@ def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
     except ImportError as error:
         raise OutputError(f"{path}: writing EXR needs the package OpenEXR (pip install OpenEXR)") from error
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, "shviewer": text}
-    with tempfile.TemporaryDirectory() as folder:
+    with _folder_beside(path) as folder:
         file = Path(folder) / "picture.exr"
         OpenEXR.File(header, {"RGB": pixels}).write(str(file))
         write_atomically(path, file.read_bytes())
+
+
+@contextmanager
+def _folder_beside(path: Path) -> Iterator[str]:
+    """A folder for a moment, beside the file that is to be written: nothing else need be writable."""
+    try:
+        with tempfile.TemporaryDirectory(prefix=".shv-", suffix=".tmp", dir=writing_folder(path)) as folder:
+            yield folder
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; choose another place") from error
 
 
 def write_numbered(stem: str, pixels: NDArray[np.uint8], text: str) -> Path:

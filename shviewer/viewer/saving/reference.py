@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import warnings
 from pathlib import Path
@@ -11,7 +12,12 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from shviewer.errors import UsageError
+from shviewer.files import read_bytes
+from shviewer.limits import DEFAULT_LIMITS
 from shviewer.viewer.saving.picture_files import write_png
+
+FORMATS = {".jpg": ("JPEG",), ".jpeg": ("JPEG",), ".webp": ("WEBP",), ".bmp": ("BMP",)}
+"""Pillow's formats for a suffix, PNG for all others: a file named .png that is PostScript would start an interpreter."""
 
 PIXEL_STEP = 2
 """Pixels differ if some channel differs by more than this, of 255: between drivers, rounding differs by 1."""
@@ -22,15 +28,18 @@ def compare_with_reference(pixels: NDArray[np.uint8], reference: Path, differenc
 
     Then `difference` is written: the absolute difference, sixteen times as bright. UsageError if the reference is bad.
     """
+    remedy = "make it with the same command, REF.png as OUT"
+    if not reference.exists():
+        raise UsageError(f"{reference}: no such reference; {remedy}")
     try:
-        with warnings.catch_warnings(action="error"), Image.open(reference) as image:
+        data = io.BytesIO(read_bytes(reference, DEFAULT_LIMITS))
+        formats = FORMATS.get(reference.suffix.lower(), ("PNG",))
+        with warnings.catch_warnings(action="error"), Image.open(data, formats=formats) as image:
             wanted = np.asarray(image.convert("RGB"))
-    except FileNotFoundError as error:
-        raise UsageError(f"{reference}: no such reference; make it with the same command, REF.png as OUT") from error
-    except (OSError, ValueError, Warning, Image.DecompressionBombError) as error:
-        raise UsageError(
-            f"{reference}: not a readable picture; make it with the same command, REF.png as OUT"
-        ) from error
+    except (
+        Exception
+    ) as error:  # Pillow raises what it likes: OSError, SyntaxError, struct.error, DecompressionBombError, ...
+        raise UsageError(f"{reference}: not a readable picture; {remedy}") from error
     if wanted.shape != pixels.shape:
         return (
             f"{reference} is {wanted.shape[1]} x {wanted.shape[0]}, the picture {pixels.shape[1]} x {pixels.shape[0]}"

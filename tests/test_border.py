@@ -1,0 +1,234 @@
+"""The border: what gets in is looked at first, and nothing that is read, linked or guarded gets lost."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import stat
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import shviewer
+from shviewer.cli.main import main
+from shviewer.coefficients.numbers import plain_numbers
+from shviewer.coefficients.reading import read_coefficients
+from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
+from shviewer.files import DEBUG, write_atomically
+from shviewer.viewer.saving.reference import compare_with_reference
+from shviewer.words import MOST_CHARACTERS, one_line
+
+NINE = np.arange(27.0).reshape(9, 3)
+POSIX = pytest.mark.skipif(os.name != "posix", reason="modes, links and pipes as POSIX has them")
+
+
+def npy(array: np.ndarray) -> bytes:
+    file = io.BytesIO()
+    np.save(file, array)
+    return file.getvalue()
+
+
+# --- what is read is not written
+
+
+@pytest.fixture
+def nine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "nine.json"
+    shviewer.project("green", 3).save(path)
+    return path
+
+
+@pytest.mark.parametrize("through", ["nine.json", "link.json", "."])
+def test_project_does_not_write_into_the_file_that_it_reads(nine: Path, through: str) -> None:
+    before = nine.read_bytes()
+    (nine.parent / "link.json").symlink_to(nine)
+    assert main(["project", "nine.json", "--bands", "1", "-o", through, "--format", "json"]) == OutputError.exit_code
+    assert nine.read_bytes() == before
+
+
+def test_a_batch_does_not_write_into_a_light_that_comes_later(nine: Path) -> None:
+    """hemisphere.json, read as the second light, is where the first one would be written."""
+    (nine.parent / "hemisphere.json").write_bytes(before := nine.read_bytes())
+    assert main(["project", "hemisphere", "hemisphere.json", "--bands", "1", "-o", "."]) == 1
+    assert (nine.parent / "hemisphere.json").read_bytes() == before
+
+
+def test_a_picture_is_not_written_over_the_light_or_the_reference(nine: Path) -> None:
+    (nine.parent / "sky.png").write_bytes(b"anything")
+    (nine.parent / "r-difference.png").write_bytes(b"anything")
+    assert main(["screenshot", "sky.png", "sky.png"]) == OutputError.exit_code
+    assert main(["screenshot", "r.png", "--reference", "r-difference.png"]) == OutputError.exit_code
+    assert (nine.parent / "sky.png").read_bytes() == (nine.parent / "r-difference.png").read_bytes() == b"anything"
+
+
+# --- links, modes and special files
+
+
+@POSIX
+def test_a_link_is_followed_and_its_target_keeps_its_mode(tmp_path: Path) -> None:
+    target, link = tmp_path / "private.json", tmp_path / "link.json"
+    target.write_bytes(b"old")
+    target.chmod(0o600)
+    link.symlink_to(target)
+    write_atomically(link, b"new")
+    assert link.is_symlink()
+    assert target.read_bytes() == b"new"
+    assert stat.S_IMODE(target.stat().st_mode) == 0o600
+
+
+@POSIX
+def test_a_read_only_file_is_kept_even_from_root(tmp_path: Path) -> None:
+    path = tmp_path / "kept.json"
+    path.write_bytes(b"old")
+    path.chmod(0o444)
+    with pytest.raises(OutputError, match="read-only"):
+        write_atomically(path, b"new")
+    assert path.read_bytes() == b"old"
+
+
+@POSIX
+def test_a_pipe_is_written_through_and_stays_a_pipe(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.json"
+    os.mkfifo(pipe)
+    with ThreadPoolExecutor(1) as pool:
+        read = pool.submit(pipe.read_bytes)
+        write_atomically(pipe, b"through")
+        assert read.result(timeout=10) == b"through"
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    assert list(tmp_path.iterdir()) == [pipe]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_a_full_device_is_one_line(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(OutputError, match="No space left"):
+        write_atomically(Path("/dev/full"), b"anything")
+    assert stat.S_ISCHR(os.stat("/dev/full").st_mode)
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run([sys.executable, "-m", "shviewer", "--list-lights"], stdout=full, stderr=subprocess.PIPE)
+    assert done.returncode == OutputError.exit_code
+    assert done.stderr.decode().startswith("shviewer: stdout cannot be written: No space left")
+    assert done.stderr.count(b"\n") == 1
+
+
+@POSIX
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_it_with_its_code_and_leaves_nothing_behind(tmp_path: Path, number: int) -> None:
+    command = [sys.executable, "-m", "shviewer", "sweep", "s.webp", "--frames", "720", "--turntable"]
+    environment = {**os.environ, "PYTHONPATH": str(Path(shviewer.__file__).parents[1])}
+    with subprocess.Popen(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE) as child:
+        time.sleep(2)
+        child.send_signal(number)
+        _, errors = child.communicate(timeout=60)
+    assert child.returncode == 128 + number
+    assert b"Traceback" not in errors
+    assert not list(tmp_path.iterdir())
+
+
+# --- code runs only when asked
+
+
+@POSIX
+def test_a_name_that_a_folder_holds_is_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("evil.py").write_text("open('ran', 'w').close()\ndef f(d): return d[:, 2]\n")
+    Path("evil.py:f").symlink_to("nowhere")
+    with pytest.raises(LightError):
+        shviewer.find_light("evil.py:f")
+    assert not Path("ran").exists()
+    Path("evil.py:f").unlink()
+    shviewer.find_light("evil.py:f")
+    assert Path("ran").exists()
+
+
+def test_a_reference_is_opened_as_what_it_is_named(tmp_path: Path) -> None:
+    """Pillow hands PostScript to Ghostscript, whatever its name is."""
+    path = tmp_path / "reference.png"
+    path.write_bytes(b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 10 10\n%%EndComments\nshowpage\n%%EOF\n")
+    with pytest.raises(UsageError, match="not a readable picture"):
+        compare_with_reference(np.zeros((2, 2, 3), np.uint8), path, tmp_path / "d.png", 0)
+
+
+# --- coefficient files
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("dates.npy", npy(np.array(["2020-01-01"] * 9, dtype="M8[D]"))),
+        ("texts.npy", npy(np.array(["a"] * 9))),
+        ("fields.npy", npy(np.zeros(9, dtype=[("a", "f8")]))),
+        ("header.npy", b"\x93NUMPY\x01\x00\x10\x00{'descr': (((((\n"),
+        ("digits.json", b'{"coefficients": [[' + b"1" * 5000 + b", 0, 0]]}"),
+        ("large.json", b"[[1" + b"0" * 400 + b", 0, 0]]"),
+        ("true.json", b"[[true, 0.5, 0.5]]"),
+        ("twice.json", b'{"coefficients": [[1, 1, 1]], "coefficients": [[2, 2, 2]]}'),
+        ("deep.json", b"[" * 100_000),
+        ("underscore.txt", b"1_0 2 3"),
+        ("arabic.txt", "\u0661 2 3".encode()),
+    ],
+)
+def test_a_strange_coefficient_file_is_one_line(tmp_path: Path, name: str, data: bytes) -> None:
+    path = tmp_path / name
+    path.write_bytes(data)
+    with pytest.raises(LightError) as refused:
+        read_coefficients(path, "shviewer")
+    assert str(refused.value).startswith(str(path))
+    assert str(refused.value).isprintable()
+
+
+def test_a_parser_shows_its_traceback_on_request(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "bad.json"
+    path.write_bytes(b"{")
+    monkeypatch.setenv(DEBUG, "1")
+    with pytest.raises(ValueError, match="Expecting"):
+        read_coefficients(path, "shviewer")
+
+
+def test_comments_take_time_in_proportion_to_their_length() -> None:
+    """A pattern that looks for the end of each comment took 5 s for 60 kB of comments that never end."""
+    with pytest.raises(LightError, match="is no number"):
+        plain_numbers("/* " * 2**20)
+    assert plain_numbers("1 /* 2 */ 3 // 4\n5 # 6\n/* 7\n8 */ 9").tolist() == [1, 3, 5, 9]
+
+
+# --- text from outside
+
+
+def test_text_from_outside_is_one_short_line_without_escapes() -> None:
+    assert one_line("a\x1b[2Jb\nc") == "a\\x1b[2Jb c"
+    assert len(one_line("x" * 300_000)) <= MOST_CHARACTERS
+    assert str(ShviewerError("\x1b]0;title\x07")).isprintable()
+
+
+# --- the Python face
+
+
+@pytest.mark.parametrize(
+    ("array", "says"),
+    [
+        (np.zeros((4, 8, 3), np.uint8), "divide by 255"),
+        (np.ma.masked_less(np.ones((4, 8, 3)), 0), "masked"),
+        (np.ones((4, 8, 3), complex), "complex"),
+        (np.ones((4, 8, 3), object), "object"),
+        (np.full((4, 8, 3), 1e39), "largest radiance"),
+        (np.zeros((9, 3), "M8[D]"), "datetime64"),
+    ],
+)
+def test_an_array_that_is_no_radiance_is_refused_in_words(array: np.ndarray, says: str) -> None:
+    with pytest.raises(ShviewerError, match=says):
+        shviewer.project(array)
+
+
+def test_sixteen_threads_project_what_one_does() -> None:
+    names = ["green", "hemisphere", "cosine", "sun-sky"] * 16
+    alone = {name: shviewer.project(name, 5).coefficients for name in names}
+    with ThreadPoolExecutor(16) as pool:
+        together = list(pool.map(lambda name: shviewer.project(name, 5).coefficients, names))
+    assert all(np.array_equal(found, alone[name]) for name, found in zip(names, together, strict=True))
