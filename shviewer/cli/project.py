@@ -192,6 +192,9 @@ def _one_of_many(
     read: Sequence[Path],
 ) -> Row:
     """Project one light of a batch and write it under a name of its own; return its row of the summary."""
+    source, part = split_light(light)
+    if part and source.suffix.lower() == ".py":
+        print(one_line(f"shviewer: note: {light}: runs the code in {source}"), file=sys.stderr)
     try:
         projected = _noted(light, recipe_of, convention)
         stem = file_stem(projected.name)
@@ -210,9 +213,6 @@ def _one_of_many(
 
 def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected:
     """Project a light; stderr says what was done to it and what became of its suns."""
-    file, part = split_light(light)
-    if part and file.suffix.lower() == ".py":
-        print(f"shviewer: note: {one_line(light)}: runs the code in {one_line(str(file))}", file=sys.stderr)
     recipe = recipe_of(light)
     projected = project_recipe(recipe)
     shown = subject(recipe)

@@ -205,7 +205,7 @@ def test_what_cannot_be_is_one_line_and_leaves_no_file(
 def test_the_file_that_is_read_is_not_written(tmp_path: Path, capsys: Capture) -> None:
     assert project("-o", tmp_path / "a.json") == 0
     before = (tmp_path / "a.json").read_bytes()
-    assert project(tmp_path / "a.json", "-o", tmp_path / "a.json") == 2
+    assert project(tmp_path / "a.json", "-o", tmp_path / "a.json") == 4
     assert "is read from this file" in capsys.readouterr().err
     assert (tmp_path / "a.json").read_bytes() == before
 
