@@ -8,8 +8,9 @@ import os
 import re
 import stat
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -160,12 +161,42 @@ def check_place(path: Path) -> None:
         raise _refused(path, error) from error
 
 
-def check_is_not_read(path: Path, inputs: Iterable[Path]) -> None:
-    """OutputError if `path` is one of the files that are read, under whatever name: writing it would destroy it."""
-    for source in inputs:
-        with suppress(OSError, ValueError):  # what does not exist is not destroyed
-            if os.path.samefile(path, source):
-                raise OutputError(f"{path}: the light or a comparison is read from this file; write another one")
+@dataclass(frozen=True)
+class Replacing:
+    """What a command may replace: never one of its `inputs`, and a file that this program did not write only with `force`."""
+
+    inputs: tuple[Path, ...] = ()
+    force: bool = False
+
+    def check(self, path: Path) -> None:
+        """OutputError if writing `path` would destroy what must stay: a check to make before it is written."""
+        for source in self.inputs:
+            with suppress(OSError, ValueError):  # what does not exist is not destroyed
+                if os.path.samefile(path, source):
+                    raise OutputError(f"{path}: the light or a comparison is read from this file; write another one")
+        if not (self.force or _may_go(path)):
+            raise OutputError(f"{path}: exists, and shviewer did not write it; write another file, or --force")
+
+
+OURS = (b"shviewer", "shviewer".encode("utf-32-le"), b'"world_from_view"')
+"""Bytes of which each file of this program has some within OURS_BYTES of one of its ends; the second is that of NPZ."""
+
+OURS_BYTES = 2**16
+
+
+def _may_go(path: Path) -> bool:
+    """Whether there is nothing at `path` to be lost: no file, an empty one, a pipe or device, or one of this program."""
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode) or not status.st_size:
+            return True
+        with path.open("rb") as file:
+            ends = file.read(OURS_BYTES)
+            file.seek(max(0, status.st_size - OURS_BYTES))
+            ends += file.read(OURS_BYTES)
+    except (OSError, ValueError):  # what cannot be looked at is for the writer to refuse
+        return True
+    return any(mark in ends for mark in OURS)
 
 
 def _target(path: Path) -> tuple[Path, os.stat_result | None]:

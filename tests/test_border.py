@@ -28,6 +28,14 @@ NINE = np.arange(27.0).reshape(9, 3)
 POSIX = pytest.mark.skipif(os.name != "posix", reason="modes, links and pipes as POSIX has them")
 
 
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(shviewer.__file__).parents[1])}
+
+
+def run(command: list[str]) -> int:
+    """The exit code of a command in a process of its own, which leaves the OpenGL context of other tests alone."""
+    return subprocess.run([sys.executable, "-m", "shviewer", *command], env=ENVIRONMENT, capture_output=True).returncode
+
+
 def npy(array: np.ndarray) -> bytes:
     file = io.BytesIO()
     np.save(file, array)
@@ -66,6 +74,26 @@ def test_a_picture_is_not_written_over_the_light_or_the_reference(nine: Path) ->
     assert main(["screenshot", "sky.png", "sky.png"]) == OutputError.exit_code
     assert main(["screenshot", "r.png", "--reference", "r-difference.png"]) == OutputError.exit_code
     assert (nine.parent / "sky.png").read_bytes() == (nine.parent / "r-difference.png").read_bytes() == b"anything"
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.exr", "a.json", "a.csv", "a.npz", "a.h", "a.glsl", "a.gif", "a.webp"])
+def test_a_file_of_somebody_else_is_replaced_only_by_force_and_one_of_ours_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    kind = Path(name).suffix
+    small = ["--size", "320", "240"]
+    command = {
+        ".png": ["screenshot", name, *small],
+        ".exr": ["screenshot", name, *small],
+        ".gif": ["sweep", name, "--to", "2", *small],
+        ".webp": ["sweep", name, "--to", "2", *small],
+    }.get(kind, ["project", "green", "-o", name])
+    Path(name).write_bytes(b"somebody else's work")
+    assert run(command) == OutputError.exit_code
+    assert Path(name).read_bytes() == b"somebody else's work"
+    assert run([*command, "--force"]) == 0
+    assert run(command) == 0
 
 
 # --- links, modes and special files
@@ -121,8 +149,7 @@ def test_a_full_device_is_one_line(capfd: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_it_with_its_code_and_leaves_nothing_behind(tmp_path: Path, number: int) -> None:
     command = [sys.executable, "-m", "shviewer", "sweep", "s.webp", "--turntable"]
-    environment = {**os.environ, "PYTHONPATH": str(Path(shviewer.__file__).parents[1])}
-    with subprocess.Popen(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE) as child:
+    with subprocess.Popen(command, cwd=tmp_path, env=ENVIRONMENT, stderr=subprocess.PIPE) as child:
         time.sleep(2)
         child.send_signal(number)
         _, errors = child.communicate(timeout=60)

@@ -91,13 +91,17 @@ def project(light: Light, method: str | CoefficientLight, samples: int, seed: in
     if not isinstance(method, str):
         return _given_projection(light, method, n_bands)
     found = _measured_projection(light, method, samples, seed, n_bands)
-    _known(light, n_bands).move_to_end((method, samples, seed))
+    with MEMORY.lock:
+        known = _known(light, n_bands)
+        if (method, samples, seed) in known:  # not if another thread has read the light again
+            known.move_to_end((method, samples, seed))
     return found
 
 
 def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
     """The measurements of this session for projecting the light to `n_bands` bands, by method, samples and seed."""
-    return tuple(found for _, found in sorted(_known(light, n_bands).items())) if light in MEMORY else ()
+    with MEMORY.lock:
+        return tuple(found for _, found in sorted(_known(light, n_bands).items())) if light in MEMORY else ()
 
 
 def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Measurement]:
@@ -110,16 +114,18 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
     n_bands, shown = projection.n_bands, projection.coefficients
     exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
     errors = errors_by_band_count(light.products(), exact, shown)
-    known = _known(light, n_bands)
-    if light is not light.source and sampling != BEST:  # the only time spent was that on the light itself
-        known[sampling] = replace(_known(light.source, n_bands)[sampling], errors=errors)
-    else:
-        before = known.get(sampling)
-        least = min(projection.milliseconds, before.milliseconds if before else np.inf)
-        repetitions = 1 + (before.repetitions if before else 0)
-        known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
-    if len(known) > MOST_MEASUREMENTS:
-        known.popitem(last=False)
+    with MEMORY.lock:
+        known = _known(light, n_bands)
+        spent = _known(light.source, n_bands).get(sampling) if light is not light.source and sampling != BEST else None
+        if spent:  # the only time spent was that on the light itself
+            known[sampling] = replace(spent, errors=errors)
+        else:
+            before = known.get(sampling)
+            least = min(projection.milliseconds, before.milliseconds if before else np.inf)
+            repetitions = 1 + (before.repetitions if before else 0)
+            known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
+        if len(known) > MOST_MEASUREMENTS:
+            known.popitem(last=False)
 
 
 @remember(most=8)

@@ -12,6 +12,7 @@ from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
 from shviewer.errors import UsageError
+from shviewer.files import Replacing
 
 if TYPE_CHECKING:
     from shviewer.lights.reading import Reading
@@ -54,14 +55,15 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
     return (recipe if options.tolerance is None else _fitted(recipe, options)), said
 
 
-def files_read(options: argparse.Namespace) -> list[Path]:
-    """The files that a command line names to be read: lights, coefficients to compare, and a reference."""
+def replacing_of(options: argparse.Namespace) -> Replacing:
+    """What the command may replace. Its inputs are its lights, coefficients to compare, and a reference."""
     from shviewer.lights.find import split_light
 
     given = vars(options)
     lights: list[str] = given.get("lights") or [given.get("light") or "green"]
     others = [given.get(name) for name in ("compare", "reference")]
-    return [*(split_light(light)[0] for light in lights), *(Path(other) for other in others if other)]
+    inputs = [*(split_light(light)[0] for light in lights), *(Path(other) for other in others if other)]
+    return Replacing(tuple(inputs), options.force)
 
 
 def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:

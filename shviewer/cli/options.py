@@ -25,7 +25,7 @@ EXIT_CODES = """exit codes:
   4    a file that could not be written
   5    no OpenGL 3.3, or no EGL
   6    a shader that does not compile
-  130  interrupted"""
+  130  interrupted (129 and 143: ended by SIGHUP or SIGTERM)"""
 
 DEFAULT_SWEEP = (1, 16)
 
@@ -85,6 +85,7 @@ def screenshot_parser() -> OneLineParser:
         default=0.001,
         help="share of the pixels, 0 to 1, that may differ from the reference by more than 2/255 (default 0.001)",
     )
+    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
     return parser
 
 
@@ -114,6 +115,7 @@ def sweep_parser() -> OneLineParser:
     )
     parser.add_argument("--no-overlay", action="store_true", help="the spheres alone")
     add_view_options(parser)
+    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
     return parser
 
 
@@ -164,6 +166,7 @@ def project_parser() -> OneLineParser:
     parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
     add_table(parser, Recipe)
     add_reading_options(parser, convention="--input-convention")
+    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
     return parser
 
 

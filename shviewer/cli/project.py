@@ -16,7 +16,7 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.cli.from_options import files_read, recipe_from
+from shviewer.cli.from_options import recipe_from, replacing_of
 from shviewer.cli.status_line import bar, status_line
 from shviewer.coefficients.axes import Axes
 from shviewer.coefficients.convention import OVER_PI, Convention
@@ -24,12 +24,14 @@ from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, ShviewerError, UsageError
-from shviewer.files import check_is_not_read, file_stem, write_atomically
+from shviewer.files import Replacing, file_stem, write_atomically
 from shviewer.lights.find import split_light
 from shviewer.words import counted, one_line
 
 STDOUT = "-"
 BATCH_FAILED = 1
+
+NOTHING_READ = Replacing()
 
 ROUNDING = 1e-6
 """A minimum below zero by no more than this share of the largest coefficient counts as zero."""
@@ -65,8 +67,8 @@ def run(options: argparse.Namespace) -> int:
     lights = options.lights or ["green"]
     with status_line() as line:
         show = line.show if line else None
-        read = files_read(options)
-        return project_lights(lights, options.output, options.format, convention, recipe_of, show, read)
+        replacing = replacing_of(options)
+        return project_lights(lights, options.output, options.format, convention, recipe_of, show, replacing)
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
@@ -109,11 +111,11 @@ def project_lights(
     convention: Convention,
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None = None,
-    read: Sequence[Path] = (),
+    replacing: Replacing = NOTHING_READ,
 ) -> int:
     """Project and write; return the exit code. status: shows a line of progress, or clears it for "".
 
-    read: files that must not be written, since something is read from them.
+    replacing: what may be replaced by what is written.
 
     One light: `out` is a file, a folder that exists, or "-". Several: `out` is a folder, made if need be; the code is
     BATCH_FAILED if any of them failed. ShviewerError for one light that fails, or arguments that fit no light.
@@ -121,7 +123,7 @@ def project_lights(
     if kind is not None and kind not in FORMATS:
         raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
     if len(lights) > 1:
-        return _batch(lights, out, kind or "json", convention, recipe_of, status, read)
+        return _batch(lights, out, kind or "json", convention, recipe_of, status, replacing)
     (light,) = lights
     if out == STDOUT:
         if kind is None:
@@ -139,9 +141,9 @@ def project_lights(
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
     else:
         kind = _kind_of(path, kind)
-        check_is_not_read(path, read)
+        replacing.check(path)
         projected = _noted(light, recipe_of, convention)
-    check_is_not_read(path, read)
+    replacing.check(path)
     write_atomically(path, projected.encode(convention, kind or "json"))
     radiance, irradiance = (_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
     print(
@@ -158,7 +160,7 @@ def _batch(
     convention: Convention,
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None,
-    read: Sequence[Path],
+    replacing: Replacing,
 ) -> int:
     folder = Path(out)
     if out == STDOUT or folder.suffix[1:] in FORMATS:
@@ -171,7 +173,7 @@ def _batch(
     for number, light in enumerate(lights):
         if status:
             status(f"{bar(number / len(lights))} {number + 1} of {len(lights)}  {light[:60]}")
-        rows.append(_one_of_many(light, folder, kind, convention, recipe_of, {row.file for row in rows}, read))
+        rows.append(_one_of_many(light, folder, kind, convention, recipe_of, {row.file for row in rows}, replacing))
         if rows[-1].error:
             if status:
                 status("")
@@ -189,7 +191,7 @@ def _one_of_many(
     convention: Convention,
     recipe_of: RecipeOf,
     taken: set[str],
-    read: Sequence[Path],
+    replacing: Replacing,
 ) -> Row:
     """Project one light of a batch and write it under a name of its own; return its row of the summary."""
     source, part = split_light(light)
@@ -200,7 +202,7 @@ def _one_of_many(
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)
-        check_is_not_read(path, read)
+        replacing.check(path)
         write_atomically(path, projected.encode(convention, kind))
         _warn_below_zero(projected)
     except ShviewerError as error:

@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 
-from shviewer.cli.from_options import files_read, state_from
+from shviewer.cli.from_options import replacing_of, state_from
 from shviewer.cli.notes import print_notes, print_verdict
 from shviewer.errors import UsageError
-from shviewer.files import check_is_not_read
 from shviewer.viewer.composition import compose
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.reference import compare_with_reference
@@ -24,9 +23,10 @@ def run(options: argparse.Namespace) -> int:
     if options.reference and options.reference.resolve() == options.out.resolve():
         raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
     difference = options.out.with_name(f"{options.out.stem}-difference.png")
-    check_is_not_read(options.out, files_read(options))
+    replacing = replacing_of(options)
+    replacing.check(options.out)
     if options.reference:
-        check_is_not_read(difference, files_read(options))
+        replacing.check(difference)
     state = state_from(options, all_lights=False)
     if state.view.lobe_view and options.out.suffix.lower() == ".exr":
         raise UsageError(

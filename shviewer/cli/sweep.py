@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 
-from shviewer.cli.from_options import files_read, state_from
+from shviewer.cli.from_options import replacing_of, state_from
 from shviewer.cli.notes import print_notes, print_verdict
 from shviewer.cli.options import DEFAULT_SWEEP
 from shviewer.cli.status_line import status_line
 from shviewer.errors import UsageError
-from shviewer.files import check_is_not_read
 from shviewer.viewer.animation.animation import (
     ENCODERS,
     TURN_FRAMES,
@@ -26,7 +25,6 @@ def run(options: argparse.Namespace) -> int:
     _check_sweep(options)
     if options.out.suffix.lower() not in ENCODERS:
         raise UsageError(f"{options.out}: OUT must end in {' or '.join(ENCODERS)}")
-    check_is_not_read(options.out, files_read(options))
     state = state_from(options, all_lights=False)
     if options.turntable:
         frames = TURN_FRAMES if options.frames is None else options.frames
@@ -36,6 +34,7 @@ def run(options: argparse.Namespace) -> int:
         last = DEFAULT_SWEEP[1] if options.last is None else options.last
         animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
     composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
+    replacing_of(options).check(options.out)
     with status_line() as line:
         picture = save_animation(
             animation,
