@@ -178,8 +178,16 @@ class Replacing:
             raise OutputError(f"{path}: exists, and shviewer did not write it; write another file, or --force")
 
 
-OURS = (b"shviewer", "shviewer".encode("utf-32-le"), b'"world_from_view"')
-"""Bytes of which each file of this program has some within OURS_BYTES of one of its ends; the second is that of NPZ."""
+ANYTHING = Replacing(force=True)
+"""The rule of a caller who knows what is there."""
+
+OURS = (
+    b"shviewer-coefficients",
+    "shviewer-coefficients".encode("utf-32-le"),  # in an NPZ
+    b"shviewer\0",  # the key of the stamp in a PNG, the attribute in an EXR
+    b'"world_from_view"',  # a key of that stamp, the comment of a GIF and the description of a WebP
+)
+"""Bytes of the stamps: each file of this program has some of them within OURS_BYTES of one of its ends."""
 
 OURS_BYTES = 2**16
 

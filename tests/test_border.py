@@ -11,17 +11,25 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import shviewer
+from shviewer.analysis import projections
+from shviewer.analysis.cache import MEMORY
+from shviewer.benchmark.page.document import read_report
+from shviewer.cli import project
 from shviewer.cli.main import main
 from shviewer.coefficients.numbers import plain_numbers
 from shviewer.coefficients.reading import read_coefficients
 from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
 from shviewer.files import DEBUG, write_atomically
+from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.reference import compare_with_reference
+from shviewer.viewer.state import state_of
 from shviewer.words import MOST_CHARACTERS, one_line
 
 NINE = np.arange(27.0).reshape(9, 3)
@@ -174,10 +182,61 @@ def test_a_name_that_a_folder_holds_is_not_run(tmp_path: Path, monkeypatch: pyte
     assert Path("ran").exists()
 
 
-def test_a_reference_is_opened_as_what_it_is_named(tmp_path: Path) -> None:
+def test_code_that_is_dropped_is_not_run(tmp_path: Path) -> None:
+    (tmp_path / "evil.py").write_text("raise SystemExit('ran')\n")
+    session = Session(state_of())
+    session.drop(f"{tmp_path / 'evil.py'}:f")
+    session.prepare()
+    assert session.state.recipe.light == "green"
+    assert "code runs only when the command line names it" in session.state.view.message
+
+
+def test_a_batch_says_which_lights_are_code(nine: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("mine.py").write_text("def f(d): return d[:, 2]\n")
+    assert main(["project", "mine.py:f", "green", "-o", "."]) == 0
+    assert "note: mine.py:f: runs the code in mine.py" in capsys.readouterr().err
+
+
+# --- a fault of this program
+
+
+def test_a_fault_of_this_program_keeps_the_last_picture(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    session = Session(state_of())
+    monkeypatch.setattr("shviewer.viewer.desktop.session.prepare", lambda *_, **__: 1 // 0)
+    session.press("Up")
+    session.prepare()
+    assert session.picture.light.name == "green"
+    assert session.state.view.message.startswith("internal error, see the terminal")
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+def test_a_fault_of_this_program_fails_one_light_of_a_batch(
+    nine: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    right = project.project_recipe
+    monkeypatch.setattr(project, "project_recipe", lambda recipe: 1 // (recipe.light != "cosine") and right(recipe))
+    assert main(["project", "cosine", "green", "-o", "out"]) == 1
+    assert [path.name for path in Path("out").iterdir()] == ["green.json"]
+    assert "cosine: internal error, ZeroDivisionError" in capsys.readouterr().err
+
+
+def test_without_a_display_a_second_picture_takes_the_next_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delitem(ENVIRONMENT, variable, raising=False)
+    assert run(["green"]) == run(["green"]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["shviewer-green-001.png", "shviewer-green.png"]
+
+
+@pytest.mark.parametrize("kind", ["BMP", "EPS"])
+def test_a_reference_is_opened_as_what_it_is_named(tmp_path: Path, kind: str) -> None:
     """Pillow hands PostScript to Ghostscript, whatever its name is."""
     path = tmp_path / "reference.png"
-    path.write_bytes(b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 10 10\n%%EndComments\nshowpage\n%%EOF\n")
+    Image.new("RGB", (2, 2)).save(path, kind)
     with pytest.raises(UsageError, match="not a readable picture"):
         compare_with_reference(np.zeros((2, 2, 3), np.uint8), path, tmp_path / "d.png", 0)
 
@@ -221,8 +280,21 @@ def test_a_parser_shows_its_traceback_on_request(tmp_path: Path, monkeypatch: py
 def test_comments_take_time_in_proportion_to_their_length() -> None:
     """A pattern that looks for the end of each comment took 5 s for 60 kB of comments that never end."""
     with pytest.raises(LightError, match="is no number"):
-        plain_numbers("/*" * 2**20)
+        plain_numbers("/*x" * 2**20)
     assert plain_numbers("1 /* 2 */ 3 // 4\n5 # 6\n/* 7\n8 */ 9").tolist() == [1, 3, 5, 9]
+
+
+def test_many_keys_take_time_in_proportion_to_their_number(tmp_path: Path) -> None:
+    path = tmp_path / "keys.json"
+    path.write_text("{" + ", ".join(f'"k{number}": 0' for number in range(200_000)) + ', "k199999": 0}')
+    with pytest.raises(LightError, match="'k199999' stands there twice"):
+        read_coefficients(path, "shviewer")
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="there is no /dev/zero")
+def test_a_device_is_no_report_to_compare_with() -> None:
+    with pytest.raises(UsageError, match="only a regular file is read"):
+        read_report(Path("/dev/zero"))
 
 
 # --- text from outside
@@ -251,6 +323,19 @@ def test_text_from_outside_is_one_short_line_without_escapes() -> None:
 def test_an_array_that_is_no_radiance_is_refused_in_words(array: np.ndarray, says: str) -> None:
     with pytest.raises(ShviewerError, match=says):
         shviewer.project(array)
+
+
+def test_a_light_that_is_forgotten_meanwhile_is_projected_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another thread may read it again, which makes the memory forget what was measured."""
+    right = projections._measure
+
+    def measured_and_forgotten(*arguments: Any) -> None:
+        right(*arguments)
+        MEMORY.clear()
+
+    monkeypatch.setattr(projections, "_measure", measured_and_forgotten)
+    MEMORY.clear()
+    assert shviewer.project("green", 4).coefficients.shape == (16, 3)
 
 
 def test_sixteen_threads_project_what_one_does() -> None:

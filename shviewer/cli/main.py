@@ -65,7 +65,8 @@ def _run(arguments: list[str]) -> int:
         return OutputError.exit_code
 
 
-STDOUT_FAILS = (errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EFBIG) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
+STDOUT_FAILS = (errno.ENOSPC, errno.EIO, errno.EFBIG)
+"""What a full or broken place behind stdout says; any other OSError without a file name is a fault of this program."""
 
 
 class Ended(BaseException):

@@ -24,14 +24,12 @@ from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, ShviewerError, UsageError
-from shviewer.files import Replacing, file_stem, write_atomically
+from shviewer.files import ANYTHING, Replacing, file_stem, write_atomically
 from shviewer.lights.find import split_light
 from shviewer.words import counted, one_line
 
 STDOUT = "-"
 BATCH_FAILED = 1
-
-NOTHING_READ = Replacing()
 
 ROUNDING = 1e-6
 """A minimum below zero by no more than this share of the largest coefficient counts as zero."""
@@ -67,8 +65,8 @@ def run(options: argparse.Namespace) -> int:
     lights = options.lights or ["green"]
     with status_line() as line:
         show = line.show if line else None
-        replacing = replacing_of(options)
-        return project_lights(lights, options.output, options.format, convention, recipe_of, show, replacing)
+        kind, replacing = options.format, replacing_of(options)
+        return project_lights(lights, options.output, kind, convention, recipe_of, show, replacing)
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
@@ -111,7 +109,7 @@ def project_lights(
     convention: Convention,
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None = None,
-    replacing: Replacing = NOTHING_READ,
+    replacing: Replacing = ANYTHING,
 ) -> int:
     """Project and write; return the exit code. status: shows a line of progress, or clears it for "".
 
@@ -139,11 +137,11 @@ def project_lights(
     if path.is_dir():
         projected = _noted(light, recipe_of, convention)
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
+        replacing.check(path)
     else:
         kind = _kind_of(path, kind)
         replacing.check(path)
         projected = _noted(light, recipe_of, convention)
-    replacing.check(path)
     write_atomically(path, projected.encode(convention, kind or "json"))
     radiance, irradiance = (_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
     print(

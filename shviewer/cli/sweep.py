@@ -34,7 +34,6 @@ def run(options: argparse.Namespace) -> int:
         last = DEFAULT_SWEEP[1] if options.last is None else options.last
         animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
     composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
-    replacing_of(options).check(options.out)
     with status_line() as line:
         picture = save_animation(
             animation,
@@ -42,6 +41,7 @@ def run(options: argparse.Namespace) -> int:
             options.out,
             overlay=not options.no_overlay,
             progress=line.fraction if line else None,
+            replacing=replacing_of(options),
         )
     print_notes(picture.subject)
     print_verdict(state.recipe)

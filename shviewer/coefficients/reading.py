@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -148,7 +149,7 @@ def _read_json(data: bytes) -> tuple[NDArray[Any], Stamp]:
 def _no_key_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):
-        twice = next(key for number, (key, _) in enumerate(pairs) if key in dict(pairs[:number]))
+        twice, _ = Counter(key for key, _ in pairs).most_common(1)[0]
         raise LightError(f"the key {twice!r} stands there twice; keep one of them")
     return found
 
@@ -159,15 +160,11 @@ def _no_constant(name: str) -> float:
 
 def _read_csv(data: bytes) -> tuple[NDArray[Any], Stamp]:
     """Read a CSV file. A header names the columns; without one there are three: red, green and blue."""
-    with decoding("CSV"):
-        return _csv_table(_text(data))
-
-
-def _csv_table(text: str) -> tuple[NDArray[Any], Stamp]:
+    text = _text(data)
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     if not lines:
         raise LightError("no rows; a CSV file has n^2 rows of red, green, blue")
-    header = [cell.strip().lower() for cell in next(csv.reader(lines[:1]))]
+    header = [cell.strip().lower() for cell in _cells(lines[:1])[0]]
     if not any(re.fullmatch(r"[A-Za-z][\w-]*", cell) and cell not in ("nan", "inf", "infinity") for cell in header):
         numbers = plain_numbers(text)
         return numbers.reshape(len(lines), -1) if _even(lines, numbers.size) else numbers, _comments(text)
@@ -175,7 +172,7 @@ def _csv_table(text: str) -> tuple[NDArray[Any], Stamp]:
     if missing := [name for name in CHANNELS if name not in wanted]:
         raise LightError(f"no column {' and no column '.join(missing)}; the header must name red, green and blue")
     rows = []
-    for number, row in enumerate(csv.reader(lines[1:]), 1):
+    for number, row in enumerate(_cells(lines[1:]), 1):
         if len(row) != len(header):
             raise LightError(f"row {number} has {len(row)} cells, the header {len(header)}: complete it")
         if number > MAX_NUMBERS:
@@ -184,6 +181,11 @@ def _csv_table(text: str) -> tuple[NDArray[Any], Stamp]:
         if len(rows[-1]) != len(wanted):
             raise LightError(f"row {number} lacks a number: complete it")
     return np.array(rows), _comments(text)
+
+
+def _cells(lines: list[str]) -> list[list[str]]:
+    with decoding("CSV"):
+        return list(csv.reader(lines))
 
 
 def _in_order(columns: list[str]) -> list[str]:

@@ -30,7 +30,11 @@ class Binding(NamedTuple):
 
 def _each(action: Callable[[State, T], State], values: Mapping[str, T]) -> dict[str, Callable[[State], State]]:
     """What keys do that share an action: each gives it a value of its own."""
-    return {key: lambda state, value=value: action(state, value) for key, value in values.items()}  # type: ignore[misc]
+
+    def with_value(value: T) -> Callable[[State], State]:
+        return lambda state: action(state, value)
+
+    return {key: with_value(value) for key, value in values.items()}
 
 
 BINDINGS: dict[str, tuple[Binding, ...]] = {

@@ -239,12 +239,12 @@ def test_a_bad_sweep_is_one_line_before_anything_is_drawn(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("shviewer.viewer.animation.animation.headless_renderer", None)  # it would be called to draw
     (tmp_path / "folder.gif").mkdir()
-    (tmp_path / "a.gif").write_text("kept of shviewer")
+    (tmp_path / "a.gif").write_text("kept")
     found, line = failing(capsys, "sweep", *arguments)
     assert found == code
     assert all(word in line for word in words), line
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gif", "folder.gif"]
-    assert (tmp_path / "a.gif").read_text() == "kept of shviewer"
+    assert (tmp_path / "a.gif").read_text() == "kept"
 
 
 @pytest.mark.parametrize("mode", [["screenshot", "a.png"], ["sweep", "a.gif"]])

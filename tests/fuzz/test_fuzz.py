@@ -123,7 +123,9 @@ def image(height=4, width=12, value=1.0, dtype=np.float32):
 
 def refusing(message):
     def refuse():
-        raise LightError(message)
+        error = LightError("")
+        error.args = (message,)  # past what makes every message safe
+        raise error
 
     return refuse
 
@@ -138,6 +140,8 @@ def test_an_honest_reader_is_cleared(judged):
     [
         (lambda: 1 // 0, "ZeroDivisionError"),
         (refusing("damaged"), "refused with 'damaged'"),
+        (refusing("flat.hdr: \x1b[2J"), "refused with"),
+        (refusing("flat.hdr: " + "damaged " * 200), "refused with"),
         (lambda: image(value=np.nan), "not finite"),
         (lambda: image(dtype=np.float64), "float64"),
         (lambda: image(width=11), "(4, 11) where the file declares {(4, 12)}"),

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from shviewer.benchmark.row import Row
-from shviewer.errors import UsageError
+from shviewer.errors import LightError, UsageError
+from shviewer.files import read_bytes
+from shviewer.limits import DEFAULT_LIMITS
 
 SCHEMA = "shviewer-report/1"
 
@@ -68,9 +70,9 @@ def _lines(parts: list[str]) -> str:
 def read_report(path: Path) -> Report:
     """A report.json that this program wrote. UsageError if it cannot be read, or is of another kind or schema."""
     try:
-        page = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror or error}; name a report.json") from error
+        page = json.loads(read_bytes(path, DEFAULT_LIMITS).decode())
+    except LightError as error:
+        raise UsageError(f"{path}: cannot be read: {error}; name a report.json") from error
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{path}: not JSON: {error}; name a report.json") from error
     schema = page.get("schema") if isinstance(page, dict) else None

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import UsageError
-from shviewer.files import check_place, write_atomically
+from shviewer.files import ANYTHING, Replacing, check_place, write_atomically
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.actions import step_sweep, with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
@@ -110,6 +110,7 @@ def save_animation(
     *,
     overlay: bool = True,
     progress: Progress | None = None,
+    replacing: Replacing = ANYTHING,
 ) -> Picture:
     """Draw all frames without a window and write `out`, .gif or .webp; return the picture that the description tells.
 
@@ -127,6 +128,7 @@ def save_animation(
         )
     check_place(out)
     portrait = prepare(animation.portrait)
+    replacing.check(out)
     with headless_renderer() as renderer:
         tell = _Teller(animation, count * times_drawn, progress)
 

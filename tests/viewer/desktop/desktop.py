@@ -186,3 +186,17 @@ def screenshot(folder: Path, *arguments: str) -> np.ndarray:
     )
     with Image.open(out) as image:
         return np.asarray(image.convert("RGB"))
+
+
+def output_of(display: str, script: str, *arguments: str) -> str:
+    """What a Python script prints on a display; it must end well."""
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout

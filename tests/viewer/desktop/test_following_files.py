@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from itertools import pairwise
@@ -14,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lights.images.hdr_files import exr_file, hdr_file, random_texels
-from viewer.desktop.desktop import PATIENCE, Viewer, screenshot
+from viewer.desktop.desktop import Viewer, output_of, screenshot
 
 from shviewer.viewer.desktop.session import LOOK_SECONDS
 
@@ -258,16 +255,8 @@ def test_the_file_that_is_shown_can_be_dropped_again_and_is_decoded_apart_from_t
     for level in (1, 2, 3):
         contents.append(tmp_path / f"content-{level}")
         contents[-1].write_bytes(open_exr(level))
-    done = subprocess.run(
-        [sys.executable, "-c", DROP_SCRIPT, str(tmp_path / "mine.exr"), *map(str, contents)],
-        env={**os.environ, "DISPLAY": display},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=PATIENCE,
-    )
-    assert done.returncode == 0, done.stderr
-    second, third, isolated = done.stdout.splitlines()
+    printed = output_of(display, DROP_SCRIPT, str(tmp_path / "mine.exr"), *map(str, contents))
+    second, third, isolated = printed.splitlines()
     assert second.split("|")[0] == third.split("|")[0] == "reloaded mine"
     assert second != third
     assert isolated == "[False, True, True, False]"  # the first is trusted, as is what is built in

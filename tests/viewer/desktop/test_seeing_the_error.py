@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from viewer.desktop.desktop import PATIENCE, Viewer, screenshot
+from viewer.desktop.desktop import PATIENCE, Viewer, output_of, screenshot
 
 Start = Callable[..., Viewer]
 
@@ -118,16 +118,8 @@ print(json.dumps(said))
 
 
 def window_says(display: str, *arguments: str) -> dict[str, object]:
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, *arguments],
-        env={**os.environ, "DISPLAY": display},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=PATIENCE,
-    )
-    assert done.returncode == 0, done.stderr
-    said = json.loads(done.stdout)
+    printed = output_of(display, SCRIPT, *arguments)
+    said = json.loads(printed)
     assert isinstance(said, dict)
     return said
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from viewer.desktop.desktop import PATIENCE, Viewer, screenshot
+from viewer.desktop.desktop import PATIENCE, Viewer, output_of, screenshot
 
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
 
@@ -181,15 +178,8 @@ def test_a_dropped_file_opens_and_a_bad_one_leaves_the_present_light_and_says_wh
     good, bad = tmp_path / "mine.toml", tmp_path / "broken.hdr"
     good.write_text('[[lobe]]\nprofile = "constant"\nradiance = 2\n')
     bad.write_text("no image")
-    done = subprocess.run(
-        [sys.executable, "-c", DROP_SCRIPT, str(good), str(bad), str(tmp_path / "gone.toml"), "sun-sky"],
-        env={**os.environ, "DISPLAY": display},
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=PATIENCE,
-    )
-    said = [[part.strip() for part in line.split("|")] for line in done.stdout.splitlines()]
+    printed = output_of(display, DROP_SCRIPT, str(good), str(bad), str(tmp_path / "gone.toml"), "sun-sky")
+    said = [[part.strip() for part in line.split("|")] for line in printed.splitlines()]
     names, messages = zip(*said, strict=True)
     assert names == ("mine", "mine", "mine", "sun-sky")
     assert "broken.hdr" in messages[1]
@@ -211,16 +201,9 @@ with window.open_window((640, 320)) as handle:
 
 
 def test_a_sweep_to_a_state_that_cannot_be_shown_ends_there_and_says_why(display: str) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", REFUSED_SWEEP_SCRIPT],
-        env={**os.environ, "DISPLAY": display},
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=PATIENCE,
-    )
-    assert done.stdout.startswith("32 None ")
-    assert "dering" in done.stdout
+    printed = output_of(display, REFUSED_SWEEP_SCRIPT)
+    assert printed.startswith("32 None ")
+    assert "dering" in printed
 
 
 def test_an_idle_window_costs_under_one_percent_of_a_core(start: Start) -> None:
@@ -293,13 +276,5 @@ with window.open_window((320, 160)) as handle:
 
 def test_keys_between_two_frames_leave_neither_an_old_title_nor_what_opengl_cannot_hold(display: str) -> None:
     """T makes the picture before the frame does, so that the frame finds nothing new."""
-    done = subprocess.run(
-        [sys.executable, "-c", TWO_KEYS_SCRIPT],
-        env={**os.environ, "DISPLAY": display},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=PATIENCE,
-    )
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines() == ["shviewer - constant", "shviewer - constant|constant|a map too large"]
+    printed = output_of(display, TWO_KEYS_SCRIPT)
+    assert printed.splitlines() == ["shviewer - constant", "shviewer - constant|constant|a map too large"]
