@@ -104,7 +104,7 @@ GOOD = json.loads(report(row()).as_json())
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("", "not JSON"),
+        ("", "an empty file"),
         ("[" * 100_000, "not JSON"),
         ("[]", "schema is None"),
         ("{}", "schema is None"),
@@ -125,7 +125,7 @@ def test_what_is_no_report_is_refused_in_one_line(tmp_path: Path, text: str, say
 
 
 def test_a_missing_report_is_refused_in_one_line(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="cannot be read: No such file or directory; name a report"):
+    with pytest.raises(UsageError, match="cannot be read: no such file; check the path; name a report"):
         read_report(tmp_path / "old.json")
     with pytest.raises(UsageError, match="cannot be read"):
         read_report(tmp_path)
