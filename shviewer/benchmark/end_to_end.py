@@ -10,7 +10,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import moderngl
@@ -18,8 +18,8 @@ import moderngl
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.recipe import Recipe
 from shviewer.benchmark.hard_cases.shader import Shader
-from shviewer.benchmark.row import Row, not_measured, timed
-from shviewer.benchmark.timing import Timing, summarise, time_interleaved
+from shviewer.benchmark.row import Row, not_measured
+from shviewer.benchmark.timing import Timing, Work, summarise, time_interleaved
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composition import compose
 from shviewer.viewer.desktop.session import Session
@@ -88,8 +88,6 @@ except GraphicsError as error:
 """
 """A program that prints the share of one core that its window takes, each second, once two frames are drawn."""
 
-Work = Callable[[], object]
-
 
 def process_rows(
     text: str, name: str, drawing: Shader | str, *, budget: float, at_most: float = math.inf, at_least: int = 5
@@ -135,10 +133,10 @@ def session_rows(
             works[NEW_KEY, n_bands + 1] = works[KNOWN_KEY, n_bands + 1] = frames.press_up
 
         def before(work: tuple[str, int], repeat: int) -> None:
-            if work[0] != KNOWN_KEY:
-                MEMORY.clear()
             if work[0] == KNOWN_KEY:
                 prepare(changed(start, n_bands=work[1]))
+            else:
+                MEMORY.clear()
             if work[0] in (NEW_KEY, KNOWN_KEY):
                 frames.open(changed(start, n_bands=work[1] - 1))
 
@@ -154,12 +152,9 @@ def idle_row(seconds: int = IDLE_SECONDS, at_most: float = math.inf) -> Row | st
     """
     if at_most < seconds:
         return _row(IDLE, "green", Recipe.n_bands, None)
-    command = [sys.executable, "-c", WATCHED_WINDOW, str(seconds)]
     patience = PATIENCE + seconds
     try:
-        done = subprocess.run(
-            command, env=_environment(), capture_output=True, text=True, timeout=patience, check=False
-        )
+        done = _run("-c", WATCHED_WINDOW, str(seconds), patience=patience)
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"no window within {patience:g} s ({type(error).__name__})"
     if done.returncode:
@@ -205,24 +200,23 @@ class _Frames:
 
 def _process(*arguments: str) -> Work:
     """A run of the program, to be timed. GraphicsError if it fails."""
-    command = [sys.executable, "-m", "shviewer", *arguments]
 
     def run() -> None:
-        done = subprocess.run(
-            command, env=_environment(), capture_output=True, text=True, timeout=PATIENCE, check=False
-        )
+        done = _run("-m", "shviewer", *arguments)
         if done.returncode:
             raise GraphicsError(f"shviewer {' '.join(arguments)} ended with {done.returncode}: {done.stderr.strip()}")
 
     return run
 
 
-def _environment() -> dict[str, str]:
-    """The environment of the new processes, which may cache bytecode: a program is not compiled at every start."""
-    return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+def _run(*arguments: str, patience: float = PATIENCE) -> subprocess.CompletedProcess[str]:
+    """Run a new Python, which may cache bytecode: a program is not compiled at every start."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=patience, check=False)
 
 
 def _row(method: str, light: str, n_bands: int | None, timing: Timing | None) -> Row:
     if timing is None:
         return not_measured(SECTION, method, light, n_bands)
-    return Row(section=SECTION, method=method, light=light, n_bands=n_bands, **timed(timing), note=NOTES[method])
+    return Row(section=SECTION, method=method, light=light, n_bands=n_bands, **timing._asdict(), note=NOTES[method])

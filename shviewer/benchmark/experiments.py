@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,8 +42,7 @@ PAPER_SAMPLES = 10_000
 BEST, PAPER = "best", "jittered"
 
 
-@dataclass(frozen=True, eq=False)
-class Prepared:
+class Prepared(NamedTuple):
     """A projection that has been set up; `project`() -> (n_bands**2, 3) is timed."""
 
     project: Callable[[], Array]
@@ -50,26 +50,26 @@ class Prepared:
     """How often the light is evaluated; None if that is not known."""
 
 
+Prepare = Callable[[Light, int, int, int], Prepared]
+"""Light, number of samples, seed and bands -> the projection; a method ignores those it does not need."""
+
+
 @dataclass(frozen=True, eq=False)
 class Method:
-    """One way to project. `prepare` takes light, number of samples, seed and bands, and ignores those it does not need."""
+    """One way to project."""
 
     name: str
     """The name in the files and on the command line."""
     words: str
     """The name in tables."""
     explanation: str
-    prepare: Callable[[Light, int, int, int], Prepared]
+    prepare: Prepare
     applies: Callable[[Light], bool] = lambda light: True
     takes_samples: bool = True
     random: bool = False
     """Whether another seed gives another result."""
     points: Callable[[Light], int] = lambda light: 0
     """How many points a method without samples sums one by one; 0 if it is about as fast as the best way."""
-
-    def words_for(self, light_best: str) -> str:
-        """The name in tables; for the best way, the light's own name for it."""
-        return light_best if self.name == BEST else self.words
 
 
 def _best(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
@@ -103,25 +103,20 @@ def _function_evaluations(light: FunctionLight, n_bands: int) -> int:
     return count
 
 
-def _on_product(rule: Callable[[int], ProductRule]) -> Callable[[Light, int, int, int], Prepared]:
+def _on_product(rule: Callable[[int], ProductRule]) -> Prepare:
     def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
         points, integrand = rule(samples), light.integrand
-        count = len(points.theta) * points.n_columns
-        return Prepared(lambda: project_product(integrand, points, n_bands)[0], count)
+        return Prepared(lambda: project_product(integrand, points, n_bands)[0], len(points.theta) * points.n_columns)
 
     return prepare
 
 
-def _on_samples(choose: Callable[[int, int], DirectionSet]) -> Callable[[Light, int, int, int], Prepared]:
+def _on_samples(choose: Callable[[int, int], DirectionSet]) -> Prepare:
     def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
         chosen, integrand = choose(samples, seed), light.integrand
         return Prepared(lambda: project_samples(integrand, chosen, n_bands), len(chosen.weights))
 
     return prepare
-
-
-def _is_image(light: Light) -> bool:
-    return isinstance(light, EnvironmentLight)
 
 
 def lat_long_texels(light: Light) -> NDArray[np.float32] | None:
@@ -145,7 +140,7 @@ def _per_texel(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
     return Prepared(project, len(rows))
 
 
-def _reduced(factor: int) -> Callable[[Light, int, int, int], Prepared]:
+def _reduced(factor: int) -> Prepare:
     """Take means of factor x factor texels, which is part of the time, then their exact integrals."""
 
     def prepare(light: Light, samples: int, seed: int, n_bands: int) -> Prepared:
@@ -186,12 +181,7 @@ METHODS: tuple[Method, ...] = (
         "a lat-long grid with the weights that make it exact, summed separably",
         _on_product(fejer),
     ),
-    Method(
-        "fibonacci",
-        "Fibonacci",
-        "points on a spiral, of equal weight",
-        _on_samples(lambda n, seed: fibonacci(n)),
-    ),
+    Method("fibonacci", "Fibonacci", "points on a spiral, of equal weight", _on_samples(lambda n, _: fibonacci(n))),
     Method(
         PAPER,
         "jittered (paper)",
@@ -199,37 +189,19 @@ METHODS: tuple[Method, ...] = (
         _on_samples(jittered),
         random=True,
     ),
-    Method(
-        "random",
-        "plain random",
-        "independent random points",
-        _on_samples(uniform_random),
-        random=True,
-    ),
+    Method("random", "plain random", "independent random points", _on_samples(uniform_random), random=True),
     Method(
         "per-texel",
         "per texel",
         "the basis at every texel's centre, weighted by its solid angle",
         _per_texel,
-        _is_image,
+        lambda light: isinstance(light, EnvironmentLight),
         takes_samples=False,
         points=texel_count,
     ),
+    Method("half", "half resolution", "means of 2 x 2 texels first", _reduced(2), _divides(2), takes_samples=False),
     Method(
-        "half",
-        "half resolution",
-        "means of 2 x 2 texels first",
-        _reduced(2),
-        _divides(2),
-        takes_samples=False,
-    ),
-    Method(
-        "quarter",
-        "quarter resolution",
-        "means of 4 x 4 texels first",
-        _reduced(4),
-        _divides(4),
-        takes_samples=False,
+        "quarter", "quarter resolution", "means of 4 x 4 texels first", _reduced(4), _divides(4), takes_samples=False
     ),
 )
 

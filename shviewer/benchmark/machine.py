@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from shviewer.benchmark.timing import summarise, wall_milliseconds
+from shviewer.benchmark.timing import wall_milliseconds
 from shviewer.version import __version__
 
 PACKAGES = ("numpy", "moderngl", "glfw", "Pillow", "OpenEXR", "matplotlib")
@@ -71,9 +70,7 @@ def blas_threads() -> int | str:
     threads = [int(pool["num_threads"]) for pool in _pools() if pool.get("user_api") == "blas"]
     if threads:
         return max(threads)
-    return next(
-        (os.environ[name] for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS") if os.environ.get(name)), "default"
-    )
+    return os.environ.get("OPENBLAS_NUM_THREADS") or os.environ.get("OMP_NUM_THREADS") or "default"
 
 
 def _pools() -> list[dict[str, Any]]:
@@ -84,24 +81,12 @@ def _pools() -> list[dict[str, Any]]:
     return list(threadpoolctl.threadpool_info())
 
 
-@dataclass
-class Yardstick:
-    """A fixed piece of work, timed throughout a run: its time changes as much as the machine's speed does."""
+def yardstick() -> list[float]:
+    """Milliseconds of a fixed piece of work: timed throughout a run, they change as much as the machine's speed does."""
+    values = np.random.default_rng(0).random(50_000)
 
-    times: list[float] = field(default_factory=list)
+    def work() -> object:
+        return np.sort(np.sin(values))
 
-    def measure(self) -> None:
-        values = np.random.default_rng(0).random(50_000)
-
-        def work() -> object:
-            return np.sort(np.sin(values))
-
-        work()
-        self.times += [wall_milliseconds(work) for _ in range(3)]
-
-    def record(self) -> dict[str, float] | None:
-        """A summary of the times, in milliseconds; None if it was never measured."""
-        if not self.times:
-            return None
-        timing = summarise(self.times)
-        return {"median": timing.median, "low_quartile": timing.low_quartile, "high_quartile": timing.high_quartile}
+    work()
+    return [wall_milliseconds(work) for _ in range(3)]

@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
@@ -25,13 +26,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.benchmark.experiments import lat_long_texels
-from shviewer.benchmark.row import Row, not_measured, timed
-from shviewer.benchmark.timing import time_interleaved, wall_milliseconds
+from shviewer.benchmark.row import Row, not_measured
+from shviewer.benchmark.timing import Work, time_interleaved, wall_milliseconds
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import project_image
-from shviewer.harmonics.quadrature import DirectionSet, column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import DirectionSet, column_azimuths, directions_from_angles, jittered
 from shviewer.harmonics.scattered import project_values
+from shviewer.lights.find import find_light
 from shviewer.lights.light import Light
 
 SECTION = "peers"
@@ -49,13 +51,6 @@ SPHERICART_DEGREES = 87
 
 INSTALL = "pip install 'shviewer[bench]'"
 
-ImagePeer = Callable[[NDArray[np.float32], int], object]
-"""Image (height, width, 3), bands -> anything that holds the coefficients."""
-
-SamplePeer = Callable[[DirectionSet, Array, int], object]
-"""Samples, radiance (k, 3), bands -> anything that holds the coefficients."""
-
-
 Contest = tuple[str, int | None]
 """The library that projects, and the number of samples; None for the image."""
 
@@ -66,121 +61,87 @@ def texel_solid_angles(height: int, width: int) -> Array:
     return np.asarray((2 * np.sin(theta) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width)[:, None])
 
 
-def ducc_peer(dtype: type[np.floating[Any]]) -> ImagePeer:
+def ducc(ducc0: Any, image: NDArray[np.float32], n_bands: int, dtype: type[np.floating[Any]]) -> object:
     """ducc0's adjoint synthesis of the weighted image, which does not alias as its analysis does."""
-    ducc0 = import_module("ducc0")
-
-    def project(image: NDArray[np.float32], n_bands: int) -> object:
-        height, width = image.shape[:2]
-        planes = np.empty((3, 1, height, width), dtype)
-        np.multiply(np.moveaxis(image, 2, 0)[:, None], texel_solid_angles(height, width).astype(dtype), out=planes)
-        return [
-            ducc0.sht.adjoint_synthesis_2d(map=plane, spin=0, lmax=n_bands - 1, geometry="F1", nthreads=1)
-            for plane in planes
-        ]
-
-    return project
+    height, width = image.shape[:2]
+    planes = np.empty((3, 1, height, width), dtype)
+    np.multiply(np.moveaxis(image, 2, 0)[:, None], texel_solid_angles(height, width).astype(dtype), out=planes)
+    synthesis = partial(ducc0.sht.adjoint_synthesis_2d, spin=0, lmax=n_bands - 1, geometry="F1", nthreads=1)
+    return [synthesis(map=plane) for plane in planes]
 
 
-def shtns_peer() -> ImagePeer:
-    shtns = import_module("shtns")
-
-    @cache
-    def plan(height: int, width: int, n_bands: int) -> Any:
-        transform = shtns.sht(n_bands - 1, n_bands - 1, 1, shtns.sht_orthonormal)
-        transform.set_grid(height, width, flags=shtns.sht_reg_fast | shtns.SHT_PHI_CONTIGUOUS, polar_opt=0.0)
-        return transform
-
-    def project(image: NDArray[np.float32], n_bands: int) -> object:
-        transform = plan(*image.shape[:2], n_bands)
-        planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
-        return [transform.analys(plane) for plane in planes]
-
-    return project
+@cache
+def _shtns_plan(shtns: Any, height: int, width: int, n_bands: int) -> Any:
+    transform = shtns.sht(n_bands - 1, n_bands - 1, 1, shtns.sht_orthonormal)
+    transform.set_grid(height, width, flags=shtns.sht_reg_fast | shtns.SHT_PHI_CONTIGUOUS, polar_opt=0.0)
+    return transform
 
 
-def pyshtools_peer() -> ImagePeer:
-    expand = import_module("pyshtools.expand").SHExpandDH
-
-    def project(image: NDArray[np.float32], n_bands: int) -> object:
-        planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
-        return [expand(plane, norm=4, csphase=-1, sampling=2, lmax_calc=n_bands - 1) for plane in planes]
-
-    return project
+def shtns(library: Any, image: NDArray[np.float32], n_bands: int) -> object:
+    transform = _shtns_plan(library, *image.shape[:2], n_bands)
+    planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
+    return [transform.analys(plane) for plane in planes]
 
 
-def sphericart_peer(share: int = 1) -> ImagePeer:
+def pyshtools(expand: Any, image: NDArray[np.float32], n_bands: int) -> object:
+    planes = np.ascontiguousarray(np.moveaxis(image, 2, 0), dtype=np.float64)
+    return [expand.SHExpandDH(plane, norm=4, csphase=-1, sampling=2, lmax_calc=n_bands - 1) for plane in planes]
+
+
+@cache
+def _sphericart_basis(library: Any, n_bands: int) -> Any:
+    return library.SphericalHarmonics(n_bands - 1)
+
+
+def sphericart(library: Any, image: NDArray[np.float32], n_bands: int, share: int = 1) -> Array:
     """The basis by sphericart and a matrix product, block by block, over every `share`-th block of rows."""
-    sphericart = import_module("sphericart")
-
-    @cache
-    def basis(n_bands: int) -> Any:
-        return sphericart.SphericalHarmonics(n_bands - 1)
-
-    def project(image: NDArray[np.float32], n_bands: int) -> object:
-        height, width = image.shape[:2]
-        theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
-        solid_angle = texel_solid_angles(height, width)
-        step = max(1, SPHERICART_BLOCK // (width * n_bands**2))
-        found = np.zeros((n_bands**2, 3))
-        for row in range(0, height, step * share):
-            rows = slice(row, min(row + step, height))
-            directions = directions_from_angles(theta[rows, None], phi).reshape(-1, 3)
-            values = (image[rows] * solid_angle[rows, None]).reshape(-1, 3)
-            found += basis(n_bands).compute(directions).T @ values
-        return found
-
-    return project
+    height, width = image.shape[:2]
+    theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
+    solid_angle = texel_solid_angles(height, width)
+    step = max(1, SPHERICART_BLOCK // (width * n_bands**2))
+    found = np.zeros((n_bands**2, 3))
+    for row in range(0, height, step * share):
+        rows = slice(row, min(row + step, height))
+        directions = directions_from_angles(theta[rows, None], phi).reshape(-1, 3)
+        values = (image[rows] * solid_angle[rows, None]).reshape(-1, 3)
+        found += _sphericart_basis(library, n_bands).compute(directions).T @ values
+    return found
 
 
-def sphericart_samples_peer() -> SamplePeer:
+def sphericart_samples(library: Any, samples: DirectionSet, radiance: Array, n_bands: int) -> object:
     """The whole basis matrix by sphericart, then one matrix product."""
-    sphericart = import_module("sphericart")
-
-    @cache
-    def basis(n_bands: int) -> Any:
-        return sphericart.SphericalHarmonics(n_bands - 1)
-
-    def project(samples: DirectionSet, radiance: Array, n_bands: int) -> object:
-        return basis(n_bands).compute(samples.directions).T @ (radiance * samples.weights[:, None])
-
-    return project
+    basis = _sphericart_basis(library, n_bands).compute(samples.directions)
+    return basis.T @ (radiance * samples.weights[:, None])
 
 
-def scipy_samples_peer() -> SamplePeer:
+def scipy_samples(special: Any, samples: DirectionSet, radiance: Array, n_bands: int) -> object:
     """SciPy's complex harmonics of all degrees and orders; those of m >= 0 hold the real ones."""
-    harmonics = import_module("scipy.special").sph_harm_y_all
-
-    def project(samples: DirectionSet, radiance: Array, n_bands: int) -> object:
-        x, y, z = samples.directions.T
-        basis = harmonics(n_bands - 1, n_bands - 1, np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
-        weighted = radiance * samples.weights[:, None]
-        return basis[:, :n_bands].reshape(n_bands**2, -1) @ weighted
-
-    return project
+    x, y, z = samples.directions.T
+    basis = special.sph_harm_y_all(n_bands - 1, n_bands - 1, np.arctan2(np.hypot(x, y), z), np.arctan2(y, x))
+    return basis[:, :n_bands].reshape(n_bands**2, -1) @ (radiance * samples.weights[:, None])
 
 
-IMAGE_PEERS: dict[str, Callable[[], ImagePeer]] = {
-    "ducc0 f32": partial(ducc_peer, np.float32),
-    "ducc0 f64": partial(ducc_peer, np.float64),
-    "shtns": shtns_peer,
-    "pyshtools": pyshtools_peer,
-    "sphericart": sphericart_peer,
+Peers = dict[str, tuple[str, Callable[..., object]]]
+"""Name -> the module to import, and the function that projects with it."""
+
+IMAGE_PEERS: Peers = {
+    "ducc0 f32": ("ducc0", partial(ducc, dtype=np.float32)),
+    "ducc0 f64": ("ducc0", partial(ducc, dtype=np.float64)),
+    "shtns": ("shtns", shtns),
+    "pyshtools": ("pyshtools.expand", pyshtools),
+    "sphericart": ("sphericart", sphericart),
 }
-SAMPLE_PEERS: dict[str, Callable[[], SamplePeer]] = {
-    "sphericart": sphericart_samples_peer,
-    "SciPy": scipy_samples_peer,
-}
+SAMPLE_PEERS: Peers = {"sphericart": ("sphericart", sphericart_samples), "SciPy": ("scipy.special", scipy_samples)}
 
 
-def available(makers: dict[str, Callable[[], Any]], missing: Callable[[str, str], object]) -> dict[str, Any]:
-    """The peers that are installed; `missing` is told the name and the module of every other one."""
-    found = {}
-    for name, make in makers.items():
+def available(peers: Peers, missing: list[str]) -> dict[str, Callable[..., object]]:
+    """The functions of the peers that are installed; `missing` gets a line on every other one."""
+    found: dict[str, Callable[..., object]] = {}
+    for name, (module, project) in peers.items():
         try:
-            found[name] = make()
+            found[name] = partial(project, import_module(module))
         except ImportError as error:
-            missing(name, error.name or str(error))
+            missing.append(f"{name}: {error.name or error} is not installed")
     return found
 
 
@@ -204,13 +165,9 @@ def peer_rows(lights: Sequence[str], bands: Sequence[int], budget: float, seed: 
 
 def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: int) -> dict[str, list[Any]]:
     """Measure in this process, with however many threads it has: {"rows": dictionaries, "missing": lines}."""
-    from shviewer.harmonics.quadrature import jittered
-    from shviewer.lights.find import find_light
-
     missing: list[str] = []
-    images = available(IMAGE_PEERS, lambda name, module: missing.append(f"{name}: {module} is not installed"))
-    scattered = available(SAMPLE_PEERS, lambda name, module: missing.append(f"{name}: {module} is not installed"))
-    rows = []
+    images, scattered = available(IMAGE_PEERS, missing), available(SAMPLE_PEERS, missing)
+    rows: list[Row] = []
     share = budget / max(1, len(lights) * len(bands))
     for number, light in enumerate(map(find_light, lights)):
         samples = jittered(SCATTERED_SAMPLES, seed)
@@ -221,44 +178,32 @@ def measure(lights: Sequence[str], bands: Sequence[int], budget: float, seed: in
             if number == 0:  # samples are alike for every light
                 works |= _on_samples(samples, radiance, n_bands, scattered)
             first: dict[Contest, float] = {}
-            for contest, work in list(works.items()):
-                where = f"{contest[0]}, {light.name}, {n_bands} bands"
-                if contest in too_slow:
-                    missing.append(f"{where}: too slow for the budget with fewer bands")
-                    rows.append(not_measured(SECTION, contest[0], light.name, n_bands, contest[1]).as_dict())
-                    del works[contest]
-                    continue
-                try:
-                    first[contest] = wall_milliseconds(work)
-                except Exception as error:  # a peer may raise anything for a size that it does not take
-                    missing.append(f"{where}: {type(error).__name__}: {error}")
-                    del works[contest]
-                    continue
-                if first[contest] > 1000 * share / 8:
-                    missing.append(
-                        f"{where}: too slow for the budget, one run takes about {first[contest] / 1000:.1g} s"
-                    )
+            for contest, work in works.items():
+                where, says = f"{contest[0]}, {light.name}, {n_bands} bands", " with fewer bands"
+                if contest not in too_slow:
+                    try:
+                        first[contest] = wall_milliseconds(work)
+                    except Exception as error:  # a peer may raise anything for a size that it does not take
+                        missing.append(f"{where}: {type(error).__name__}: {error}")
+                        continue
+                    if first[contest] <= 1000 * share / 8:
+                        continue
+                    says = f", one run takes about {first.pop(contest) / 1000:.1g} s"
                     too_slow.add(contest)
-                    rows.append(not_measured(SECTION, contest[0], light.name, n_bands, contest[1]).as_dict())
-                    del works[contest]
-            for contest, timing in time_interleaved(works, budget=share, warm_up=False).items():
-                row = Row(
-                    section=SECTION,
-                    light=light.name,
-                    method=contest[0],
-                    n_bands=n_bands,
-                    samples=contest[1],
-                    **timed(timing),
-                    set_up_milliseconds=max(0.0, first[contest] - timing.median),
-                    note="samples with their radiance" if contest[1] else "image",
-                )
-                rows.append(row.as_dict())
-    return {"rows": rows, "missing": missing}
+                missing.append(f"{where}: too slow for the budget{says}")
+                rows.append(not_measured(SECTION, contest[0], light.name, n_bands, contest[1]))
+            running = {contest: works[contest] for contest in first}
+            for contest, timing in time_interleaved(running, budget=share, warm_up=False).items():
+                row = Row(section=SECTION, light=light.name, method=contest[0], n_bands=n_bands, samples=contest[1])
+                set_up = max(0.0, first[contest] - timing.milliseconds)
+                note = "samples with their radiance" if contest[1] else "image"
+                rows.append(replace(row, **timing._asdict(), set_up_milliseconds=set_up, note=note))
+    return {"rows": [row.as_dict() for row in rows], "missing": missing}
 
 
 def _on_samples(
-    samples: DirectionSet, radiance: Array, n_bands: int, peers: dict[str, SamplePeer]
-) -> dict[Contest, Callable[[], object]]:
+    samples: DirectionSet, radiance: Array, n_bands: int, peers: dict[str, Callable[..., object]]
+) -> dict[Contest, Work]:
     """Our projection and the peers' for scattered samples whose radiance is known."""
     if n_bands > SPHERICART_DEGREES:
         return {}
@@ -269,7 +214,7 @@ def _on_samples(
     }
 
 
-def _on_image(light: Light, n_bands: int, peers: dict[str, ImagePeer]) -> dict[Contest, Callable[[], object]]:
+def _on_image(light: Light, n_bands: int, peers: dict[str, Callable[..., object]]) -> dict[Contest, Work]:
     """Our projection, in both precisions, and the peers' for a lat-long image; empty for another light."""
     texels = lat_long_texels(light)
     if texels is None:

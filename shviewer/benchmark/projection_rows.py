@@ -12,12 +12,13 @@ import tracemalloc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 
 from shviewer.benchmark.experiments import BEST, METHODS, PAPER, PAPER_SAMPLES, Method, Prepared
 from shviewer.benchmark.measured_lights import MeasuredLight
-from shviewer.benchmark.row import Row, not_measured, timed
+from shviewer.benchmark.row import Row, not_measured
 from shviewer.benchmark.timing import Timing, time_interleaved, wall_milliseconds
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import relative, squared_error
@@ -35,7 +36,7 @@ FILLING = 0.1
 """Seconds that a round may spend on more repeats of fast experiments."""
 
 Experiment = tuple[Method, int | None]
-Add = Callable[[list[Row]], object]
+"""A method, and its number of samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +83,7 @@ def measure(
     rounds: Sequence[Round],
     left: Callable[[], float],
     seed: int,
-    add: Add,
+    add: Callable[[list[Row]], object],
     tell: Callable[[str], object],
     filling: float = FILLING,
 ) -> None:
@@ -206,8 +207,7 @@ def forget_tables() -> None:
                     value.cache_clear()
 
 
-@dataclass(frozen=True)
-class Errors:
+class Errors(NamedTuple):
     """The relative errors of one projection: see Row."""
 
     error: float
@@ -234,8 +234,8 @@ def _row(round_: Round, experiment: Experiment, state: _Running, timing: Timing)
         n_bands=round_.n_bands,
         samples=samples,
         evaluations=state.prepared.evaluations,
-        **timed(timing),
-        set_up_milliseconds=max(0.0, state.cold - timing.median),
+        **timing._asdict(),
+        set_up_milliseconds=max(0.0, state.cold - timing.milliseconds),
         error=None if reference else float(np.median(errors)),
         error_low=min(errors) if method.random else None,
         error_high=max(errors) if method.random else None,

@@ -7,7 +7,7 @@ Both are relative to the norm of the light and so can be compared: where they me
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from time import perf_counter
@@ -16,10 +16,10 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.benchmark.hard_cases.shader import Shader
+from shviewer.benchmark.hard_cases.shader import Shader, in_blocks
 from shviewer.benchmark.measured_lights import MeasuredLight
-from shviewer.benchmark.row import Row, not_measured, timed
-from shviewer.benchmark.timing import Timing, time_interleaved, wall_milliseconds
+from shviewer.benchmark.row import Row, not_measured
+from shviewer.benchmark.timing import Timing, Work, time_interleaved, wall_milliseconds
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.limits import MAX_DIRECT_BANDS
@@ -37,7 +37,6 @@ BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
 FRAME = compose(1280, 640)
 MAP_SIZE = (1025, 2048)
 """Height and width of the maps that the CPU makes, and the largest that the shader draws from."""
-
 
 DIRECT, CACHED = "shader, direct sum", "shader, cached map"
 SCATTERED, BASIS = "CPU, scattered", "CPU, basis matrix"
@@ -58,14 +57,12 @@ NEAREST_RIM = 0.2
 MOST_DIRECTIONS, MOST_VALUES = 32_768, 2**20
 """The most directions, and the most values of their basis, in one timed run on the CPU."""
 
-BLOCK = 2048
 CHECKED = 512
 """The number of directions in which Synthesis is compared with the basis matrix."""
 
 SEED = 20_240_602
 
 Name = tuple[str, int]
-Work = Callable[[], object]
 
 
 def reconstruction_rows(
@@ -132,9 +129,10 @@ def _with_times(rows: dict[Name, Row], stages: dict[int, _Stage], times: dict[Na
     for (method, n_bands), row in sorted(rows.items(), key=lambda item: item[0][1]):
         timing = times[method, n_bands]
         runs_per_million = 1e6 / stages[n_bands].directions_of(method) if row.note == PER_MILLION else 1.0
-        low, middle, high = (t * runs_per_million for t in (timing.low_quartile, timing.median, timing.high_quartile))
-        set_up = times[MAKING, n_bands].median if method == CACHED else None
-        done.append(replace(row, **timed(Timing(middle, low, high, timing.repeats)), set_up_milliseconds=set_up))
+        middle, low, high = (each * runs_per_million for each in timing[:3])
+        set_up = times[MAKING, n_bands].milliseconds if method == CACHED else None
+        timed = Timing(middle, low, high, timing.repeats)
+        done.append(replace(row, **timed._asdict(), set_up_milliseconds=set_up))
     return done
 
 
@@ -160,21 +158,17 @@ class _Stage:
 
     def on_a_map(self) -> Picture:
         """The picture drawn from a map, however few bands it has."""
-        splines = self.synthesis.spline_map(*MAP_SIZE)
-        return replace(self.direct, drawn=SplineMap(splines))
+        return replace(self.direct, drawn=SplineMap(self.synthesis.spline_map(*MAP_SIZE)))
 
     def rows_of_map(self) -> Array:
         return self.synthesis.on_rows(np.linspace(0, np.pi, MAP_SIZE[0]), MAP_SIZE[1])
 
     def sum_at(self, directions: Array) -> Array:
         """The sum by Synthesis, in blocks: directions (k, 3) -> (k, 3)."""
-        return _in_blocks(
-            self.synthesis.in_directions,
-            directions,
-        )
+        return in_blocks(self.synthesis.in_directions, directions)
 
     def sum_by_basis(self, directions: Array) -> Array:
-        return _in_blocks(lambda d: evaluate_basis(d, self.n_bands) @ self.coefficients, directions)
+        return in_blocks(lambda part: evaluate_basis(part, self.n_bands) @ self.coefficients, directions)
 
     def directions_of(self, method: str) -> int:
         """The number of directions in one timed run."""
@@ -287,7 +281,3 @@ class _Frame:
             total += float(solid_angle @ (difference**2).sum(axis=1))
             weights += float(solid_angle.sum())
         return stage.relative(total / weights)
-
-
-def _in_blocks(function: Callable[[Array], Array], directions: Array) -> Array:
-    return np.concatenate([function(directions[i : i + BLOCK]) for i in range(0, len(directions), BLOCK)])

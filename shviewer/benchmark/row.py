@@ -7,9 +7,14 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from shviewer.benchmark.timing import Timing
 
-Key = tuple[str, str, str, int | None, int | None]
+def finite(value: Any) -> Any:
+    """The value; None for a number that is not finite, since JSON has no word for it."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+KINDS: Mapping[str, Any] = {"str": str, "int | None": int | None, "float | None": int | float | None}
+"""The values that a column of each type may have; JSON writes whole numbers without a point."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,13 +64,13 @@ class Row:
         return self.milliseconds is not None
 
     @property
-    def key(self) -> Key:
+    def key(self) -> tuple[str, str, str, int | None, int | None]:
         """The fields that are equal for the same measurement in different runs."""
         return self.section, self.light, self.method, self.n_bands, self.samples
 
     def as_dict(self) -> dict[str, Any]:
-        """Every column; numbers that are not finite become None, since JSON has no word for them."""
-        return {name: _finite(value) for name, value in asdict(self).items()}
+        """Every column; numbers that are not finite become None."""
+        return {name: finite(value) for name, value in asdict(self).items()}
 
     @classmethod
     def from_dict(cls, columns: Mapping[str, Any]) -> Row:
@@ -73,13 +78,7 @@ class Row:
         row = cls(**columns)
         for field in fields(cls):
             value = getattr(row, field.name)
-            if str(field.type) == "str":
-                good = isinstance(value, str)
-            elif "int" in str(field.type):
-                good = value is None or (isinstance(value, int) and not isinstance(value, bool))
-            else:
-                good = value is None or (isinstance(value, int | float) and not isinstance(value, bool))
-            if not good:
+            if isinstance(value, bool) or not isinstance(value, KINDS[str(field.type)]):
                 raise ValueError(f"{field.name} is {value!r}")
         return row
 
@@ -90,17 +89,3 @@ COLUMNS = tuple(field.name for field in fields(Row))
 def not_measured(section: str, method: str, light: str, n_bands: int | None, samples: int | None = None) -> Row:
     """A row for which there was no time."""
     return Row(section=section, method=method, light=light, n_bands=n_bands, samples=samples, note="not measured")
-
-
-def timed(timing: Timing) -> dict[str, Any]:
-    """The four columns that a timing fills: Row(..., **timed(timing))."""
-    return {
-        "milliseconds": timing.median,
-        "low_quartile": timing.low_quartile,
-        "high_quartile": timing.high_quartile,
-        "repeats": timing.repeats,
-    }
-
-
-def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -15,7 +15,7 @@ from shviewer.benchmark.front import sentences
 from shviewer.benchmark.machine import machine_record, versions
 from shviewer.benchmark.measured_lights import QUICK_TOLERANCES, TOLERANCES, MeasuredLight, find_measured_lights
 from shviewer.benchmark.options import SECTIONS, Options
-from shviewer.benchmark.page import writing
+from shviewer.benchmark.page import plots, writing
 from shviewer.benchmark.page.document import Report, read_report
 from shviewer.benchmark.sections import AGAINST, Run, measure_sections
 from shviewer.errors import OutputError
@@ -56,12 +56,13 @@ def write_report(
         lights={measured.name: _light_record(measured) for measured in found},
     )
     texts = [text for text in chosen if isinstance(text, str)]
-    run = Run(options, folder, report, writing.Page(found), texts, Clock(seconds, progress), before)
+    run = Run(options, folder, report, writing.Page(found), texts, seconds, Clock(seconds, progress), before)
     run.write()
     try:
-        measure_sections(run, seconds)
+        measure_sections(run)
         report.complete = True
-        _plots(run)
+        paths, run.page.plot_message = plots.make_plots(report.rows, folder)
+        run.page.plots += [path.name for path in paths]
     except BaseException:
         with suppress(OutputError):
             run.write()
@@ -70,15 +71,6 @@ def write_report(
     run.clock.finish()
     count = sum(row.measured for row in report.rows)
     return Summary(folder, (*writing.FILES, *run.page.plots), count, _summary(run), run.stability_failed)
-
-
-def _plots(run: Run) -> None:
-    """Draw the plots if matplotlib is installed; else the page has the line that installs it."""
-    from shviewer.benchmark.page.plots import make_plots
-
-    paths, message = make_plots(run.report.rows, run.folder)
-    run.page.plots += [path.name for path in paths]
-    run.page.plot_message = message
 
 
 def _light_record(measured: MeasuredLight) -> dict[str, object]:

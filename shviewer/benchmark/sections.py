@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from shviewer.benchmark import experiments, projection_rows
+from shviewer.benchmark import end_to_end, experiments, projection_rows
 from shviewer.benchmark.budget import Clock
+from shviewer.benchmark.front import where_bands_stop_paying
+from shviewer.benchmark.hard_cases import table as stability
 from shviewer.benchmark.hard_cases.shader import Shader, shader_or_reason
-from shviewer.benchmark.machine import Yardstick
+from shviewer.benchmark.machine import yardstick
 from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page import writing
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import Report
-from shviewer.benchmark.page.row_tables import lines_not_measured, rows_table
+from shviewer.benchmark.page.tables import lines_not_measured, rows_table
+from shviewer.benchmark.peers import INSTALL, peer_rows
+from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
 from shviewer.benchmark.row import Row
+from shviewer.benchmark.timing import summarise
 from shviewer.errors import UsageError
 
 PEER_BANDS = (3, 9, 16, 32)
@@ -38,52 +43,49 @@ class Run:
     page: writing.Page
     texts: list[str]
     """The LIGHTs that can be named to another process."""
+    seconds: Mapping[str, float]
+    """The sections wanted, and the time of each."""
     clock: Clock
     before: Report | None
-    yardstick: Yardstick = field(default_factory=Yardstick)
+    yardstick: list[float] = field(default_factory=list)
     stability_failed: bool = False
 
     def add(self, rows: Sequence[Row]) -> None:
         """Add rows, measured and not measured."""
         self.report.rows += rows
         if any(row.measured for row in rows):
-            self.yardstick.measure()
-        self.report.yardstick = self.yardstick.record()
+            self.yardstick += yardstick()
+            times = summarise(self.yardstick)
+            self.report.yardstick = {
+                "median": times.milliseconds,
+                "low_quartile": times.low_quartile,
+                "high_quartile": times.high_quartile,
+            }
         self.report.left_out = lines_not_measured(self.report.rows)
 
     def write(self) -> None:
         if self.before is not None and self.options.against is not None:
             lines = compare(self.before, self.report).as_markdown(self.options.against.name)
-            self.page.hosted = {AGAINST: "\n".join(lines)} | {
-                title: text for title, text in self.page.hosted.items() if title != AGAINST
-            }
+            self.page.hosted = {AGAINST: ""} | self.page.hosted | {AGAINST: "\n".join(lines)}  # it comes first
         writing.write(self.folder, self.report, self.page)
 
+    def measure(self, section: str, measured_by: Callable[..., None], *drawing: Shader | str) -> None:
+        """Measure a section, if it is wanted, and write what it found."""
+        if section in self.seconds:
+            self.clock.begin(section)
+            measured_by(self, *drawing)
+            self.write()
 
-def measure_sections(run: Run, seconds: dict[str, float]) -> None:
-    if "projection" in seconds:
-        run.clock.begin("projection")
-        _projection(run)
-        run.write()
-    if "peers" in seconds:
-        run.clock.begin("peers")
-        _peers(run, seconds["peers"])
-        run.write()
+
+def measure_sections(run: Run) -> None:
+    run.measure("projection", _projection)
+    run.measure("peers", _peers)
     with shader_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:
         if isinstance(drawing, Shader):
             run.report.renderer = drawing.version
-        if "reconstruction" in seconds:
-            run.clock.begin("reconstruction")
-            _reconstruction(run, drawing, seconds["reconstruction"])
-            run.write()
-        if "end to end" in seconds:
-            run.clock.begin("end to end")
-            _end_to_end(run, drawing, seconds["end to end"])
-            run.write()
-    if "hard cases" in seconds:
-        run.clock.begin("hard cases")
-        _stability(run)
-        run.write()
+        run.measure("reconstruction", _reconstruction, drawing)
+        run.measure("end to end", _end_to_end, drawing)
+    run.measure("hard cases", _stability)
 
 
 def _projection(run: Run) -> None:
@@ -97,11 +99,9 @@ def _projection(run: Run) -> None:
     projection_rows.measure(rounds, run.clock.left, run.options.seed, run.add, run.clock.tell)
 
 
-def _peers(run: Run, budget: float) -> None:
-    from shviewer.benchmark.peers import INSTALL, peer_rows
-
+def _peers(run: Run) -> None:
     try:
-        rows, missing = peer_rows(run.texts, PEER_BANDS, budget, run.options.seed)
+        rows, missing = peer_rows(run.texts, PEER_BANDS, run.seconds["peers"], run.options.seed)
     except UsageError as error:
         run.page.hosted["Peers"] = f"{error}."
         return
@@ -113,16 +113,17 @@ def _peers(run: Run, budget: float) -> None:
     run.page.hosted["Peers"] = "\n".join(lines)
 
 
-def _reconstruction(run: Run, drawing: Shader | str, budget: float) -> None:
-    from shviewer.benchmark.enough_bands import where_bands_stop_paying
-    from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
-
+def _reconstruction(run: Run, drawing: Shader | str) -> None:
+    kinds: dict[type, MeasuredLight] = {}
+    for measured in run.page.lights:
+        kinds.setdefault(type(measured.light), measured)
     quick = run.options.quick
-    chosen = _representative(run.page.lights)[: 1 if quick else 2]
+    chosen = list(kinds.values())[: 1 if quick else 2]  # the first light of each kind
     bands = QUICK_RECONSTRUCTED if quick else BANDS
     for number, measured in enumerate(chosen):
         run.clock.tell(measured.name)
-        filling, at_most = 0.5 * budget / len(chosen), run.clock.left() / (len(chosen) - number)
+        filling = 0.5 * run.seconds["reconstruction"] / len(chosen)
+        at_most = run.clock.left() / (len(chosen) - number)
         run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=bands))
     rows = [row for row in run.report.rows if row.section == "reconstruction"]
     lines = [
@@ -140,17 +141,7 @@ def _reconstruction(run: Run, drawing: Shader | str, budget: float) -> None:
     run.page.hosted["Reconstruction"] = "\n".join(lines)
 
 
-def _representative(lights: Sequence[MeasuredLight]) -> list[MeasuredLight]:
-    """The first light of each kind."""
-    kinds: dict[type, MeasuredLight] = {}
-    for measured in lights:
-        kinds.setdefault(type(measured.light), measured)
-    return list(kinds.values())
-
-
-def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
-    from shviewer.benchmark import end_to_end
-
+def _end_to_end(run: Run, drawing: Shader | str) -> None:
     text = run.texts[0] if run.texts else experiments.LIGHTS[0]
     name = run.page.lights[0].name if run.texts else text
     missing = [] if isinstance(drawing, Shader) else [f"pictures: nothing was drawn: {drawing}"]
@@ -158,8 +149,8 @@ def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
     parts = (("pictures", end_to_end.session_rows, 0.25), ("new processes", end_to_end.process_rows, 0.35))
     for what, rows_of, share in parts:
         run.clock.tell(what)
-        at_most = run.clock.left()
-        run.add(rows_of(text, name, drawing, budget=share * budget, at_most=at_most, at_least=at_least))
+        budget, at_most = share * run.seconds["end to end"], run.clock.left()
+        run.add(rows_of(text, name, drawing, budget=budget, at_most=at_most, at_least=at_least))
     if not run.options.quick and run.options.shader:
         run.clock.tell("an idle window")
         idle = end_to_end.idle_row(at_most=run.clock.left())
@@ -173,8 +164,6 @@ def _end_to_end(run: Run, drawing: Shader | str, budget: float) -> None:
 
 
 def _stability(run: Run) -> None:
-    from shviewer.benchmark import hard_cases as stability
-
     outcomes = stability.run(progress=run.clock.tell, shader=run.options.shader)
     run.stability_failed = not all(outcome.passed for outcome in outcomes)
     run.report.extra["stability"] = json.loads(stability.as_json(outcomes))

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass
 from time import perf_counter
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -16,11 +15,10 @@ Name = TypeVar("Name", bound=Hashable)
 Work = Callable[[], object]
 
 
-@dataclass(frozen=True)
-class Timing:
-    """The median and the quartiles of a number of repeats, in milliseconds."""
+class Timing(NamedTuple):
+    """The median and the quartiles of a number of repeats, in milliseconds, named as in a Row."""
 
-    median: float
+    milliseconds: float
     low_quartile: float
     high_quartile: float
     repeats: int

@@ -41,9 +41,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _hard_cases(options: argparse.Namespace) -> int:
-    from shviewer.benchmark import hard_cases
+    from shviewer.benchmark.hard_cases import table
 
     with status_line() as line:
-        outcomes = hard_cases.run(progress=line.show if line else None, shader=not options.no_shader)
-    print(hard_cases.as_text(outcomes))
+        outcomes = table.run(progress=line.show if line else None, shader=not options.no_shader)
+    print(table.as_text(outcomes))
     return 0 if all(outcome.passed for outcome in outcomes) else 1

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from helpers import unavailable
@@ -150,9 +149,10 @@ def row_of_an_idle_window(monkeypatch: pytest.MonkeyPatch) -> Row | str:
         return idle_row(1)
 
 
-def test_times_are_of_the_program_as_installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_times_are_of_the_program_as_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
-    assert "PYTHONDONTWRITEBYTECODE" not in end_to_end._environment()
+    code = "import os, sys; print('PYTHONDONTWRITEBYTECODE' in os.environ, sys.dont_write_bytecode)"
+    assert end_to_end._run("-c", code).stdout.split() == ["False", "False"]
 
 
 def test_a_window_is_not_opened_where_there_is_no_time_to_watch_it(monkeypatch: pytest.MonkeyPatch) -> None:

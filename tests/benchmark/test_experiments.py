@@ -11,7 +11,7 @@ import pytest
 from shviewer.benchmark import projection_rows
 from shviewer.benchmark.experiments import BEST, METHODS, Method, method
 from shviewer.benchmark.measured_lights import MeasuredLight, find_measured_lights, measured_light
-from shviewer.benchmark.page.row_tables import lines_not_measured
+from shviewer.benchmark.page.tables import lines_not_measured
 from shviewer.benchmark.projection_rows import Experiment, errors_of
 from shviewer.benchmark.row import Row, not_measured
 from shviewer.errors import UsageError

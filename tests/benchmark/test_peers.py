@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -14,13 +16,11 @@ from shviewer.harmonics.scattered import project_values
 
 
 def test_a_peer_that_is_not_installed_is_named_and_left_out() -> None:
-    def absent() -> peers.ImagePeer:
-        raise ImportError("no", name="absent_module")
-
-    named: list[tuple[str, str]] = []
-    found = peers.available({"one": lambda: 1, "other": absent}, lambda *names: named.append(names))
-    assert found == {"one": 1}
-    assert named == [("other", "absent_module")]
+    missing: list[str] = []
+    found = peers.available({"one": ("math", lambda module: module), "other": ("absent_module", print)}, missing)
+    assert list(found) == ["one"]
+    assert found["one"]() is math
+    assert missing == ["other: absent_module is not installed"]
 
 
 def test_ours_is_measured_beside_whatever_peers_there_are() -> None:
@@ -47,19 +47,19 @@ def test_what_is_too_slow_for_the_budget_is_a_row_that_says_so() -> None:
 
 
 def test_sphericart_on_samples_does_what_we_do() -> None:
-    pytest.importorskip("sphericart")
+    sphericart = pytest.importorskip("sphericart")
     samples = fibonacci(500)
     radiance = np.random.default_rng(0).normal(size=(500, 3))
-    theirs = np.asarray(peers.sphericart_samples_peer()(samples, radiance, 5))
+    theirs = np.asarray(peers.sphericart_samples(sphericart, samples, radiance, 5))
     ours = project_values(samples.directions, radiance * samples.weights[:, None], 5)
     assert np.abs(theirs) == pytest.approx(np.abs(ours), abs=1e-12)  # their phase is another
 
 
 def test_scipy_on_samples_does_what_we_do() -> None:
-    pytest.importorskip("scipy")
+    special = pytest.importorskip("scipy.special")
     samples = fibonacci(500)
     radiance = np.random.default_rng(0).normal(size=(500, 3))
-    theirs = np.asarray(peers.scipy_samples_peer()(samples, radiance, 5)).reshape(5, 5, 3)
+    theirs = np.asarray(peers.scipy_samples(special, samples, radiance, 5)).reshape(5, 5, 3)
     ours = project_values(samples.directions, radiance * samples.weights[:, None], 5)
     zonal = [int(np.flatnonzero(degrees(5) == l)[l]) for l in range(5)]
     assert theirs[:, 0].real == pytest.approx(ours[zonal], abs=1e-12)

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.page.plot_marks import DASHES, INCHES, LOOKS, STYLE, nice_ticks, plain
+from shviewer.benchmark.page.plot_marks import DASHES, INCHES, LOOKS, STYLE, nice_ticks
 from shviewer.benchmark.page.plots import (
     FLOOR,
     draw_time_error,
@@ -23,6 +23,7 @@ from shviewer.benchmark.page.plots import (
     make_plots,
     time_error_curves,
 )
+from shviewer.benchmark.page.tables import plain
 from shviewer.benchmark.reconstruction_rows import CACHED, DIRECT, PER_FRAME
 from shviewer.benchmark.row import Row
 

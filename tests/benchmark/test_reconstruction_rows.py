@@ -11,7 +11,7 @@ import pytest
 from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projections import BEST
 from shviewer.benchmark import reconstruction_rows as module
-from shviewer.benchmark.enough_bands import where_bands_stop_paying
+from shviewer.benchmark.front import where_bands_stop_paying
 from shviewer.benchmark.hard_cases.shader import Shader
 from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
 from shviewer.benchmark.reconstruction_rows import (

@@ -18,6 +18,7 @@ from __future__ import annotations
 import os
 import sys
 import tracemalloc
+from collections.abc import Callable
 from functools import partial
 from time import perf_counter
 
@@ -26,7 +27,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = os.environ[
 import numpy as np
 from measure import machine, medians
 
-from shviewer.benchmark.peers import IMAGE_PEERS, ImagePeer, available, sphericart_peer, texel_solid_angles
+from shviewer.benchmark.peers import IMAGE_PEERS, available, texel_solid_angles
 from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_image, project_product
@@ -35,6 +36,8 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import degrees_and_orders, series_by_parity, theta_series
 from shviewer.lights.find import built_in_lights, find_light
+
+ImagePeer = Callable[[np.ndarray, int], object]
 
 WIDTHS = (512, 2048, 4096)
 BANDS = (3, 5, 9, 16, 32, 64)
@@ -58,10 +61,11 @@ def loop_peer(texels: int) -> ImagePeer:
 
 
 def installed() -> dict[str, ImagePeer]:
-    def missing(name: str, module: str) -> None:
-        print(f"without {name}: {module} is missing; pip install -e '.[bench]'")
-
-    return available(IMAGE_PEERS, missing)
+    missing: list[str] = []
+    found = available(IMAGE_PEERS, missing)
+    for line in missing:
+        print(f"without {line}; pip install -e '.[bench]'")
+    return found
 
 
 def photograph(width: int) -> np.ndarray:
@@ -101,7 +105,7 @@ def images(widths: tuple[int, ...], found: dict[str, ImagePeer]) -> None:
             if "sphericart" in found:
                 share = max(1, width * width // 2 * n_bands**2 // 2**29)
                 times["sphericart"] = (
-                    scaled(sphericart_peer(share), 1 / share, image, n_bands),
+                    scaled(partial(found["sphericart"], share=share), 1 / share, image, n_bands),
                     "~" if share > 1 else "",
                 )
             times["loop"] = (scaled(loop_peer(500), 500 / (width * width / 2), image, n_bands), "~")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal
+from functools import partial
 
 import numpy as np
 
@@ -65,14 +66,12 @@ def gram(n_bands: int, rule: Callable[[int], DirectionSet] | None = None, evalua
     return largest(product)
 
 
+SUM = "(2l+1)/4pi, relative"
+
 CASES = (
     Case("directions of length 1.001, 1 + 1e-7", "(2l+1)/4pi to l = 64, relative", rounding(65), not_unit),
-    Case(
-        "addition theorem to l = 128", "(2l+1)/4pi, relative", rounding(129), lambda: addition_theorem(129), noise_views
-    ),
-    Case("addition theorem to l = 1024", "(2l+1)/4pi, relative", 2.1e-13, lambda: addition_theorem(1025)),
+    Case("addition theorem to l = 128", SUM, rounding(129), lambda: addition_theorem(129), noise_views),
+    Case("addition theorem to l = 1024", SUM, 2.1e-13, lambda: addition_theorem(1025)),
     Case("addition theorem of two directions", "P(l)(a.b) in 60 digits", rounding(129), two_directions),
-    Case("Gram matrix, 16 bands", "identity", rounding(16), lambda: gram(16)),
-    Case("Gram matrix, 33 bands", "identity", rounding(33), lambda: gram(33)),
-    Case("Gram matrix, 64 bands", "identity", rounding(64), lambda: gram(64)),
+    *(Case(f"Gram matrix, {n} bands", "identity", rounding(n), partial(gram, n)) for n in (16, 33, 64)),
 )

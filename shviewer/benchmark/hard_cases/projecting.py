@@ -155,7 +155,7 @@ def suns(degrees: Sequence[float], zonal: Zonal = lambda angle, n: Disc(angle).z
     """
     worst = 0.0
     for half_angle in np.radians(degrees).tolist():
-        wanted = np.array([float(value) for value in exact.disc(half_angle, 32)])
+        wanted = np.array(exact.disc(half_angle, 32), dtype=np.float64)
         worst = max(worst, largest(np.asarray(zonal(half_angle, 32)) / wanted - 1))
     return worst
 

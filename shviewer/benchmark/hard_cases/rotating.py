@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from decimal import Decimal
-from functools import lru_cache
+from functools import lru_cache, reduce
+from typing import TypeVar
 
 import numpy as np
 
@@ -23,6 +24,7 @@ GIMBAL = (0.0, 1e-8, -1e-8, np.pi, np.pi - 1e-8, np.pi + 1e-8)
 NO_TURN: exact.ExactQuaternion = (Decimal(0), Decimal(0), Decimal(0), Decimal(1))
 DECIMAL = "60-digit decimal quaternions"
 
+T = TypeVar("T")
 Rotate = Callable[[Array, Array], Array]
 Multiply = Callable[[Quaternion, Quaternion], Quaternion]
 
@@ -60,25 +62,17 @@ def composed_quaternions(multiply: Multiply = compose) -> float:
 
     Bound: 5.9e-14, measured for float64 without normalisation; ours normalises and was measured at 1.2e-14.
     """
-    total = IDENTITY
-    for step in _random_rotations(TURNS):
-        total = multiply(step, total)
-    return largest(matrix(total) - _exact_composition())
+    return largest(matrix(_composed(multiply, _random_rotations(TURNS), IDENTITY)) - _exact_composition())
 
 
 def composed_matrices(multiply: Callable[[Array, Array], Array] = np.matmul) -> float:
     """The same as 3 x 3 matrices. Bound: 2.6e-14, measured for float64; float32 has 1.5e-5."""
-    total = np.eye(3)
-    for step in _random_rotations(TURNS):
-        total = multiply(matrix(step), total)
-    return largest(total - _exact_composition())
+    return largest(_composed(multiply, map(matrix, _random_rotations(TURNS)), np.eye(3)) - _exact_composition())
 
 
 def composed_coefficients(multiply: Multiply = compose, turn: Rotate = rotate) -> float:
     """Coefficients of 16 bands turned once by the composed rotation. Bound: 1e-12, the goal."""
-    total = IDENTITY
-    for step in _random_rotations(TURNS):
-        total = multiply(step, total)
+    total = _composed(multiply, _random_rotations(TURNS), IDENTITY)
     directions = generic(2)
     turned = turn(evaluate_basis(directions, 16).T, matrix(total))
     return largest(turned - evaluate_basis(directions @ _exact_composition().T, 16).T)
@@ -112,10 +106,12 @@ def _random_rotations(count: int) -> list[Quaternion]:
 
 @lru_cache(maxsize=1)
 def _exact_composition() -> Array:
-    total = NO_TURN
-    for step in _random_rotations(TURNS):
-        total = exact.product(_decimal(step), total)
-    return _floats(total)
+    return _floats(_composed(exact.product, map(_decimal, _random_rotations(TURNS)), NO_TURN))
+
+
+def _composed(multiply: Callable[[T, T], T], steps: Iterable[T], start: T) -> T:
+    """The start, multiplied by one step after the other."""
+    return reduce(lambda total, step: multiply(step, total), steps, start)
 
 
 def _decimal(rotation: Quaternion) -> exact.ExactQuaternion:
@@ -124,7 +120,7 @@ def _decimal(rotation: Quaternion) -> exact.ExactQuaternion:
 
 
 def _floats(rotation: exact.ExactQuaternion) -> Array:
-    return np.array([[float(value) for value in row] for row in exact.rotation_matrix(rotation)])
+    return np.array(exact.rotation_matrix(rotation), dtype=np.float64)
 
 
 def _about_z(angle: float) -> Array:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -80,15 +80,15 @@ class Shader:
         facing_squared = 1 - right**2 - up**2
         inside = (facing_squared > 0.04) & (np.arange(WIDTH) >= WIDTH / 2)
         normals = np.column_stack([right[inside], up[inside], np.sqrt(facing_squared[inside])])
-        wanted = _sum(normals @ view.world_from_view.T, view.coefficients)
+        directions = normals @ view.world_from_view.T
+        wanted = in_blocks(lambda part: evaluate_basis(part, n_bands) @ view.coefficients, directions)
         difference = float(np.abs(drawn[inside] - wanted[:, None]).max())
         return difference / max(float(np.abs(wanted).max()), _peak(coefficients))
 
 
-def _sum(directions: Array, coefficients: Array) -> Array:
-    blocks = [directions[start : start + BLOCK] for start in range(0, len(directions), BLOCK)]
-    n_bands = count_bands(coefficients)
-    return np.concatenate([evaluate_basis(block, n_bands) @ coefficients for block in blocks])
+def in_blocks(function: Callable[[Array], Array], directions: Array) -> Array:
+    """A function of directions (k, 3), a part of them at a time."""
+    return np.concatenate([function(directions[i : i + BLOCK]) for i in range(0, len(directions), BLOCK)])
 
 
 def _peak(coefficients: Array) -> float:
@@ -105,15 +105,12 @@ def shader_or_reason(wanted: bool) -> Iterator[Shader | str]:
     if not wanted:
         yield "not asked for"
         return
-    try:
-        from shviewer.viewer.screenshot import headless_renderer
+    with ExitStack() as stack:
+        try:
+            from shviewer.viewer.screenshot import headless_renderer
 
-        renderers = headless_renderer()
-        renderer = renderers.__enter__()
-    except Exception as error:
-        yield f"{type(error).__name__}: {error}"
-        return
-    try:
+            renderer = stack.enter_context(headless_renderer())
+        except Exception as error:
+            yield f"{type(error).__name__}: {error}"
+            return
         yield Shader(renderer)
-    finally:
-        renderers.__exit__(None, None, None)

@@ -1,31 +1,82 @@
-"""The table of hard cases as text, Markdown and JSON."""
+"""All hard cases: measured, and shown as a table in text, Markdown and JSON."""
 
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
-from shviewer.benchmark.hard_cases.outcome import Outcome
+import numpy as np
+
+from shviewer.benchmark.hard_cases import evaluation, identities, projecting, radiances, ringing, rotating
+from shviewer.benchmark.hard_cases.outcome import Case, Outcome, largest
+from shviewer.benchmark.hard_cases.shader import Shader, bound, shader_or_reason
 from shviewer.benchmark.hard_cases.views import SEED
 from shviewer.benchmark.machine import machine_line, versions
+from shviewer.benchmark.row import finite
+
+CASES: tuple[Case, ...] = (
+    *evaluation.CASES,
+    *identities.CASES,
+    *projecting.CASES,
+    *radiances.CASES,
+    *rotating.CASES,
+    *ringing.CASES,
+)
 
 HEADINGS = ("", "case", "reference", "error", "bound", "float32", "bound")
 PACKAGES = ("numpy", "moderngl")
+
+
+def run(*, progress: Callable[[str], None] | None = None, shader: bool = True) -> list[Outcome]:
+    """Measure every case; `progress` is told each name first. A case that raises an exception becomes a failed row.
+
+    shader: also draw the cases that concern the fragment shader, if there is an OpenGL without display.
+    """
+    outcomes = []
+    with shader_or_reason(shader) as drawing:
+        for case in CASES:
+            if progress is not None:
+                progress(case.name)
+            outcomes.append(measure(case, drawing))
+    return outcomes
+
+
+def measure(case: Case, drawing: Shader | str) -> Outcome:
+    """Measure one case. drawing: the shader, or why there is none. Overflow, division by zero and NaN count as exceptions."""
+    error, notes = float("inf"), []
+    try:
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            error = largest(case.measure())
+    except Exception as problem:
+        notes.append(f"{type(problem).__name__}: {problem}")
+    shader_error = shader_bound = None
+    if case.views is not None and isinstance(drawing, Shader):
+        shader_error = shader_bound = float("inf")
+        try:
+            views = list(case.views())
+            shader_bound = bound(views)
+            shader_error = max(largest(drawing.error(view)) for view in views)
+        except Exception as problem:
+            shader_bound = min(shader_bound, 1.0)
+            notes.append(f"shader: {type(problem).__name__}: {problem}")
+    return Outcome(
+        case.name,
+        case.reference,
+        error,
+        case.bound,
+        shader_error,
+        shader_bound,
+        "; ".join(" ".join(note.split()) for note in notes),
+        "" if case.views is None else drawing.version if isinstance(drawing, Shader) else drawing,
+    )
 
 
 def as_text(outcomes: Sequence[Outcome]) -> str:
     """Columns for a terminal, then the exceptions and the number of cases passed."""
     rows = [HEADINGS, *(_cells(outcome) for outcome in outcomes)]
     widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
-    lines = [
-        "  ".join(
-            cell.rjust(w) if i > 2 else cell.ljust(w) for i, (cell, w) in enumerate(zip(row, widths, strict=True))
-        )
-        for row in rows
-    ]
-    lines = [line.rstrip() for line in lines]
+    columns = "  ".join(f"{{:{'>' if number > 2 else '<'}{width}}}" for number, width in enumerate(widths))
+    lines = [columns.format(*row).rstrip() for row in rows]
     return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", *_remarks(outcomes)]) + "\n"
 
 
@@ -41,24 +92,12 @@ def as_markdown(outcomes: Sequence[Outcome]) -> str:
 
 def as_json(outcomes: Sequence[Outcome]) -> str:
     """The table for programs; an error that could not be measured is null."""
-    cases = [
-        {
-            "name": outcome.name,
-            "reference": outcome.reference,
-            "error": _finite(outcome.error),
-            "bound": outcome.bound,
-            "shader_error": _finite(outcome.shader_error),
-            "shader_bound": outcome.shader_bound,
-            "passed": outcome.passed,
-            "note": outcome.note,
-        }
-        for outcome in outcomes
-    ]
-    page: dict[str, Any] = {
+    columns = ("name", "reference", "error", "bound", "shader_error", "shader_bound", "passed", "note")
+    page = {
         "passed": all(outcome.passed for outcome in outcomes),
         "shader": "; ".join(_drawn_by(outcomes)),
         "made_with": _made_with(),
-        "cases": cases,
+        "cases": [{name: finite(getattr(outcome, name)) for name in columns} for outcome in outcomes],
     }
     return json.dumps(page, indent=1, allow_nan=False) + "\n"
 
@@ -85,10 +124,6 @@ def _remarks(outcomes: Sequence[Outcome]) -> list[str]:
 
 def _drawn_by(outcomes: Sequence[Outcome]) -> list[str]:
     return sorted({outcome.drawn_by for outcome in outcomes if outcome.drawn_by})
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and math.isfinite(value) else None
 
 
 def _made_with() -> dict[str, str]:

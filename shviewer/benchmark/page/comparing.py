@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
 from dataclasses import dataclass
 
-from shviewer.benchmark.front import alike
+from shviewer.benchmark.front import alike, overlap
 from shviewer.benchmark.page.document import Report
 from shviewer.benchmark.page.tables import error, milliseconds, table
 from shviewer.benchmark.row import Row
@@ -13,6 +13,9 @@ from shviewer.words import grouped
 
 LEAST_RATIO = 1.25
 """The least ratio of times that counts: between runs, a shared machine drifts by more than one run's quartiles show."""
+
+ERRORS = ("error", "arithmetic_error", "total_error")
+"""The errors that a row may have; the first that is known is compared."""
 
 ROUNDING = 1e-6, 1e-12
 """Relative and absolute differences of errors that the sequence of a summation can cause."""
@@ -40,12 +43,10 @@ class Comparison:
     needed_ratio: float
     """The ratio from which two times count as different."""
 
-    def count(self, verdict: str) -> int:
-        return sum(verdict in (change.time, change.error) for change in self.changes)
-
     def as_markdown(self, name: str) -> list[str]:
         """The lines of a section of the page; name: that of the older report."""
-        counts = ", ".join(f"{self.count(verdict)} {verdict}" for verdict in ("faster", "slower", "better", "worse"))
+        found = Counter(verdict for change in self.changes for verdict in (change.time, change.error))
+        counts = ", ".join(f"{found[verdict]} {verdict}" for verdict in ("faster", "slower", "better", "worse"))
         lines = [f"{len(self.changes)} rows are in this report and in {name}: {counts}."]
         if self.different:
             lines.append(f"The times are not comparable, since the machine is another: {'; '.join(self.different)}.")
@@ -76,11 +77,10 @@ def compare(before: Report, after: Report) -> Comparison:
 
 
 def _differences(before: Report, after: Report) -> tuple[str, ...]:
-    names = [name for name in after.machine if name != "system"]
     return tuple(
-        f"{name.replace('_', ' ')} {before.machine.get(name)} there, {after.machine[name]} here"
-        for name in names
-        if before.machine.get(name) != after.machine[name]
+        f"{name.replace('_', ' ')} {before.machine.get(name)} there, {value} here"
+        for name, value in after.machine.items()
+        if name != "system" and before.machine.get(name) != value
     )
 
 
@@ -105,11 +105,11 @@ def _time_verdict(before: Row, after: Row, ratio: float) -> str:
 
 
 def _error_verdict(before: Row, after: Row) -> str:
-    for name in ("error", "arithmetic_error", "total_error"):
+    for name in ERRORS:
         old, new = getattr(before, name), getattr(after, name)
         if old is None or new is None:
             continue
-        if name == "error" and _spreads_meet(before, after):
+        if name == "error" and overlap(before.error_low, before.error_high, after.error_low, after.error_high):
             return ""
         if abs(old - new) <= max(ROUNDING[0] * max(old, new), ROUNDING[1]):
             return ""
@@ -117,21 +117,12 @@ def _error_verdict(before: Row, after: Row) -> str:
     return ""
 
 
-def _spreads_meet(before: Row, after: Row) -> bool:
-    """Whether the spreads over seeds overlap; False if nothing is random."""
-    ends = (before.error_low, before.error_high, after.error_low, after.error_high)
-    if any(end is None for end in ends):
-        return False
-    low, high, other_low, other_high = (float(end or 0) for end in ends)
-    return low <= other_high and other_low <= high
-
-
-def _cells(change: Change) -> Sequence[str]:
+def _cells(change: Change) -> tuple[str, ...]:
     row = change.after
     return (
         row.light,
         row.method,
-        "" if row.n_bands is None else str(row.n_bands),
+        str(row.n_bands or ""),
         "" if row.samples is None else grouped(row.samples),
         milliseconds(change.before.milliseconds),
         milliseconds(row.milliseconds),
@@ -142,4 +133,4 @@ def _cells(change: Change) -> Sequence[str]:
 
 
 def _shown_error(row: Row) -> float | None:
-    return next((e for e in (row.error, row.arithmetic_error, row.total_error) if e is not None), None)
+    return next((getattr(row, name) for name in ERRORS if getattr(row, name) is not None), None)

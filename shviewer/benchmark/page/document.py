@@ -52,19 +52,15 @@ class Report:
             "left_out": self.left_out,
             "extra": self.extra,
         }
-        lights = [f"{json.dumps(name)}: {_line(record)}" for name, record in self.lights.items()]
-        rows = [_line(row.as_dict()) for row in self.rows]
+        # one light and one row per line, so that the file can be read and two of them compared
         head = json.dumps(page, indent=1, allow_nan=False).removesuffix("\n}")
-        return f'{head},\n "lights": {{{_lines(lights)}}},\n "rows": [{_lines(rows)}]\n}}\n'
+        lights = ",".join(f"\n  {json.dumps(name)}: {_line(record)}" for name, record in self.lights.items())
+        rows = ",".join(f"\n  {_line(row.as_dict())}" for row in self.rows)
+        return f'{head},\n "lights": {{{lights}}},\n "rows": [{rows}]\n}}\n'
 
 
 def _line(value: object) -> str:
     return json.dumps(value, allow_nan=False)
-
-
-def _lines(parts: list[str]) -> str:
-    """One part per line, so that the file can be read and two of them compared."""
-    return "".join(f"\n  {part}{',' if i + 1 < len(parts) else ''}" for i, part in enumerate(parts))
 
 
 def read_report(path: Path) -> Report:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
+from shviewer.benchmark.page.tables import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -63,8 +62,7 @@ LOOKS = (
 LONGEST_NAME = 20
 
 
-@dataclass(frozen=True)
-class Curve:
+class Curve(NamedTuple):
     """A named curve of points (x, y), in the axes' units, drawn in one look."""
 
     name: str
@@ -77,11 +75,7 @@ class Curve:
 
 def log_axes(figure: Figure, title: str, x: tuple[float, float], y: tuple[float, float], unit: str = " %") -> Axes:
     """Log-log axes with a light grid and plain numbers; the title says what the upright axis is."""
-    axes = figure.add_subplot()
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(*x)
-    axes.set_ylim(*y)
+    axes = figure.add_subplot(xscale="log", yscale="log", xlim=x, ylim=y)
     figure.suptitle(title, x=0.02, horizontalalignment="left")
     for axis, (low, high), after in ((axes.xaxis, x, ""), (axes.yaxis, y, unit)):
         ticks = nice_ticks(low, high)
@@ -109,11 +103,6 @@ def draw_curves(axes: Axes, curves: Sequence[Curve]) -> None:
             axes.plot((x, x), ends, color=colour, linewidth=0.6, clip_on=False, zorder=3)
 
 
-def add_legend(figure: Figure) -> None:
-    """Add a legend below the axes, in columns."""
-    figure.legend(loc="outside lower left", ncols=2)
-
-
 def shorten(name: str) -> str:
     return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 3]}..."
 
@@ -129,11 +118,6 @@ def nice_ticks(low: float, high: float) -> list[float]:
     step = 10.0 ** math.floor(math.log10((high - low) / 3))
     step *= next(factor for factor in (5, 2, 1) if (high - low) / (factor * step) >= 3)
     return [step * k for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
-
-
-def plain(value: float) -> str:
-    """A number in at most four digits, without a power of ten."""
-    return np.format_float_positional(value, 4, unique=False, fractional=False, trim="-")
 
 
 def padded(values: Iterable[float], highest: float = math.inf) -> tuple[float, float]:

@@ -9,23 +9,15 @@ from __future__ import annotations
 import io
 import math
 import statistics
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shviewer.benchmark import reconstruction_rows as reconstruction
 from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.page.plot_marks import (
-    INCHES,
-    STYLE,
-    Curve,
-    add_legend,
-    draw_curves,
-    log_axes,
-    padded,
-    plain,
-    shorten,
-)
+from shviewer.benchmark.measured_lights import TOLERANCES
+from shviewer.benchmark.page.plot_marks import INCHES, STYLE, Curve, draw_curves, log_axes, padded, shorten
+from shviewer.benchmark.page.tables import plain
 from shviewer.benchmark.projection_rows import SECTION as PROJECTION
 from shviewer.benchmark.row import Row
 from shviewer.files import write_atomically
@@ -44,10 +36,12 @@ FLOOR = 1e-5
 BAND_FLOOR = 1e-3
 """The same in the plot of error against bands, where tolerances of 10 to 1 % matter."""
 
-TOLERANCES = (0.1, 0.05, 0.01)
 SIXTY_HERTZ = 1000 / 60
 MARKED: dict[str, Any] = {"color": "0.45", "linewidth": 0.7, "linestyle": (0, (1, 2)), "zorder": 1}
 """The look of a level that is marked across the axes."""
+
+BELOW: dict[str, Any] = {"loc": "outside lower left", "ncols": 2}
+"""The place of a legend: below the axes, in columns."""
 
 
 def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str]:
@@ -80,7 +74,7 @@ def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str
 def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
     """File stem -> the function that draws the plot."""
     plots: dict[str, Callable[[Figure], None]] = {}
-    for light in _in_order(row.light for row in rows if row.section == PROJECTION):
+    for light in dict.fromkeys(row.light for row in rows if row.section == PROJECTION):
         curves = time_error_curves(rows, light)
         if curves:
             stem = f"time-error-{''.join(c if c.isalnum() or c in '-_' else '-' for c in light)}"
@@ -113,7 +107,7 @@ def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:
 def error_curves(rows: Sequence[Row]) -> list[Curve]:
     """A curve (bands, percent left out) for each light."""
     curves = []
-    for look, light in enumerate(_in_order(row.light for row in rows if row.truncation is not None)):
+    for look, light in enumerate(dict.fromkeys(row.light for row in rows if row.truncation is not None)):
         found = {
             row.n_bands: 100 * max(row.truncation, BAND_FLOOR)
             for row in rows
@@ -156,15 +150,9 @@ def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None
     axes.set_xlabel("milliseconds to project")
     stairs = [(front[0][0], y[1]), *front, (x[1], front[-1][1])]
     draw_curves(axes, curves)
-    broad: dict[str, Any] = {
-        "color": "0.85",
-        "linewidth": 5,
-        "zorder": 1,
-        "solid_joinstyle": "miter",
-        "label": "Pareto front",
-    }
-    axes.step(*zip(*stairs, strict=True), where="post", **broad)
-    add_legend(figure)
+    broad: dict[str, Any] = {"color": "0.85", "linewidth": 5, "zorder": 1, "solid_joinstyle": "miter"}
+    axes.step(*zip(*stairs, strict=True), where="post", **broad, label="Pareto front")
+    figure.legend(**BELOW)
 
 
 def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
@@ -179,7 +167,7 @@ def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
         axes.axhline(100 * tolerance, **MARKED)
     draw_curves(axes, curves)
     axes.plot([], [], **MARKED, label="tolerances")
-    add_legend(figure)
+    figure.legend(**BELOW)
 
 
 def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
@@ -190,7 +178,7 @@ def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
     _band_axis(axes)
     draw_curves(axes, curves)
     axes.axhline(SIXTY_HERTZ, **MARKED, label="60 a second")
-    add_legend(figure)
+    figure.legend(**BELOW)
 
 
 def _band_range(curves: Sequence[Curve]) -> tuple[float, float]:
@@ -203,7 +191,3 @@ def _band_axis(axes: Axes) -> None:
     ticks = [n for n in (*reconstruction.BANDS, 128) if low <= n <= high]
     axes.set_xticks(ticks, [plain(n) for n in ticks])
     axes.set_xlabel("bands")
-
-
-def _in_order(names: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(names))

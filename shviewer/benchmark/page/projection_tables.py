@@ -6,46 +6,40 @@ from collections.abc import Callable, Sequence
 
 from shviewer.benchmark.experiments import METHODS
 from shviewer.benchmark.measured_lights import MeasuredLight
-from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error, milliseconds, table, with_spread
+from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error_of, milliseconds, table, time_of, words_of
 from shviewer.benchmark.projection_rows import SECTION
 from shviewer.benchmark.row import Row
 from shviewer.words import counted, grouped
 
 Experiment = tuple[str, int | None]
-Cell = Callable[[Row], str]
 
 __all__ = ["SECTION", "lines"]
 
 
 def lines(lights: Sequence[MeasuredLight], rows: Sequence[Row]) -> list[str]:
     """A table of the methods, then three tables per light."""
-    found = [
-        "| method | what it is |",
-        "|---|---|",
-        *(f"| {each.words} | {each.explanation} |" for each in METHODS),
-        "",
-    ]
+    methods = [f"| {each.words} | {each.explanation} |" for each in METHODS]
+    found = ["| method | what it is |", "|---|---|", *methods, ""]
     for measured in lights:
         own = [row for row in rows if row.light == measured.name]
         if own:
-            found += [f"### {measured.name}: milliseconds", "", *_matrix(own, _time), ""]
-            found += [f"### {measured.name}: error of the coefficients", "", *_matrix(own, _error), ""]
+            found += [f"### {measured.name}: milliseconds", "", *_matrix(own, time_of), ""]
+            found += [f"### {measured.name}: error of the coefficients", "", *_matrix(own, error_of), ""]
             found += [f"### {measured.name}: evaluations, set-up and memory", "", *_set_up(own), ""]
     return found
 
 
-def _matrix(rows: Sequence[Row], cell: Cell) -> list[str]:
+def _matrix(rows: Sequence[Row], cell: Callable[[Row], str]) -> list[str]:
     """A table with a line per experiment and a column per band count; one that is too wide continues below."""
     by_place = {(row.method, row.samples, row.n_bands): cell(row) for row in rows}
     experiments, bands = _experiments(rows), sorted({row.n_bands for row in rows if row.n_bands is not None})
-    labels = [_label(experiment) for experiment in experiments]
     found: list[str] = []
     while bands:
         count = len(bands)
         while True:
             body = [
-                (label, *(by_place.get((*experiment, n), ABSENT) for n in bands[:count]))
-                for label, experiment in zip(labels, experiments, strict=True)
+                (words_of(*experiment), *(by_place.get((*experiment, n), ABSENT) for n in bands[:count]))
+                for experiment in experiments
             ]
             body = [line for line in body if set(line[1:]) != {ABSENT}]
             drawn = table(("", *(counted(n, "band") for n in bands[:count])), body)
@@ -63,19 +57,6 @@ def _experiments(rows: Sequence[Row]) -> list[Experiment]:
     return sorted({(row.method, row.samples) for row in rows}, key=lambda item: (order.index(item[0]), item[1] or 0))
 
 
-def _label(experiment: Experiment) -> str:
-    words = {each.name: each.words for each in METHODS}[experiment[0]]
-    return words if experiment[1] is None else f"{words} {grouped(experiment[1])}"
-
-
-def _time(row: Row) -> str:
-    return with_spread(milliseconds(row.milliseconds), row.milliseconds, row.low_quartile, row.high_quartile)
-
-
-def _error(row: Row) -> str:
-    return with_spread(error(row.error), row.error, row.error_low, row.error_high)
-
-
 def _set_up(rows: Sequence[Row]) -> list[str]:
     """A table of set-up and memory, for the most bands with which each experiment was measured."""
     body = []
@@ -83,5 +64,5 @@ def _set_up(rows: Sequence[Row]) -> list[str]:
         row = max((row for row in rows if (row.method, row.samples) == experiment), key=lambda row: row.n_bands or 0)
         evaluations = ABSENT if row.evaluations is None else grouped(row.evaluations)
         peak = ABSENT if row.peak_mib is None else f"{row.peak_mib:.1f}"
-        body.append((_label(experiment), str(row.n_bands), evaluations, milliseconds(row.set_up_milliseconds), peak))
+        body.append((words_of(*experiment), str(row.n_bands), evaluations, milliseconds(row.set_up_milliseconds), peak))
     return table(("", "bands", "evaluations", "set-up ms", "peak MiB"), body)

@@ -1,11 +1,15 @@
-"""Numbers and tables in Markdown that can also be read as plain text, in 128 columns."""
+"""Numbers, rows and tables in Markdown that can also be read as plain text, in 128 columns."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 
-from shviewer.words import three_digits
+import numpy as np
+
+from shviewer.benchmark.experiments import METHODS
+from shviewer.benchmark.row import Row
+from shviewer.words import grouped, three_digits
 
 ABSENT = "-"
 MOST_COLUMNS = 128
@@ -25,11 +29,30 @@ def error(value: float | None) -> str:
     return ABSENT if value is None else "0" if value == 0 else f"{value:.1e}"
 
 
+def plain(value: float, digits: int = 4) -> str:
+    """A number in at most so many digits, without a power of ten."""
+    return np.format_float_positional(value, digits, unique=False, fractional=False, trim="-")
+
+
 def with_spread(text: str, middle: float | None, low: float | None, high: float | None) -> str:
     """The value, with half the distance from low to high in percent of it, if these are known."""
     if not middle or low is None or high is None:
         return text
     return f"{text} ±{50 * (high - low) / middle:.0f}%"
+
+
+def time_of(row: Row) -> str:
+    return with_spread(milliseconds(row.milliseconds), row.milliseconds, row.low_quartile, row.high_quartile)
+
+
+def error_of(row: Row) -> str:
+    return with_spread(error(row.error), row.error, row.error_low, row.error_high)
+
+
+def words_of(method: str, samples: int | None) -> str:
+    """A method in words, with its number of samples; what is no way to project is called as it is."""
+    words = {each.name: each.words for each in METHODS}.get(method, method)
+    return words if samples is None else f"{words} {grouped(samples)}"
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
@@ -48,6 +71,39 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1)
         "-" * (width + 2) if text else "-" * (width + 1) + ":" for width, text in zip(widths, is_text, strict=True)
     )
     return [line(cells[0]), f"|{'|'.join(rules)}|", *map(line, cells[1:])]
+
+
+COLUMNS: dict[str, tuple[str, Callable[[Row], str]]] = {
+    "set up": ("set-up ms", lambda row: milliseconds(row.set_up_milliseconds)),
+    "left out": ("left out", lambda row: error(row.truncation)),
+    "arithmetic": ("arithmetic", lambda row: error(row.arithmetic_error)),
+    "note": ("", lambda row: row.note),
+}
+
+
+def rows_table(rows: Sequence[Row], columns: Sequence[str]) -> list[str]:
+    """A table of rows of any section: the method, the time, and the given ones of COLUMNS."""
+    shown = [COLUMNS[name] for name in columns]
+    body = [
+        [row.light, row.method, str(row.n_bands or ""), time_of(row), *(cell(row) for _, cell in shown)] for row in rows
+    ]
+    return table(("light", "what", "bands", "ms", *(heading for heading, _ in shown)), body, left=2)
+
+
+def lines_not_measured(rows: Iterable[Row]) -> list[str]:
+    """Lines on everything that there was no time for: methods, lights and band counts."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for row in rows:
+        if not row.measured:
+            bands = found.setdefault(words_of(row.method, row.samples), {}).setdefault(row.light, [])
+            bands += [] if row.n_bands is None else [str(row.n_bands)]
+    return [": ".join(filter(None, (what, "; ".join(_places(lights))))) for what, lights in found.items()]
+
+
+def _places(lights: dict[str, list[str]]) -> list[str]:
+    """Each light with its band counts, if there are any."""
+    parts = ((light, f"{' '.join(bands)} bands" if bands else "") for light, bands in sorted(lights.items()))
+    return [", ".join(filter(None, part)) for part in parts if any(part)]
 
 
 def bullet(text: str) -> str:

@@ -19,29 +19,17 @@ import textbook
 from helpers import unavailable
 from places import hard_cases
 
-from shviewer.benchmark.hard_cases import (
-    CASES,
-    Case,
-    Outcome,
-    as_json,
-    as_markdown,
-    as_text,
-    exact,
-    identities,
-    projecting,
-    radiances,
-    ringing,
-    rotating,
-)
 from shviewer.benchmark.hard_cases import evaluation as ev
-from shviewer.benchmark.hard_cases.cases import measure
+from shviewer.benchmark.hard_cases import exact, identities, projecting, radiances, ringing, rotating
+from shviewer.benchmark.hard_cases.outcome import Case, Outcome
 from shviewer.benchmark.hard_cases.shader import shader_or_reason
+from shviewer.benchmark.hard_cases.table import CASES, as_json, as_markdown, as_text, measure
 from shviewer.harmonics import basis
 
 HARD_CASES = hard_cases()
 RUN = """
 import sys
-from shviewer.benchmark.hard_cases import as_json, run
+from shviewer.benchmark.hard_cases.table import as_json, run
 names = []
 outcomes = run(progress=names.append)
 assert names == [outcome.name for outcome in outcomes]
@@ -288,5 +276,5 @@ def test_the_three_formats_say_the_same() -> None:
 
 
 def test_importing_the_table_loads_no_opengl() -> None:
-    code = "import sys, shviewer.benchmark.hard_cases; assert 'moderngl' not in sys.modules"
+    code = "import sys, shviewer.benchmark.hard_cases.table; assert 'moderngl' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
