@@ -1,10 +1,12 @@
-"""The options of `shviewer report`."""
+"""The options of `shviewer report`: what is measured, and the time that each section gets."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from time import perf_counter
 
 from shviewer.benchmark import experiments
 from shviewer.errors import UsageError
@@ -13,7 +15,14 @@ from shviewer.lights.reading import DEFAULT_READING, Reading
 DEFAULT_BUDGET, QUICK_BUDGET = 120.0, 11.0
 """Seconds of measuring. Starting, reading lights, drawing plots and writing come on top: a quick report takes 15 s."""
 
+STABILITY_SECONDS = 15.0
+"""The time of the hard cases, which comes on top of the budget: all of them are always run."""
+
 SECTIONS = ("projection", "reconstruction", "end to end")
+SHARES = {"projection": 0.55, "reconstruction": 0.2, "end to end": 0.15, "peers": 0.1}
+
+Progress = Callable[[float, float, str], object]
+"""A function that is told the share of the time passed, 0 to 1, the most seconds left, and the next step."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +57,50 @@ class Options:
             if name not in SECTIONS:
                 raise UsageError(f"unknown section {name!r}; there is: {', '.join(SECTIONS)}")
 
-    @property
-    def seconds(self) -> float:
-        return min(self.budget, QUICK_BUDGET) if self.quick else self.budget
+    def seconds(self) -> dict[str, float]:
+        """The seconds of every section that is wanted; projection gets the shares of those that are not."""
+        wanted = (*self.sections, "peers") if self.peers else self.sections
+        shares = {name: share for name, share in SHARES.items() if name in wanted}
+        if "projection" in shares:
+            shares["projection"] += 1 - sum(shares.values())
+        budget = min(self.budget, QUICK_BUDGET) if self.quick else self.budget
+        seconds = {name: budget * share / sum(shares.values()) for name, share in shares.items()}
+        return seconds | ({"hard cases": STABILITY_SECONDS} if self.stability else {})
+
+
+class Clock:
+    """Tells each section how much time it has left, and the user how much the run has.
+
+    seconds: the time of each section. What one leaves over is added to the next, what it overruns is taken from the next.
+    """
+
+    def __init__(self, seconds: Mapping[str, float], progress: Progress | None) -> None:
+        self.waiting = dict(seconds)
+        self.progress = progress
+        self.start = self.deadline = self.likely_end = perf_counter()
+        self.current = ""
+
+    def begin(self, section: str) -> None:
+        """Begin a section; each may begin once, in any order."""
+        own = self.waiting.pop(section)
+        self.current = section
+        self.deadline += own
+        self.likely_end = min(self.deadline, perf_counter() + own)
+        self.tell("")
+
+    def left(self) -> float:
+        """Seconds until the present section has to end; below zero when its time is up."""
+        return self.deadline - perf_counter()
+
+    def tell(self, what: str) -> None:
+        """Tell the user what the present section does next."""
+        if self.progress is None:
+            return
+        now = perf_counter()
+        passed, left = now - self.start, max(0.0, self.likely_end - now) + sum(self.waiting.values())
+        words = f"{self.current}: {what}" if what else self.current
+        self.progress(passed / max(passed + left, 1e-9), left, words)
+
+    def finish(self) -> None:
+        if self.progress is not None:
+            self.progress(1.0, 0.0, "done")

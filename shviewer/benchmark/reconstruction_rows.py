@@ -83,7 +83,7 @@ def reconstruction_rows(
     """
     begun = perf_counter()
     stages: dict[int, _Stage] = {}
-    rows: dict[Name, Row] = {}
+    errors: dict[Name, float | None] = {}
     works: dict[Name, Work] = {}
     turn = step = step_turn = 0.0  # seconds: of one run of every work; of the last band count, alone and of its works
     with offscreen(drawing.renderer, FRAME) if isinstance(drawing, Shader) else nullcontext() as target:
@@ -98,11 +98,11 @@ def reconstruction_rows(
             if start - begun + step + at_least * (turn + step_turn) >= at_most:
                 break
             stage = stages[n_bands] = _Stage(measured, n_bands)
-            errors, own = stage.errors(), stage.works()
+            errors |= {(method, n_bands): error for method, error in stage.errors().items()}
+            own = stage.works()
             if frame is not None:
-                errors |= frame.errors(stage)
+                errors |= {(method, n_bands): error for method, error in frame.errors(stage).items()}
                 own |= frame.works(stage)
-            rows |= {(method, n_bands): stage.row(method, error) for method, error in errors.items()}
             works |= {(method, n_bands): work for method, work in own.items()}
             step_turn = 0.0
             for method, work in own.items():
@@ -116,24 +116,12 @@ def reconstruction_rows(
         for n_bands in sorted(set(bands) - set(stages))
         for method in (*CPU, *(_shader_methods(n_bands) if isinstance(drawing, Shader) else ()))
     ]
-    return _with_times(rows, stages, times) + missing
+    in_order = sorted(errors.items(), key=lambda item: item[0][1])
+    return [stages[n_bands].row(method, error, times) for (method, n_bands), error in in_order] + missing
 
 
 def _shader_methods(n_bands: int) -> tuple[str, ...]:
     return (CACHED, DIRECT) if n_bands <= MAX_DIRECT_BANDS else (CACHED,)
-
-
-def _with_times(rows: dict[Name, Row], stages: dict[int, _Stage], times: dict[Name, Timing]) -> list[Row]:
-    """The rows with their times, sorted by band count, then by method."""
-    done = []
-    for (method, n_bands), row in sorted(rows.items(), key=lambda item: item[0][1]):
-        timing = times[method, n_bands]
-        runs_per_million = 1e6 / stages[n_bands].directions_of(method) if row.note == PER_MILLION else 1.0
-        middle, low, high = (each * runs_per_million for each in timing[:3])
-        set_up = times[MAKING, n_bands].milliseconds if method == CACHED else None
-        timed = Timing(middle, low, high, timing.repeats)
-        done.append(replace(row, **timed._asdict(), set_up_milliseconds=set_up))
-    return done
 
 
 class _Stage:
@@ -169,10 +157,6 @@ class _Stage:
 
     def sum_by_basis(self, directions: Array) -> Array:
         return in_blocks(lambda part: evaluate_basis(part, self.n_bands) @ self.coefficients, directions)
-
-    def directions_of(self, method: str) -> int:
-        """The number of directions in one timed run."""
-        return MAP_SIZE[0] * MAP_SIZE[1] if method in (MAP_64, MAP_32) else len(self.directions)
 
     def relative(self, mean_square: float) -> float:
         """The norm of an error, from its mean square, over the light's; infinite if a black light is not drawn black."""
@@ -211,17 +195,25 @@ class _Stage:
             MAP_32: self.map,
         }
 
-    def row(self, method: str, arithmetic_error: float | None) -> Row:
-        """The row of a method, still without times."""
+    def row(self, method: str, arithmetic_error: float | None, times: dict[Name, Timing]) -> Row:
+        """The row of a method. A time on the CPU is scaled to a million directions."""
+        drawn, timing = method in (DIRECT, CACHED), times[method, self.n_bands]
+        directions = MAP_SIZE[0] * MAP_SIZE[1] if method in (MAP_64, MAP_32) else len(self.directions)
+        scale = 1.0 if drawn else 1e6 / directions
         return Row(
             section=SECTION,
             method=method,
             light=self.light_name,
             n_bands=self.n_bands,
+            milliseconds=timing.milliseconds * scale,
+            low_quartile=timing.low_quartile * scale,
+            high_quartile=timing.high_quartile * scale,
+            repeats=timing.repeats,
+            set_up_milliseconds=times[MAKING, self.n_bands].milliseconds if method == CACHED else None,
             truncation=self.truncation,
             arithmetic_error=arithmetic_error,
             total_error=float(np.hypot(self.truncation, arithmetic_error or 0.0)),
-            note=PER_FRAME if method in (DIRECT, CACHED) else PER_MILLION,
+            note=PER_FRAME if drawn else PER_MILLION,
         )
 
 

@@ -1,25 +1,39 @@
-"""The run of a report, from the first light to the last file. If it ends early, the part measured is kept and marked."""
+"""The run of a report, section after section. If it ends early, the part measured is kept and marked."""
 
 from __future__ import annotations
 
+import json
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from shviewer.benchmark import experiments
-from shviewer.benchmark.budget import STABILITY_SECONDS, Clock, Progress, allot
-from shviewer.benchmark.front import sentences
-from shviewer.benchmark.machine import machine_record, versions
+from shviewer.benchmark import end_to_end, experiments, projection_rows
+from shviewer.benchmark.front import sentences, where_bands_stop_paying
+from shviewer.benchmark.hard_cases import table as stability
+from shviewer.benchmark.hard_cases.shader import Shader, shader_or_reason
+from shviewer.benchmark.machine import machine_record, versions, yardstick
 from shviewer.benchmark.measured_lights import QUICK_TOLERANCES, TOLERANCES, MeasuredLight, find_measured_lights
-from shviewer.benchmark.options import SECTIONS, Options
+from shviewer.benchmark.options import Clock, Options, Progress
 from shviewer.benchmark.page import plots, writing
+from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import Report, read_report
-from shviewer.benchmark.sections import AGAINST, Run, measure_sections
-from shviewer.errors import OutputError
+from shviewer.benchmark.page.tables import lines_not_measured, rows_table
+from shviewer.benchmark.peers import INSTALL, peer_rows
+from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
+from shviewer.benchmark.row import Row
+from shviewer.benchmark.timing import summarise
+from shviewer.errors import OutputError, UsageError
 from shviewer.lights.light import Light
+
+PEER_BANDS = (3, 9, 16, 32)
+QUICK_RECONSTRUCTED = (3, 16)
+QUICK_REPEATS = 3
+"""The repeats in a quick report, in which five of the slow ones do not fit."""
+
+AGAINST = "Against an older report"
 
 
 @dataclass(frozen=True)
@@ -31,6 +45,50 @@ class Summary:
     rows: int
     text: str
     stability_failed: bool = False
+
+
+@dataclass
+class Run:
+    """A report in the making. Every section adds to it and is written at once."""
+
+    options: Options
+    folder: Path
+    report: Report
+    page: writing.Page
+    texts: list[str]
+    """The LIGHTs that can be named to another process."""
+    seconds: Mapping[str, float]
+    """The sections wanted, and the time of each."""
+    clock: Clock
+    before: Report | None
+    yardstick: list[float] = field(default_factory=list)
+    stability_failed: bool = False
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Add rows, measured and not measured."""
+        self.report.rows += rows
+        if any(row.measured for row in rows):
+            self.yardstick += yardstick()
+            times = summarise(self.yardstick)
+            self.report.yardstick = {
+                "median": times.milliseconds,
+                "low_quartile": times.low_quartile,
+                "high_quartile": times.high_quartile,
+            }
+        self.report.left_out = lines_not_measured(self.report.rows)
+
+    def write(self) -> None:
+        if self.before is not None and self.options.against is not None:
+            lines = compare(self.before, self.report).as_markdown(self.options.against.name)
+            self.page.hosted = {AGAINST: ""} | self.page.hosted | {AGAINST: "\n".join(lines)}  # it comes first
+        writing.write(self.folder, self.report, self.page)
+
+    def measure(self, section: str, measured_by: Callable[..., None], *drawing: Shader | str) -> None:
+        """Measure a section, if it is wanted, and write what it found."""
+        if section in self.seconds:
+            self.clock.begin(section)
+            measured_by(self, *drawing)
+            self.write()
 
 
 def write_report(
@@ -46,8 +104,7 @@ def write_report(
     writing.make_folder(folder)
     chosen = list(lights) or list(experiments.QUICK_LIGHTS if options.quick else experiments.LIGHTS)
     found = find_measured_lights(chosen, QUICK_TOLERANCES if options.quick else TOLERANCES, options.reading)
-    wanted = {name: name in options.sections for name in SECTIONS} | {"peers": options.peers}
-    seconds = allot(wanted, options.seconds) | ({"hard cases": STABILITY_SECONDS} if options.stability else {})
+    seconds = options.seconds()
     report = Report(
         seed=options.seed,
         command=options.command or shlex.join(["shviewer", *sys.argv[1:]]),
@@ -59,7 +116,7 @@ def write_report(
     run = Run(options, folder, report, writing.Page(found), texts, seconds, Clock(seconds, progress), before)
     run.write()
     try:
-        measure_sections(run)
+        _measure_sections(run)
         report.complete = True
         paths, run.page.plot_message = plots.make_plots(report.rows, folder)
         run.page.plots += [path.name for path in paths]
@@ -90,3 +147,96 @@ def _summary(run: Run) -> str:
         lines += [f"{measured.name}: {sentence}" for sentence in sentences(measured, rows)] if rows else []
     against = run.page.hosted.get(AGAINST, "").partition("\n")[0]
     return "\n".join([*lines, *([against] if against else [])])
+
+
+def _measure_sections(run: Run) -> None:
+    run.measure("projection", _projection)
+    run.measure("peers", _peers)
+    with shader_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:
+        if isinstance(drawing, Shader):
+            run.report.renderer = drawing.version
+        run.measure("reconstruction", _reconstruction, drawing)
+        run.measure("end to end", _end_to_end, drawing)
+    run.measure("hard cases", _stability)
+
+
+def _projection(run: Run) -> None:
+    quick = run.options.quick
+    rounds = projection_rows.plan(
+        run.page.lights,
+        experiments.QUICK_BANDS if quick else experiments.BANDS,
+        experiments.QUICK_SAMPLES if quick else experiments.SAMPLES,
+        run.options.methods,
+    )
+    projection_rows.measure(rounds, run.clock.left, run.options.seed, run.add, run.clock.tell)
+
+
+def _peers(run: Run) -> None:
+    try:
+        rows, missing = peer_rows(run.texts, PEER_BANDS, run.seconds["peers"], run.options.seed)
+    except UsageError as error:
+        run.page.hosted["Peers"] = f"{error}."
+        return
+    run.add(rows)
+    lines = ["The same projections by other libraries, one thread each, in one process of their own, taking turns.", ""]
+    lines += rows_table(rows, ("note", "set up"))
+    if missing:
+        lines += ["", *(f"- without {line}" for line in missing), "", f"All of them: `{INSTALL}`"]
+    run.page.hosted["Peers"] = "\n".join(lines)
+
+
+def _reconstruction(run: Run, drawing: Shader | str) -> None:
+    kinds: dict[type, MeasuredLight] = {}
+    for measured in run.page.lights:
+        kinds.setdefault(type(measured.light), measured)
+    quick = run.options.quick
+    chosen = list(kinds.values())[: 1 if quick else 2]  # the first light of each kind
+    bands = QUICK_RECONSTRUCTED if quick else BANDS
+    for number, measured in enumerate(chosen):
+        run.clock.tell(measured.name)
+        filling = 0.5 * run.seconds["reconstruction"] / len(chosen)
+        at_most = run.clock.left() / (len(chosen) - number)
+        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=bands))
+    rows = [row for row in run.report.rows if row.section == "reconstruction"]
+    lines = [
+        "What a band costs where the sum is evaluated, against what it brings. Where the arithmetic error reaches what the",
+        "bands left out hold, more bands are of no use.",
+        "",
+        *rows_table(rows, ("left out", "arithmetic", "note")),
+        "",
+    ]
+    for measured in chosen:
+        sentence = where_bands_stop_paying([row for row in rows if row.light == measured.name and row.measured])
+        lines += [f"- {sentence}"] if sentence else []
+    if isinstance(drawing, str):
+        lines += ["", f"Nothing was drawn: {drawing}."]
+    run.page.hosted["Reconstruction"] = "\n".join(lines)
+
+
+def _end_to_end(run: Run, drawing: Shader | str) -> None:
+    text = run.texts[0] if run.texts else experiments.LIGHTS[0]
+    name = run.page.lights[0].name if run.texts else text
+    missing = [] if isinstance(drawing, Shader) else [f"pictures: nothing was drawn: {drawing}"]
+    at_least = QUICK_REPEATS if run.options.quick else 5
+    parts = (("pictures", end_to_end.session_rows, 0.25), ("new processes", end_to_end.process_rows, 0.35))
+    for what, rows_of, share in parts:
+        run.clock.tell(what)
+        budget, at_most = share * run.seconds["end to end"], run.clock.left()
+        run.add(rows_of(text, name, drawing, budget=budget, at_most=at_most, at_least=at_least))
+    if not run.options.quick and run.options.shader:
+        run.clock.tell("an idle window")
+        idle = end_to_end.idle_row(at_most=run.clock.left())
+        if isinstance(idle, str):
+            missing.append(f"an idle window: {idle}")
+        else:
+            run.add([idle])
+    rows = [row for row in run.report.rows if row.section == "end to end"]
+    lines = ["What a user waits for.", "", *rows_table(rows, ("note",))]
+    run.page.hosted["End to end"] = "\n".join([*lines, "", *(f"- Without {line}" for line in missing)])
+
+
+def _stability(run: Run) -> None:
+    outcomes = stability.run(progress=run.clock.tell, shader=run.options.shader)
+    run.stability_failed = not all(outcome.passed for outcome in outcomes)
+    run.report.extra["stability"] = json.loads(stability.as_json(outcomes))
+    run.page.hosted["Hard cases"] = stability.as_markdown(outcomes).partition("\n")[2]

@@ -12,9 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.benchmark import budget, end_to_end, projection_rows, timing
-from shviewer.benchmark.budget import Clock, allot
-from shviewer.benchmark.options import Options
+from shviewer.benchmark import end_to_end, options, projection_rows, timing
+from shviewer.benchmark.options import Clock, Options
 from shviewer.benchmark.page import plots
 from shviewer.benchmark.page.document import read_report
 from shviewer.benchmark.page.projection_tables import _matrix
@@ -33,7 +32,7 @@ def _on_any_machine() -> Iterator[None]:
     """Every look at a clock takes a millisecond, so that what a budget admits depends on no machine. And no plots."""
     ticks = count()
     with pytest.MonkeyPatch.context() as patch:
-        for module in (budget, projection_rows, timing):
+        for module in (options, projection_rows, timing):
             patch.setattr(module, "perf_counter", lambda: next(ticks) / 1000)
         patch.setattr(plots, "make_plots", lambda rows, folder: ((folder / "a-b.svg", folder / "a-b.png"), MESSAGE))
         yield
@@ -178,17 +177,18 @@ def test_progress_goes_from_nothing_to_done(tmp_path: Path) -> None:
 
 
 def test_sections_that_are_not_wanted_give_their_time_to_projection() -> None:
-    everything = dict.fromkeys(("projection", "reconstruction", "end to end", "peers"), True)
-    assert sum(allot(everything, 100).values()) == pytest.approx(100)
-    assert allot({"projection": True}, 100) == {"projection": pytest.approx(100)}
-    assert "peers" not in allot(everything | {"peers": False}, 100)
+    everything = Options(budget=100, peers=True).seconds()
+    assert set(everything) == {"projection", "reconstruction", "end to end", "peers"}
+    assert sum(everything.values()) == pytest.approx(100)
+    assert Options(budget=100, sections=("projection",)).seconds() == {"projection": pytest.approx(100)}
+    assert "peers" not in Options(budget=100).seconds()
 
 
 def test_the_clock_tells_the_share_of_the_time_and_what_a_section_leaves_over_goes_to_the_next(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     now = 0.0
-    monkeypatch.setattr("shviewer.benchmark.budget.perf_counter", lambda: now)
+    monkeypatch.setattr("shviewer.benchmark.options.perf_counter", lambda: now)
     told: list[tuple[float, float, str]] = []
     clock = Clock({"first": 10.0, "second": 5.0, "third": 5.0}, lambda *what: told.append(what))
     clock.begin("first")
@@ -208,8 +208,8 @@ def test_the_clock_tells_the_share_of_the_time_and_what_a_section_leaves_over_go
 
 def test_nothing_is_begun_after_the_time_is_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(end_to_end.subprocess, "run", lambda *rest, **options: pytest.fail("begun"))
-    options = Options(budget=1e-4, quick=True, sections=("projection", "end to end"), shader=False)
-    summary = write_report(["green"], tmp_path, options)
+    brief = Options(budget=1e-4, quick=True, sections=("projection", "end to end"), shader=False)
+    summary = write_report(["green"], tmp_path, brief)
     report = read_report(tmp_path / "report.json")
     assert report.complete
     assert summary.rows == 0

@@ -91,10 +91,9 @@ def pole_growth(normalise: Callable[[int], Array] = normalisation) -> float:
     """
     norms = normalise(MAX_BANDS)
     last = MAX_BANDS - 1
-    worst = largest(np.where(np.isfinite(norms), 0, np.inf))
-    for m in (0, 1, 2, 100, 500, 625, 700, 1000, last):
-        worst = max(worst, largest(norms[last, m] / float(_norm_at_pole(last, m)) - 1))
-    return worst
+    chosen = np.array([0, 1, 2, 100, 500, 625, 700, 1000, last])
+    wanted = [float(_norm_at_pole(last, m)) for m in chosen.tolist()]
+    return largest(norms[last, chosen] / wanted - 1) if np.isfinite(norms).all() else np.inf
 
 
 @exact.in_many_digits

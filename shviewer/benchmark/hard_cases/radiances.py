@@ -42,13 +42,6 @@ def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
     return missed
 
 
-def black(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
-    """An image and a scene of radiance 0: relative error and energies read 0. Bound: 0; a NaN is an infinite error."""
-    image = EnvironmentLight(LatLongMap(np.zeros((4, 8, 3), dtype=np.float32)))
-    lights: tuple[Light, ...] = (image, LobeLight((Lobe(Disc(0.5), np.array(SUN_AXIS), np.zeros(3)),)))
-    return max(largest((figures or figures_of)(light)) for light in lights)
-
-
 def figures_of(light: Light) -> list[float]:
     """Figures that a picture of 5 bands shows: the relative L2 error, and the energy of each band."""
     from shviewer.analysis.figures import reconstruct
@@ -56,6 +49,13 @@ def figures_of(light: Light) -> list[float]:
 
     figures = reconstruct(light, project(light, *BEST, 32), Shown(5))[1]
     return [figures.relative_l2, *figures.energy_share]
+
+
+def black(figures: Callable[[Light], Sequence[float]] = figures_of) -> float:
+    """An image and a scene of radiance 0: relative error and energies read 0. Bound: 0; a NaN is an infinite error."""
+    image = EnvironmentLight(LatLongMap(np.zeros((4, 8, 3), dtype=np.float32)))
+    lights: tuple[Light, ...] = (image, LobeLight((Lobe(Disc(0.5), np.array(SUN_AXIS), np.zeros(3)),)))
+    return max(largest(figures(light)) for light in lights)
 
 
 def magnitudes(project: ProjectImage = project_image) -> float:
@@ -79,7 +79,7 @@ def subnormal_image(project: ProjectImage = project_image) -> float:
     return worst
 
 
-def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] | None = None) -> float:
+def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] = figures_of) -> float:
     """The relative figures of a sun of radiance 1e-30 and 1e30, the ends of what lights may have, against those of 1.
 
     Bound: 1e-12, rounding of sums.
@@ -87,7 +87,7 @@ def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] | None =
 
     def read(radiance: float) -> Array:
         lobe = Lobe(Disc(0.6), np.array(SUN_AXIS), np.array([1.0, 0.5, 0.25]) * radiance)
-        return np.array((figures or figures_of)(LobeLight((lobe,))))
+        return np.array(figures(LobeLight((lobe,))))
 
     plain = read(1.0)
     return max(largest(read(radiance) - plain) for radiance in (DIMMEST, BRIGHTEST))

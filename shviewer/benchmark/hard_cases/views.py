@@ -9,6 +9,7 @@ import numpy as np
 from shviewer.benchmark.hard_cases.shader import FROM_NORTH, FROM_SOUTH, View
 from shviewer.harmonics.basis import Array, degrees, evaluate_basis
 from shviewer.harmonics.zonal import Disc, orient
+from shviewer.viewer.camera import world_from_view
 
 SEED = 20_240_601
 """The seed of everything random in the table."""
@@ -16,6 +17,9 @@ SEED = 20_240_601
 SUN_AXIS = (0.36, -0.48, 0.8)
 SUN, SKY, SUN_HALF_ANGLE = 1.6e9, 1e3, 0.265
 """Radiances of sun and sky, in any unit, and the sun's half-angle in degrees."""
+
+OBLIQUE = world_from_view(78.0, 22.0)
+"""The matrix of a camera that is on no axis."""
 
 
 def delta(direction: Sequence[float], n_bands: int = 32) -> Array:
@@ -25,13 +29,6 @@ def delta(direction: Sequence[float], n_bands: int = 32) -> Array:
 
 def noise(n_bands: int) -> Array:
     return np.random.default_rng(SEED).normal(size=n_bands**2)
-
-
-def oblique() -> Array:
-    """The matrix of a camera that is on no axis."""
-    from shviewer.viewer.camera import world_from_view
-
-    return world_from_view(78.0, 22.0)
 
 
 def pole_views() -> list[View]:
@@ -49,25 +46,23 @@ def seam_views() -> list[View]:
 
 def factorial_views() -> list[View]:
     """All orders of the degrees 17 to 31, where factorials have left float32."""
-    return [
-        View(np.where(degrees(32) >= 17, coefficients, 0), oblique()) for coefficients in (noise(32), delta([1, 2, 3]))
-    ]
+    return [View(np.where(degrees(32) >= 17, lights, 0), OBLIQUE) for lights in (noise(32), delta([1, 2, 3]))]
 
 
 def noise_views() -> list[View]:
     """White noise from several sides."""
-    return [View(noise(n), camera) for n in (2, 16, 32) for camera in (oblique(), FROM_NORTH, FROM_SOUTH)]
+    return [View(noise(n), camera) for n in (2, 16, 32) for camera in (OBLIQUE, FROM_NORTH, FROM_SOUTH)]
 
 
 def sun_views() -> list[View]:
     """The sun and the sky in 32 bands."""
     sun = orient(Disc(float(np.radians(SUN_HALF_ANGLE))).zonal(32), np.array(SUN_AXIS)) * (SUN - SKY)
     sun[0] += SKY * np.sqrt(4 * np.pi)
-    return [View(sun, oblique()), View(sun)]
+    return [View(sun, OBLIQUE), View(sun)]
 
 
 def cancelling_views() -> list[View]:
     """Two suns of +-1e6 close together over 1e-3: away from them terms of 1e6 have to leave 1e-3."""
     pair = (delta([0.6, 0, 0.8]) - delta([0.62, 0.01, 0.8])) * 1e6
     pair[0] += 1e-3 * np.sqrt(4 * np.pi)
-    return [View(pair, oblique()), View(pair), View(pair, np.diag([1.0, -1.0, -1.0]))]
+    return [View(pair, OBLIQUE), View(pair), View(pair, FROM_SOUTH)]

@@ -17,23 +17,13 @@ INCHES = (3.39, 3.2)
 
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
-    "font.size": 8,
-    "figure.titlesize": 8,
-    "axes.labelsize": 8,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
+    **dict.fromkeys(("font.size", "figure.titlesize", "axes.labelsize", "xtick.labelsize", "ytick.labelsize"), 8),
+    **dict.fromkeys(("axes.linewidth", "grid.linewidth", "xtick.major.width", "ytick.major.width"), 0.6),
+    **dict.fromkeys(("xtick.major.size", "ytick.major.size"), 2.5),
+    **dict.fromkeys(("axes.spines.top", "axes.spines.right", "legend.frameon", "text.parse_math"), False),
     "axes.axisbelow": True,
     "grid.color": "0.9",
-    "grid.linewidth": 0.6,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 2.5,
-    "ytick.major.size": 2.5,
     "figure.constrained_layout.use": True,
-    "legend.frameon": False,
     "legend.handlelength": 3.6,
     "legend.columnspacing": 1.2,
     "legend.labelspacing": 0.3,
@@ -41,22 +31,12 @@ STYLE: dict[Any, Any] = {
     "lines.markersize": 4,
     "svg.hashsalt": "shviewer",
     "svg.fonttype": "path",
-    "text.parse_math": False,
     "savefig.facecolor": "white",
 }
 
 DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)))
-LOOKS = (
-    ("#000000", "o"),
-    ("#0072B2", "s"),
-    ("#009E73", "^"),
-    ("#D55E00", "D"),
-    ("#E69F00", "v"),
-    ("#CC79A7", "P"),
-    ("#56B4E9", "X"),
-    ("#595959", "<"),
-    ("#8C8C8C", ">"),
-)
+COLOURS = ("#000000", "#0072B2", "#009E73", "#D55E00", "#E69F00", "#CC79A7", "#56B4E9", "#595959", "#8C8C8C")
+LOOKS = tuple(zip(COLOURS, "os^DvPX<>", strict=True))
 """Colours and markers; with nine of them and four dashes, no two of 36 curves look alike."""
 
 LONGEST_NAME = 20

@@ -159,10 +159,9 @@ def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
     """Draw the error of n bands for each light, with the tolerances."""
     lowest = min(y for curve in curves for _, y in curve.points)
     bottom = lowest if lowest == 100 * BAND_FLOOR else min(lowest / 1.3, 0.8)
-    axes = log_axes(figure, "relative L2 error of the first bands", _band_range(curves), (bottom, 115.0))
+    axes = _band_axes(figure, "relative L2 error of the first bands", curves, (bottom, 115.0))
     ticks = [tick for tick in (0.1, 1, 5, 10, 100) if tick >= bottom]
     axes.set_yticks(ticks, [f"{'< ' * (tick == 100 * BAND_FLOOR == lowest)}{plain(tick)} %" for tick in ticks])
-    _band_axis(axes)
     for tolerance in TOLERANCES:
         axes.axhline(100 * tolerance, **MARKED)
     draw_curves(axes, curves)
@@ -174,20 +173,18 @@ def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
     """Draw milliseconds per frame; at 60 frames a second there are 16.7."""
     y = padded((*(y for curve in curves for _, y in curve.points), SIXTY_HERTZ))
     title = "milliseconds per frame of 1280 \N{MULTIPLICATION SIGN} 640"
-    axes = log_axes(figure, title, _band_range(curves), y, unit="")
-    _band_axis(axes)
+    axes = _band_axes(figure, title, curves, y, unit="")
     draw_curves(axes, curves)
     axes.axhline(SIXTY_HERTZ, **MARKED, label="60 a second")
     figure.legend(**BELOW)
 
 
-def _band_range(curves: Sequence[Curve]) -> tuple[float, float]:
+def _band_axes(figure: Figure, title: str, curves: Sequence[Curve], y: tuple[float, float], unit: str = " %") -> Axes:
+    """Axes on which the band counts of the curves go to the right."""
     bands = [x for curve in curves for x, _ in curve.points]
-    return min(bands) / 1.12, max(bands) * 1.12
-
-
-def _band_axis(axes: Axes) -> None:
-    low, high = axes.get_xlim()
+    low, high = min(bands) / 1.12, max(bands) * 1.12
+    axes = log_axes(figure, title, (low, high), y, unit)
     ticks = [n for n in (*reconstruction.BANDS, 128) if low <= n <= high]
     axes.set_xticks(ticks, [plain(n) for n in ticks])
     axes.set_xlabel("bands")
+    return axes
