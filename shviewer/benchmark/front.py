@@ -1,4 +1,4 @@
-"""Advice per light, made from measured rows only: the Pareto front, a sentence per tolerance, and where bands stop paying."""
+"""Advice per light, from measured rows only: the Pareto front, a sentence per tolerance, and where bands stop paying."""
 
 from __future__ import annotations
 
@@ -55,7 +55,8 @@ def _sentence(measured: MeasuredLight, tolerance: float, needed: int, rows: Sequ
     goal = f"for {percent(tolerance)} relative L2: "
     good = [row for row in rows if row.measured and _number(row.total_error, math.inf) <= tolerance * (1 + 1e-12)]
     if not good:
-        return f"{goal}{counted(needed, 'band')}, of which nothing that was measured is within it; give it a larger --budget."
+        reached = "of which nothing that was measured is within it; give it a larger --budget."
+        return f"{goal}{counted(needed, 'band')}, {reached}"
     fewest = min(row.n_bands or 0 for row in good)
     good = [row for row in good if row.n_bands == fewest]
     winner = min(good, key=lambda row: (row.milliseconds, row.total_error))

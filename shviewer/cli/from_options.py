@@ -37,7 +37,7 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
     window, separator, width = chosen.get("window", "none").partition(":")
     if separator and window in ("none", "dering"):
         raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
-    chosen |= {"window": window, "window_width": _finite_width(width) if separator else None}
+    chosen |= {"window": window, "window_width": _finite(width, "window width") if separator else None}
     recipe = Recipe(light, reading_from(options), **chosen)
     recipe.check()
     compared, said = vars(options).get("compare"), ""
@@ -103,10 +103,15 @@ def _error_range(options: argparse.Namespace) -> float | None:
     share = text.endswith("%")
     if share and options.error != "relative":
         raise UsageError(f"error range {text}: a share is for --error relative; give a radiance, such as 0.5")
+    return _finite(text.removesuffix("%"), "error range") / (100 if share else 1)
+
+
+def _finite(text: str, what: str) -> float:
+    """The number. UsageError, which says what it should be, if it is none."""
     try:
-        return finite(text.removesuffix("%")) / (100 if share else 1)
+        return finite(text)
     except argparse.ArgumentTypeError as error:
-        raise UsageError(f"error range {error}") from error
+        raise UsageError(f"{what} {error}") from error
 
 
 def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
@@ -134,44 +139,32 @@ def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
 
 def reading_from(options: argparse.Namespace) -> Reading:
     """The reading that the options ask for. UsageError for an unknown layout or convention."""
-    from shviewer.lights.reading import Reading
+    from shviewer.lights.reading import LAYOUTS, Reading
     from shviewer.limits import Limits
 
-    if options.layout != "auto":
-        from shviewer.lights.reading import LAYOUTS
-
-        if options.layout not in LAYOUTS:
-            raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
+    if options.layout not in ("auto", *LAYOUTS):
+        raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
     chosen = {
         "side": options.max_side,
         "texels": options.max_megatexels and int(options.max_megatexels * 2**20),
         "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
     }
     limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
-    return Reading(
-        sanitize=options.sanitize, layout=options.layout, limits=limits, convention=_input_convention(options)
-    )
+    if options.input_convention:
+        _check_convention(options, options.input_convention)
+    return Reading(options.sanitize, options.layout, limits=limits, convention=options.input_convention)
 
 
-def _input_convention(options: argparse.Namespace) -> str:
-    """The convention of bare lists; "" if none is named. UsageError for an unknown one."""
-    text: str = options.input_convention
-    if text:
-        from shviewer.coefficients.programs import parse_convention
-
-        try:
-            parse_convention(text)
-        except ValueError as error:
-            raise UsageError(str(error)) from error
-        _check_is_of_use(options, text)
-    return text
-
-
-def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
-    """UsageError for a convention if no file is given that it could apply to."""
+def _check_convention(options: argparse.Namespace, convention: str) -> None:
+    """UsageError for a convention of bare lists that is unknown, or if no file is given that it could apply to."""
+    from shviewer.coefficients.programs import parse_convention
     from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
     from shviewer.lights.find import split_light
 
+    try:
+        parse_convention(convention)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
     given = vars(options)
     lights: list[str] = given.get("lights") or [given.get("light", "green")]
     if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
@@ -181,10 +174,3 @@ def _check_is_of_use(options: argparse.Namespace, convention: str) -> None:
         f"{name} {convention}: it applies to a coefficient file, and {lights[0]} is none; name one as LIGHT"
         + ("" if name == "--input-convention" else " or with --compare")
     )
-
-
-def _finite_width(text: str) -> float:
-    try:
-        return finite(text)
-    except argparse.ArgumentTypeError as error:
-        raise UsageError(f"window width {error}") from error

@@ -6,18 +6,15 @@ import sys
 
 from shviewer.analysis.comparison import verdict
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.subjects import Subject, load_light
+from shviewer.analysis.subjects import load_light, subject
 from shviewer.words import one_line
 
 
-def print_notes(subject: Subject) -> None:
-    for note in subject.light.notes:
-        print(one_line(f"shviewer: note: {subject.light.name}: {note}"), file=sys.stderr)
-    if subject.refusal:
-        print(f"shviewer: note: {subject.refusal}", file=sys.stderr)
-
-
-def print_verdict(recipe: Recipe) -> None:
-    """Print how well compared coefficients agree, or by which usual mistake they are off."""
-    if recipe.compare:
-        print(f"shviewer: {verdict(load_light(recipe), recipe.compare)}", file=sys.stderr)
+def print_notes(recipe: Recipe) -> None:
+    """Print the notes on a light, and on compared coefficients their verdict, or the usual mistake they are off by."""
+    shown = subject(recipe)
+    notes = [f"note: {shown.light.name}: {note}" for note in shown.light.notes]
+    notes += [f"note: {shown.refusal}"] if shown.refusal else []
+    notes += [verdict(load_light(recipe), recipe.compare)] if recipe.compare else []
+    for note in notes:
+        print(one_line(f"shviewer: {note}"), file=sys.stderr)

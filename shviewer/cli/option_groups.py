@@ -18,10 +18,8 @@ LIGHT_HELP = (
     "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl)"
 )
 
-
 TEXTS = ("window", "error_range")
 """Options kept as text and parsed later: a window with its width, and a radiance or a share in percent."""
-
 
 LARGE = ("samples",)
 """Counts that may be given as 1e6."""
@@ -51,7 +49,7 @@ def add_table(parser: OneLineParser, holder: type, names: Container[str] = ()) -
 
 
 def _values(row: Option) -> dict[str, Any]:
-    """The arguments of `add_argument` about an option's values. Those in TEXTS are parsed later."""
+    """The arguments of `add_argument` about an option's values."""
     if row.name in TEXTS:
         return {"metavar": row.metavar}
     readers: dict[type, Callable[[str], object]] = {Whole: int, Share: _tolerance, Number: finite, Bands: _band_list}

@@ -30,22 +30,27 @@ EXIT_CODES = """exit codes:
 DEFAULT_SWEEP = (1, 16)
 
 
+def _parser(program: str, description: str, epilog: str = "", usage: str | None = None) -> OneLineParser:
+    """The parser of a mode, whose help ends with the exit codes and the epilog."""
+    lines = argparse.RawDescriptionHelpFormatter
+    return OneLineParser(program, usage, description, epilog=EXIT_CODES + epilog, formatter_class=lines)
+
+
 def view_parser() -> OneLineParser:
     """shviewer [LIGHT]: the window."""
-    parser = OneLineParser(
-        prog="shviewer",
+    parser = _parser(
+        "shviewer",
+        "Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
+        "\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
+        "\nanimations: shviewer sweep --help"
+        "\nwhat a light is, in figures: shviewer info --help"
+        "\nits coefficients as a file: shviewer project --help",
         usage="shviewer [LIGHT] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
         "       shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]\n"
         "       shviewer info LIGHT [LIGHT ...] [options]\n"
         "       shviewer project [LIGHT ...] -o FILE [options]\n"
         "       shviewer report [LIGHT ...] [-o DIR] [options]",
-        description="Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
-        epilog=f"{EXIT_CODES}\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
-        "\nanimations: shviewer sweep --help"
-        "\nwhat a light is, in figures: shviewer info --help"
-        "\nits coefficients as a file: shviewer project --help",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add_view_options(parser)
     parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
@@ -58,11 +63,9 @@ def view_parser() -> OneLineParser:
 
 def screenshot_parser() -> OneLineParser:
     """shviewer screenshot OUT [LIGHT]: a picture without a window."""
-    parser = OneLineParser(
-        prog="shviewer screenshot",
-        description="Write the picture without a window or a display. The same arguments give the same bytes.",
-        epilog=EXIT_CODES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+    parser = _parser(
+        "shviewer screenshot",
+        "Write the picture without a window or a display. The same arguments give the same bytes.",
     )
     parser.add_argument(
         "out", metavar="OUT", type=Path, help="OUT.png: the picture; OUT.exr: linear float32 radiance of the spheres"
@@ -91,12 +94,10 @@ def screenshot_parser() -> OneLineParser:
 
 def sweep_parser() -> OneLineParser:
     """shviewer sweep OUT [LIGHT]: an animation without a window."""
-    parser = OneLineParser(
-        prog="shviewer sweep",
-        description="Write an animation of more and more bands, or with --turntable of the camera going round. Every frame is "
+    parser = _parser(
+        "shviewer sweep",
+        "Write an animation of more and more bands, or with --turntable of the camera going round. Every frame is "
         "the screenshot of its state.",
-        epilog=EXIT_CODES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "out", metavar="OUT", type=Path, help="OUT.webp: lossless; OUT.gif: one palette of 255 colours for all frames"
@@ -121,12 +122,11 @@ def sweep_parser() -> OneLineParser:
 
 def info_parser() -> OneLineParser:
     """shviewer info LIGHT [LIGHT ...]: lights in figures."""
-    parser = OneLineParser(
-        prog="shviewer info",
-        description="Say what each LIGHT is: its file, size and range, its mean and peak, the energy of its bands, and how many"
+    parser = _parser(
+        "shviewer info",
+        "Say what each LIGHT is: its file, size and range, its mean and peak, the energy of its bands, and how many"
         " bands it needs. The figures are the window's.",
-        epilog=f"{EXIT_CODES}\n\nA light that cannot be read does not stop the others; the exit code is that of the first.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        "\n\nA light that cannot be read does not stop the others; the exit code is that of the first.",
     )
     parser.add_argument("lights", metavar="LIGHT", nargs="+", help=LIGHT_HELP)
     parser.add_argument("--json", action="store_true", help="the same as a JSON array, one object per LIGHT")
@@ -136,11 +136,10 @@ def info_parser() -> OneLineParser:
 
 def project_parser() -> OneLineParser:
     """shviewer project [LIGHT ...] -o FILE: coefficients as a file."""
-    parser = OneLineParser(
-        prog="shviewer project",
-        description="Write the coefficients of LIGHT, with the convention stamped on them. Several lights go into a folder.",
-        epilog=f"{EXIT_CODES}\n\nOf several lights those that can be projected are written, whatever becomes of the others.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+    parser = _parser(
+        "shviewer project",
+        "Write the coefficients of LIGHT, with the convention stamped on them. Several lights go into a folder.",
+        "\n\nOf several lights those that can be projected are written, whatever becomes of the others.",
     )
     parser.add_argument("lights", metavar="LIGHT", nargs="*", help=f"{LIGHT_HELP} (default green)")
     parser.add_argument(
@@ -172,13 +171,12 @@ def project_parser() -> OneLineParser:
 
 def report_parser() -> OneLineParser:
     """shviewer report [LIGHT ...]: speed against error, measured on this machine."""
-    parser = OneLineParser(
-        prog="shviewer report",
-        description="Measure speed against error on this machine and write report.md, report.json, report.csv and plots. "
+    parser = _parser(
+        "shviewer report",
+        "Measure speed against error on this machine and write report.md, report.json, report.csv and plots. "
         "Without LIGHT: built-in scenes and two environment maps.",
-        epilog=f"{EXIT_CODES}\n\nWith --stability alone only the hard cases are run and printed (about 15 s). Plots need "
+        "\n\nWith --stability alone only the hard cases are run and printed (about 15 s). Plots need "
         "matplotlib:\npip install 'shviewer[report]'.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("lights", metavar="LIGHT", nargs="*", help=LIGHT_HELP)
     parser.add_argument(

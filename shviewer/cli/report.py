@@ -10,9 +10,8 @@ from shviewer.cli.status_line import status_line
 
 
 def run(options: argparse.Namespace) -> int:
-    if options.stability and not (
-        options.lights or options.output or options.quick or options.peers or options.against
-    ):
+    given = vars(options)
+    if options.stability and not any(given[name] for name in ("lights", "output", "quick", "peers", "against")):
         return _hard_cases(options)
     from shviewer.benchmark.options import DEFAULT_BUDGET, Options
     from shviewer.benchmark.run import write_report
@@ -29,12 +28,8 @@ def run(options: argparse.Namespace) -> int:
         shader=not options.no_shader,
     )
     with status_line() as line:
-        summary = write_report(
-            options.lights,
-            options.output or Path("shviewer-report"),
-            wanted,
-            progress=line.fraction if line else None,
-        )
+        folder = options.output or Path("shviewer-report")
+        summary = write_report(options.lights, folder, wanted, progress=line.fraction if line else None)
     print(summary.text)
     print(f"wrote {summary.rows} rows: {', '.join(str(summary.folder / name) for name in summary.files)}")
     return 1 if summary.stability_failed else 0

@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from shviewer.cli.from_options import replacing_of, state_from
-from shviewer.cli.notes import print_notes, print_verdict
+from shviewer.cli.notes import print_notes
 from shviewer.errors import UsageError
 from shviewer.viewer.composition import compose
 from shviewer.viewer.picture import prepare
@@ -15,10 +15,10 @@ from shviewer.viewer.screenshot import save_picture
 
 
 def run(options: argparse.Namespace) -> int:
-
-    if options.out.suffix.lower() not in (".png", ".exr"):
+    kind = options.out.suffix.lower()
+    if kind not in (".png", ".exr"):
         raise UsageError(f"{options.out}: OUT must end in .png or .exr")
-    if options.reference and options.out.suffix.lower() != ".png":
+    if options.reference and kind != ".png":
         raise UsageError(f"{options.out}: --reference compares PNG pictures; let OUT end in .png")
     if options.reference and options.reference.resolve() == options.out.resolve():
         raise UsageError(f"{options.out}: OUT and --reference are the same file; name another OUT")
@@ -28,15 +28,14 @@ def run(options: argparse.Namespace) -> int:
     if options.reference:
         replacing.check(difference)
     state = state_from(options, all_lights=False)
-    if state.view.lobe_view and options.out.suffix.lower() == ".exr":
+    if state.view.lobe_view and kind == ".exr":
         raise UsageError(
             f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
         )
     picture = prepare(state)
     composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
-    print_notes(picture.subject)
-    print_verdict(state.recipe)
+    print_notes(state.recipe)
     if options.reference is None or pixels is None:
         return 0
     verdict = compare_with_reference(pixels, options.reference, difference, options.threshold)

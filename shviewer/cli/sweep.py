@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from shviewer.cli.from_options import replacing_of, state_from
-from shviewer.cli.notes import print_notes, print_verdict
+from shviewer.cli.notes import print_notes
 from shviewer.cli.options import DEFAULT_SWEEP
 from shviewer.cli.status_line import status_line
 from shviewer.errors import UsageError
@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
         animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
     composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
     with status_line() as line:
-        picture = save_animation(
+        save_animation(
             animation,
             composition,
             options.out,
@@ -43,8 +43,7 @@ def run(options: argparse.Namespace) -> int:
             progress=line.fraction if line else None,
             replacing=replacing_of(options),
         )
-    print_notes(picture.subject)
-    print_verdict(state.recipe)
+    print_notes(state.recipe)
     return 0
 
 

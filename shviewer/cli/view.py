@@ -23,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"{name:<20}{find_light(name).description}")
         return 0
     from shviewer.analysis.subjects import subject
-    from shviewer.cli.notes import print_notes, print_verdict
+    from shviewer.cli.notes import print_notes
     from shviewer.files import file_stem
     from shviewer.viewer.composition import compose
     from shviewer.viewer.desktop import window
@@ -32,18 +32,14 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.viewer.screenshot import save_picture
 
     state = state_from(options, all_lights=True)
-    print_notes(subject(state.recipe))
-    print_verdict(state.recipe)
+    print_notes(state.recipe)
     try:
         window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
         stem = f"shviewer-{file_stem(subject(state.recipe).light.name)}"
         names = (Path(f"{stem}{f'-{number:03d}' if number else ''}.png") for number in range(10_000))
         out = next(name for name in names if not os.path.lexists(name))
-        save_picture(
-            prepare(state),
-            compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres),
-            out,
-        )
+        composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
+        save_picture(prepare(state), composition, out)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0

@@ -1,5 +1,5 @@
 """Hard cases of spherical-harmonic arithmetic, each with its right answer and the error of this program.
 
 evaluation, identities, projecting, radiances, rotating and ringing declare the cases; exact makes references to 60 digits;
-views and shader draw the cases that concern the fragment shader; table runs all of them and shows the results.
+shader draws the cases that concern the fragment shader; table runs all of them and shows the results.
 """

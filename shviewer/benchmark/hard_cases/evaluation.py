@@ -14,7 +14,7 @@ import numpy as np
 
 from shviewer.benchmark.hard_cases import exact
 from shviewer.benchmark.hard_cases.outcome import Case, largest
-from shviewer.benchmark.hard_cases.views import SEED, factorial_views, pole_views, seam_views
+from shviewer.benchmark.hard_cases.shader import SEED, factorial_views, pole_views, seam_views
 from shviewer.harmonics.basis import MAX_BANDS, Array, evaluate_basis, index, normalisation
 
 DEGREE_1024 = 7.6e-14

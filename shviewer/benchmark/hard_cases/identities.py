@@ -11,7 +11,7 @@ import numpy as np
 from shviewer.benchmark.hard_cases import exact
 from shviewer.benchmark.hard_cases.evaluation import NEAR, Evaluate, generic, rounding
 from shviewer.benchmark.hard_cases.outcome import Case, largest
-from shviewer.benchmark.hard_cases.views import noise_views
+from shviewer.benchmark.hard_cases.shader import noise_views
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.quadrature import DirectionSet, gauss_legendre
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from shviewer.benchmark.hard_cases import exact
 from shviewer.benchmark.hard_cases.outcome import Case, largest
-from shviewer.benchmark.hard_cases.views import SEED, SKY, SUN, cancelling_views, sun_views
+from shviewer.benchmark.hard_cases.shader import SEED, SKY, SUN, cancelling_views, sun_views
 from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.harmonics.projection import project_image
 from shviewer.harmonics.quadrature import DirectionSet, Radiance

@@ -11,7 +11,7 @@ import numpy as np
 from shviewer.analysis.recipe import Shown
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.benchmark.hard_cases.projecting import ProjectImage
-from shviewer.benchmark.hard_cases.views import SEED, SUN_AXIS
+from shviewer.benchmark.hard_cases.shader import SEED, SUN_AXIS
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import project_image

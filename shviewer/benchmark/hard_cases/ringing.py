@@ -10,7 +10,7 @@ import numpy as np
 
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.benchmark.hard_cases.radiances import figures_of
-from shviewer.benchmark.hard_cases.views import SUN_AXIS
+from shviewer.benchmark.hard_cases.shader import SUN_AXIS
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.deringing import dering
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient

@@ -12,7 +12,7 @@ import numpy as np
 from shviewer.benchmark.hard_cases import exact
 from shviewer.benchmark.hard_cases.evaluation import generic
 from shviewer.benchmark.hard_cases.outcome import Case, largest
-from shviewer.benchmark.hard_cases.views import SEED
+from shviewer.benchmark.hard_cases.shader import SEED
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.rotation import rotate
 from shviewer.viewer.camera import IDENTITY, Quaternion, compose, matrix

@@ -9,8 +9,7 @@ import numpy as np
 
 from shviewer.benchmark.hard_cases import evaluation, identities, projecting, radiances, ringing, rotating
 from shviewer.benchmark.hard_cases.outcome import Case, Outcome, largest
-from shviewer.benchmark.hard_cases.shader import Shader, bound, shader_or_reason
-from shviewer.benchmark.hard_cases.views import SEED
+from shviewer.benchmark.hard_cases.shader import SEED, Shader, bound, shader_or_reason
 from shviewer.benchmark.machine import machine_line, versions
 from shviewer.benchmark.row import finite
 
