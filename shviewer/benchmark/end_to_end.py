@@ -17,7 +17,6 @@ import moderngl
 
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.recipe import Recipe
-from shviewer.benchmark.hard_cases.shader import Shader
 from shviewer.benchmark.row import Row, not_measured
 from shviewer.benchmark.timing import Timing, Work, summarise, time_interleaved
 from shviewer.errors import GraphicsError
@@ -90,16 +89,16 @@ except GraphicsError as error:
 
 
 def process_rows(
-    text: str, name: str, drawing: Shader | str, *, budget: float, at_most: float = math.inf, at_least: int = 5
+    text: str, name: str, drawing: Renderer | str, *, budget: float, at_most: float = math.inf, at_least: int = 5
 ) -> list[Row]:
     """Rows of new processes: `--version`, the floor of all, and a screenshot of the LIGHT `text`, which the rows call `name`.
 
-    drawing: the shader, or why nothing can be drawn, and then the screenshot is absent. budget: seconds. at_most: seconds
+    drawing: a renderer, or why nothing can be drawn, and then the screenshot is absent. budget: seconds. at_most: seconds
     beyond which nothing is measured.
     """
     with tempfile.TemporaryDirectory() as folder:
         works = {VERSION: _process("--version")}
-        if isinstance(drawing, Shader):
+        if not isinstance(drawing, str):
             works[SCREENSHOT] = _process("screenshot", str(Path(folder) / "out.png"), text)
         times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least)
     places = {VERSION: ("", None), SCREENSHOT: (name, Recipe.n_bands)}
@@ -109,7 +108,7 @@ def process_rows(
 def session_rows(
     text: str,
     name: str,
-    drawing: Shader | str,
+    drawing: Renderer | str,
     *,
     budget: float,
     at_most: float = math.inf,
@@ -125,8 +124,8 @@ def session_rows(
         return []
     start = state_of(text)
     works: dict[tuple[str, int], Work] = {}
-    with offscreen(drawing.renderer, FRAME) as target, tempfile.TemporaryDirectory() as folder:
-        frames = _Frames(drawing.renderer, target)
+    with offscreen(drawing, FRAME) as target, tempfile.TemporaryDirectory() as folder:
+        frames = _Frames(drawing, target)
         works[PICTURE, start.recipe.n_bands] = lambda: frames.first(start)
         works[SAVED, start.recipe.n_bands] = lambda: frames.save(start, Path(folder) / "out.png")
         for n_bands in key_bands:

@@ -1,4 +1,4 @@
-"""Advice per light, from measured rows only: the Pareto front, a sentence per tolerance, and where bands stop paying."""
+"""Advice per light, from measured rows: the Pareto front, a sentence per tolerance, and where bands stop paying."""
 
 from __future__ import annotations
 

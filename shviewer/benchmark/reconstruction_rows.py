@@ -16,7 +16,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.benchmark.hard_cases.shader import Shader, in_blocks
+from shviewer.benchmark.hard_cases.shader import in_blocks
 from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.row import Row, not_measured
 from shviewer.benchmark.timing import Timing, Work, time_interleaved, wall_milliseconds
@@ -67,7 +67,7 @@ Name = tuple[str, int]
 
 def reconstruction_rows(
     measured: MeasuredLight,
-    drawing: Shader | str,
+    drawing: Renderer | str,
     *,
     budget: float,
     at_most: float = math.inf,
@@ -76,7 +76,7 @@ def reconstruction_rows(
 ) -> list[Row]:
     """Rows of every evaluation of the light at every band count. LightError if it is too dim or too bright to be drawn.
 
-    drawing: the shader, or why nothing can be drawn, and then its rows are absent. budget: seconds for all timings, exceeded
+    drawing: a renderer, or why nothing can be drawn, and then its rows are absent. budget: seconds for all timings, exceeded
     only to reach `at_least` runs of each; the errors, which warm everything up, take a few seconds more. at_most: seconds for
     everything. Band counts come smallest first; a count is not measured if the time of the one before does not fit into the
     rest.
@@ -86,8 +86,8 @@ def reconstruction_rows(
     errors: dict[Name, float | None] = {}
     works: dict[Name, Work] = {}
     turn = step = step_turn = 0.0  # seconds: of one run of every work; of the last band count, alone and of its works
-    with offscreen(drawing.renderer, FRAME) if isinstance(drawing, Shader) else nullcontext() as target:
-        frame = _Frame(drawing.renderer, target) if isinstance(drawing, Shader) and target is not None else None
+    with nullcontext() if isinstance(drawing, str) else offscreen(drawing, FRAME) as target:
+        frame = None if isinstance(drawing, str) or target is None else _Frame(drawing, target)
 
         def before(name: Name, repeat: int) -> None:
             if frame is not None:
@@ -114,7 +114,7 @@ def reconstruction_rows(
     missing = [
         not_measured(SECTION, method, measured.name, n_bands)
         for n_bands in sorted(set(bands) - set(stages))
-        for method in (*CPU, *(_shader_methods(n_bands) if isinstance(drawing, Shader) else ()))
+        for method in (*CPU, *(() if isinstance(drawing, str) else _shader_methods(n_bands)))
     ]
     in_order = sorted(errors.items(), key=lambda item: item[0][1])
     return [stages[n_bands].row(method, error, times) for (method, n_bands), error in in_order] + missing

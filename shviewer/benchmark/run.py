@@ -13,13 +13,13 @@ from pathlib import Path
 from shviewer.benchmark import end_to_end, experiments, projection_rows
 from shviewer.benchmark.front import sentences, where_bands_stop_paying
 from shviewer.benchmark.hard_cases import table as stability
-from shviewer.benchmark.hard_cases.shader import Shader, shader_or_reason
+from shviewer.benchmark.hard_cases.shader import renderer_or_reason
 from shviewer.benchmark.machine import machine_record, versions, yardstick
 from shviewer.benchmark.measured_lights import QUICK_TOLERANCES, TOLERANCES, MeasuredLight, find_measured_lights
 from shviewer.benchmark.options import Clock, Options, Progress
 from shviewer.benchmark.page import plots, writing
 from shviewer.benchmark.page.comparing import compare
-from shviewer.benchmark.page.document import Report, read_report
+from shviewer.benchmark.page.document import YARDSTICK, Report, read_report
 from shviewer.benchmark.page.tables import lines_not_measured, rows_table
 from shviewer.benchmark.peers import INSTALL, peer_rows
 from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
@@ -27,6 +27,7 @@ from shviewer.benchmark.row import Row
 from shviewer.benchmark.timing import summarise
 from shviewer.errors import OutputError, UsageError
 from shviewer.lights.light import Light
+from shviewer.viewer.gl.renderer import Renderer
 
 PEER_BANDS = (3, 9, 16, 32)
 QUICK_RECONSTRUCTED = (3, 16)
@@ -70,11 +71,7 @@ class Run:
         if any(row.measured for row in rows):
             self.yardstick += yardstick()
             times = summarise(self.yardstick)
-            self.report.yardstick = {
-                "median": times.milliseconds,
-                "low_quartile": times.low_quartile,
-                "high_quartile": times.high_quartile,
-            }
+            self.report.yardstick_milliseconds = dict(zip(YARDSTICK, times[:3], strict=True))
         self.report.left_out = lines_not_measured(self.report.rows)
 
     def write(self) -> None:
@@ -83,7 +80,7 @@ class Run:
             self.page.hosted = {AGAINST: ""} | self.page.hosted | {AGAINST: "\n".join(lines)}  # it comes first
         writing.write(self.folder, self.report, self.page)
 
-    def measure(self, section: str, measured_by: Callable[..., None], *drawing: Shader | str) -> None:
+    def measure(self, section: str, measured_by: Callable[..., None], *drawing: Renderer | str) -> None:
         """Measure a section, if it is wanted, and write what it found."""
         if section in self.seconds:
             self.clock.begin(section)
@@ -152,8 +149,8 @@ def _summary(run: Run) -> str:
 def _measure_sections(run: Run) -> None:
     run.measure("projection", _projection)
     run.measure("peers", _peers)
-    with shader_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:
-        if isinstance(drawing, Shader):
+    with renderer_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:
+        if not isinstance(drawing, str):
             run.report.renderer = drawing.version
         run.measure("reconstruction", _reconstruction, drawing)
         run.measure("end to end", _end_to_end, drawing)
@@ -185,7 +182,7 @@ def _peers(run: Run) -> None:
     run.page.hosted["Peers"] = "\n".join(lines)
 
 
-def _reconstruction(run: Run, drawing: Shader | str) -> None:
+def _reconstruction(run: Run, drawing: Renderer | str) -> None:
     kinds: dict[type, MeasuredLight] = {}
     for measured in run.page.lights:
         kinds.setdefault(type(measured.light), measured)
@@ -213,10 +210,10 @@ def _reconstruction(run: Run, drawing: Shader | str) -> None:
     run.page.hosted["Reconstruction"] = "\n".join(lines)
 
 
-def _end_to_end(run: Run, drawing: Shader | str) -> None:
+def _end_to_end(run: Run, drawing: Renderer | str) -> None:
     text = run.texts[0] if run.texts else experiments.LIGHTS[0]
     name = run.page.lights[0].name if run.texts else text
-    missing = [] if isinstance(drawing, Shader) else [f"pictures: nothing was drawn: {drawing}"]
+    missing = [f"pictures: nothing was drawn: {drawing}"] if isinstance(drawing, str) else []
     at_least = QUICK_REPEATS if run.options.quick else 5
     parts = (("pictures", end_to_end.session_rows, 0.25), ("new processes", end_to_end.process_rows, 0.35))
     for what, rows_of, share in parts:

@@ -43,8 +43,14 @@ def test_a_time_within_the_quartiles_of_the_other_does_not_differ() -> None:
 def test_the_yardsticks_drift_has_to_be_passed() -> None:
     steady = {"median": 1.0, "low_quartile": 0.95, "high_quartile": 1.05}
     drifting = {"median": 1.5, "low_quartile": 1.4, "high_quartile": 1.9}
-    assert verdicts(report(row(1.0), yardstick=steady), report(row(1.6), yardstick=steady))[0] == "slower"
-    assert verdicts(report(row(1.0), yardstick=steady), report(row(1.6), yardstick=drifting))[0] == ""
+    assert (
+        verdicts(report(row(1.0), yardstick_milliseconds=steady), report(row(1.6), yardstick_milliseconds=steady))[0]
+        == "slower"
+    )
+    assert (
+        verdicts(report(row(1.0), yardstick_milliseconds=steady), report(row(1.6), yardstick_milliseconds=drifting))[0]
+        == ""
+    )
 
 
 def test_errors_of_deterministic_methods_differ_beyond_rounding() -> None:
@@ -93,7 +99,9 @@ def test_what_one_of_the_two_did_not_measure_is_not_compared() -> None:
 
 
 def test_a_report_read_back_is_the_report(tmp_path: Path) -> None:
-    wanted = report(row(error=1e-3, note="a"), row(n_bands=3), yardstick={"median": 1.0}, renderer="llvmpipe")
+    wanted = report(
+        row(error=1e-3, note="a"), row(n_bands=3), yardstick_milliseconds={"median": 1.0}, renderer="llvmpipe"
+    )
     (tmp_path / "report.json").write_text(wanted.as_json())
     assert read_report(tmp_path / "report.json") == wanted
 

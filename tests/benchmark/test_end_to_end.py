@@ -26,7 +26,6 @@ from shviewer.benchmark.end_to_end import (
     process_rows,
     session_rows,
 )
-from shviewer.benchmark.hard_cases.shader import Shader
 from shviewer.benchmark.row import Row
 from shviewer.errors import GraphicsError
 from shviewer.lights.reading import DEFAULT_READING
@@ -54,7 +53,7 @@ def test_what_is_timed_in_new_processes_is_the_start_alone_and_a_whole_screensho
         return run(command, **options)  # type: ignore[call-overload]
 
     monkeypatch.setattr(subprocess, "run", noting)
-    start, whole = process_rows("green", "mine", Shader(renderer), budget=0, at_least=1)
+    start, whole = process_rows("green", "mine", renderer, budget=0, at_least=1)
     assert (start.method, whole.method, whole.light, whole.n_bands) == (VERSION, SCREENSHOT, "mine", 5)
     assert start.milliseconds
     assert whole.milliseconds
@@ -63,11 +62,11 @@ def test_what_is_timed_in_new_processes_is_the_start_alone_and_a_whole_screensho
 
 def test_a_process_that_fails_is_no_time(renderer: Renderer) -> None:
     with pytest.raises(GraphicsError, match=r"ended with 3: shviewer: unknown light 'grene'"):
-        process_rows("grene", "grene", Shader(renderer), budget=0, at_least=1)
+        process_rows("grene", "grene", renderer, budget=0, at_least=1)
 
 
 def test_a_session_times_the_first_picture_and_a_key_on_either_side(renderer: Renderer) -> None:
-    rows = session_rows("green", "mine", Shader(renderer), budget=0, key_bands=(5, 32), at_least=1)
+    rows = session_rows("green", "mine", renderer, budget=0, key_bands=(5, 32), at_least=1)
     assert [(row.method, row.n_bands) for row in rows] == [
         (PICTURE, 5),
         (SAVED, 5),
@@ -103,13 +102,13 @@ def test_what_is_new_is_computed_anew_and_what_is_known_is_not(
         return {}
 
     monkeypatch.setattr(end_to_end, "time_interleaved", in_reverse)
-    rows = session_rows("green", "green", Shader(renderer), budget=0, key_bands=(5,))
+    rows = session_rows("green", "green", renderer, budget=0, key_bands=(5,))
     assert {row.note for row in rows} == {"not measured"}
     assert seen == {KNOWN_KEY: (2, 2), NEW_KEY: (1, 2), SAVED: (0, 1), PICTURE: (0, 1)}
 
 
 def test_a_session_leaves_nothing_remembered_and_the_renderer_free_of_errors(renderer: Renderer) -> None:
-    session_rows("constant", "constant", Shader(renderer), budget=0, key_bands=(), at_least=1)
+    session_rows("constant", "constant", renderer, budget=0, key_bands=(), at_least=1)
     assert not MEMORY._known
     assert renderer.context.error == "GL_NO_ERROR"
 

@@ -12,7 +12,6 @@ from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projections import BEST
 from shviewer.benchmark import reconstruction_rows as module
 from shviewer.benchmark.front import where_bands_stop_paying
-from shviewer.benchmark.hard_cases.shader import Shader
 from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
 from shviewer.benchmark.reconstruction_rows import (
     BASIS,
@@ -82,7 +81,7 @@ def test_the_cpu_is_as_exact_as_its_number_type(green: MeasuredLight) -> None:
 
 
 def test_the_shader_is_as_exact_as_float32_at_every_band_count(green: MeasuredLight, renderer: Renderer) -> None:
-    rows = by_name(reconstruction_rows(green, Shader(renderer), budget=0, bands=(3, 33), at_least=1))
+    rows = by_name(reconstruction_rows(green, renderer, budget=0, bands=(3, 33), at_least=1))
     assert {name for name in rows if name[0] in SHADER} == {(DIRECT, 3), (CACHED, 3), (CACHED, 33)}
     for (method, n_bands), row in rows.items():
         if method in SHADER:

@@ -52,50 +52,40 @@ def bound(views: list[View]) -> float:
     return 1e-6 * max(count_bands(view.coefficients) for view in views)
 
 
-class Shader:
-    """A renderer, and the measurement of its error against float64."""
+def error_of(view: View, renderer: Renderer) -> float:
+    """The largest difference over the pixels from float64, relative to the largest magnitude on the whole sphere.
 
-    def __init__(self, renderer: Renderer) -> None:
-        self.renderer = renderer
+    Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn.
+    """
+    from shviewer.viewer.composition import Box, Sphere, compose
+    from shviewer.viewer.drawn import DirectSum
+    from shviewer.viewer.picture import prepare
+    from shviewer.viewer.screenshot import render_linear
+    from shviewer.viewer.state import state_of
 
-    @property
-    def version(self) -> str:
-        return self.renderer.version
-
-    def error(self, view: View) -> float:
-        """The largest difference over the pixels, relative to the largest magnitude on the whole sphere.
-
-        Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn.
-        """
-        from shviewer.viewer.composition import Box, Sphere, compose
-        from shviewer.viewer.drawn import DirectSum
-        from shviewer.viewer.picture import prepare
-        from shviewer.viewer.screenshot import render_linear
-        from shviewer.viewer.state import state_of
-
-        n_bands = count_bands(view.coefficients)
-        coefficients = np.repeat(view.coefficients[:, None], 3, axis=1)
-        picture = replace(
-            prepare(state_of(n_bands=n_bands)),
-            coefficients=coefficients,
-            drawn=DirectSum(coefficients),
-            world_from_view=view.world_from_view,
-            light_from_world=np.eye(3),
-        )
-        box = Box(WIDTH / 2, 0, WIDTH, HEIGHT)
-        sphere = Sphere(*CENTRE, view.radius, box)
-        hidden = Sphere(-9.0, -9.0, 1.0, Box(0, 0, 0, 0))
-        drawn = render_linear(self.renderer, picture, replace(compose(WIDTH, HEIGHT), spheres=(hidden, sphere)))
-        x = (np.arange(WIDTH) + 0.5 - sphere.x) / sphere.radius
-        y = (sphere.y - np.arange(HEIGHT) - 0.5) / sphere.radius
-        right, up = np.meshgrid(x, y)
-        facing_squared = 1 - right**2 - up**2
-        inside = (facing_squared > 0.04) & (np.arange(WIDTH) >= WIDTH / 2)
-        normals = np.column_stack([right[inside], up[inside], np.sqrt(facing_squared[inside])])
-        directions = normals @ view.world_from_view.T
-        wanted = in_blocks(lambda part: evaluate_basis(part, n_bands) @ view.coefficients, directions)
-        difference = float(np.abs(drawn[inside] - wanted[:, None]).max())
-        return difference / max(float(np.abs(wanted).max()), _peak(coefficients))
+    n_bands = count_bands(view.coefficients)
+    coefficients = np.repeat(view.coefficients[:, None], 3, axis=1)
+    picture = replace(
+        prepare(state_of(n_bands=n_bands)),
+        coefficients=coefficients,
+        drawn=DirectSum(coefficients),
+        world_from_view=view.world_from_view,
+        light_from_world=np.eye(3),
+    )
+    box = Box(WIDTH / 2, 0, WIDTH, HEIGHT)
+    sphere = Sphere(*CENTRE, view.radius, box)
+    hidden = Sphere(-9.0, -9.0, 1.0, Box(0, 0, 0, 0))
+    drawn = render_linear(renderer, picture, replace(compose(WIDTH, HEIGHT), spheres=(hidden, sphere)))
+    x = (np.arange(WIDTH) + 0.5 - sphere.x) / sphere.radius
+    y = (sphere.y - np.arange(HEIGHT) - 0.5) / sphere.radius
+    right, up = np.meshgrid(x, y)
+    facing_squared = 1 - right**2 - up**2
+    inside = (facing_squared > 0.04) & (np.arange(WIDTH) >= WIDTH / 2)
+    normals = np.column_stack([right[inside], up[inside], np.sqrt(facing_squared[inside])])
+    directions = normals @ view.world_from_view.T
+    wanted = in_blocks(lambda part: evaluate_basis(part, n_bands) @ view.coefficients, directions)
+    difference = float(np.abs(drawn[inside] - wanted[:, None]).max())
+    return difference / max(float(np.abs(wanted).max()), _peak(coefficients))
 
 
 def in_blocks(function: Callable[[Array], Array], directions: Array) -> Array:
@@ -110,8 +100,8 @@ def _peak(coefficients: Array) -> float:
 
 
 @contextmanager
-def shader_or_reason(wanted: bool) -> Iterator[Shader | str]:
-    """A Shader, or the reason why there is none."""
+def renderer_or_reason(wanted: bool) -> Iterator[Renderer | str]:
+    """A renderer, or the reason why there is none."""
     if not wanted:
         yield "not asked for"
         return
@@ -123,7 +113,7 @@ def shader_or_reason(wanted: bool) -> Iterator[Shader | str]:
         except Exception as error:
             yield f"{type(error).__name__}: {error}"
             return
-        yield Shader(renderer)
+        yield renderer
 
 
 def delta(direction: Sequence[float], n_bands: int = 32) -> Array:

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shviewer.benchmark.hard_cases import evaluation, identities, projecting, radiances, ringing, rotating
 from shviewer.benchmark.hard_cases.outcome import Case, Outcome, largest
-from shviewer.benchmark.hard_cases.shader import SEED, Shader, bound, shader_or_reason
+from shviewer.benchmark.hard_cases.shader import SEED, bound, error_of, renderer_or_reason
 from shviewer.benchmark.machine import machine_line, versions
 from shviewer.benchmark.row import finite
 
-CASES: tuple[Case, ...] = (
-    *evaluation.CASES,
-    *identities.CASES,
-    *projecting.CASES,
-    *radiances.CASES,
-    *rotating.CASES,
-    *ringing.CASES,
-)
+if TYPE_CHECKING:
+    from shviewer.viewer.gl.renderer import Renderer
+
+FILES = (evaluation, identities, projecting, radiances, rotating, ringing)
+CASES: tuple[Case, ...] = tuple(case for file in FILES for case in file.CASES)
 
 HEADINGS = ("", "case", "reference", "error", "bound", "float32", "bound")
 PACKAGES = ("numpy", "moderngl")
@@ -32,7 +30,7 @@ def run(*, progress: Callable[[str], None] | None = None, shader: bool = True) -
     shader: also draw the cases that concern the fragment shader, if there is an OpenGL without display.
     """
     outcomes = []
-    with shader_or_reason(shader) as drawing:
+    with renderer_or_reason(shader) as drawing:
         for case in CASES:
             if progress is not None:
                 progress(case.name)
@@ -40,8 +38,8 @@ def run(*, progress: Callable[[str], None] | None = None, shader: bool = True) -
     return outcomes
 
 
-def measure(case: Case, drawing: Shader | str) -> Outcome:
-    """Measure one case. drawing: the shader, or why there is none. Overflow, division by zero and NaN count as exceptions."""
+def measure(case: Case, drawing: Renderer | str) -> Outcome:
+    """Measure one case. drawing: a renderer, or why there is none. Overflow, division by zero and NaN count as exceptions."""
     error, notes = float("inf"), []
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
@@ -49,12 +47,12 @@ def measure(case: Case, drawing: Shader | str) -> Outcome:
     except Exception as problem:
         notes.append(f"{type(problem).__name__}: {problem}")
     shader_error = shader_bound = None
-    if case.views is not None and isinstance(drawing, Shader):
+    if case.views is not None and not isinstance(drawing, str):
         shader_error = shader_bound = float("inf")
         try:
             views = list(case.views())
             shader_bound = bound(views)
-            shader_error = max(largest(drawing.error(view)) for view in views)
+            shader_error = max(largest(error_of(view, drawing)) for view in views)
         except Exception as problem:
             shader_bound = min(shader_bound, 1.0)
             notes.append(f"shader: {type(problem).__name__}: {problem}")
@@ -66,7 +64,7 @@ def measure(case: Case, drawing: Shader | str) -> Outcome:
         shader_error,
         shader_bound,
         "; ".join(" ".join(note.split()) for note in notes),
-        "" if case.views is None else drawing.version if isinstance(drawing, Shader) else drawing,
+        "" if case.views is None else drawing if isinstance(drawing, str) else drawing.version,
     )
 
 

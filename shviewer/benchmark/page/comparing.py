@@ -87,11 +87,11 @@ def _differences(before: Report, after: Report) -> tuple[str, ...]:
 def _needed_ratio(before: Report, after: Report) -> float:
     """LEAST_RATIO, or the ratio by which the yardstick changed within and between the two runs, if that is more."""
     ends = [
-        report.yardstick[name]
+        report.yardstick_milliseconds[name]
         for report in (before, after)
-        if report.yardstick is not None
+        if report.yardstick_milliseconds is not None
         for name in ("low_quartile", "high_quartile")
-        if report.yardstick.get(name)
+        if report.yardstick_milliseconds.get(name)
     ]
     return max(LEAST_RATIO, max(ends) / min(ends)) if ends else LEAST_RATIO
 

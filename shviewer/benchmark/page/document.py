@@ -13,6 +13,10 @@ from shviewer.files import read_bytes
 from shviewer.limits import DEFAULT_LIMITS
 
 SCHEMA = "shviewer-report/1"
+HEAD = ("complete", "command", "seed", "versions", "machine", "renderer", "yardstick_milliseconds", "left_out", "extra")
+"""The fields of a Report in front of its lights and rows, in the order of the file."""
+
+YARDSTICK = ("median", "low_quartile", "high_quartile")
 
 
 @dataclass
@@ -30,7 +34,7 @@ class Report:
     lights: dict[str, dict[str, Any]] = field(default_factory=dict)
     left_out: list[str] = field(default_factory=list)
     """Lines on the measurements that there was no time for, one for each kind."""
-    yardstick: dict[str, float] | None = None
+    yardstick_milliseconds: dict[str, float] | None = None
     complete: bool = False
     extra: dict[str, Any] = field(default_factory=dict)
     """Section -> its results that are no rows."""
@@ -40,18 +44,7 @@ class Report:
         return [row for row in self.rows if row.section == section and row.measured]
 
     def as_json(self) -> str:
-        page = {
-            "schema": SCHEMA,
-            "complete": self.complete,
-            "command": self.command,
-            "seed": self.seed,
-            "versions": self.versions,
-            "machine": self.machine,
-            "renderer": self.renderer,
-            "yardstick_milliseconds": self.yardstick,
-            "left_out": self.left_out,
-            "extra": self.extra,
-        }
+        page = {"schema": SCHEMA} | {name: getattr(self, name) for name in HEAD}
         # one light and one row per line, so that the file can be read and two of them compared
         head = json.dumps(page, indent=1, allow_nan=False).removesuffix("\n}")
         lights = ",".join(f"\n  {json.dumps(name)}: {_line(record)}" for name, record in self.lights.items())
@@ -78,6 +71,8 @@ def read_report(path: Path) -> Report:
         )
     try:
         yardstick = page["yardstick_milliseconds"]
+        if yardstick is not None:
+            yardstick = {str(name): float(value) for name, value in yardstick.items()}
         return Report(
             seed=int(page["seed"]),
             command=str(page["command"]),
@@ -88,7 +83,7 @@ def read_report(path: Path) -> Report:
             lights=dict(page["lights"]),
             left_out=[str(line) for line in page["left_out"]],
             extra=dict(page["extra"]),
-            yardstick=None if yardstick is None else {str(name): float(value) for name, value in yardstick.items()},
+            yardstick_milliseconds=yardstick,
             complete=bool(page["complete"]),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:

@@ -22,7 +22,7 @@ from places import hard_cases
 from shviewer.benchmark.hard_cases import evaluation as ev
 from shviewer.benchmark.hard_cases import exact, identities, projecting, radiances, ringing, rotating
 from shviewer.benchmark.hard_cases.outcome import Case, Outcome
-from shviewer.benchmark.hard_cases.shader import shader_or_reason
+from shviewer.benchmark.hard_cases.shader import renderer_or_reason
 from shviewer.benchmark.hard_cases.table import CASES, as_json, as_markdown, as_text, measure
 from shviewer.harmonics import basis
 
@@ -257,7 +257,7 @@ def test_without_opengl_the_rows_stand_and_the_table_says_why() -> None:
     for text in (as_text([undrawn]), as_markdown([undrawn])):
         assert "No float32 column: GraphicsError: no libEGL" in text
     assert json.loads(as_json([undrawn]))["shader"] == "GraphicsError: no libEGL"
-    with shader_or_reason(False) as drawing:
+    with renderer_or_reason(False) as drawing:
         assert drawing == "not asked for"
 
 
