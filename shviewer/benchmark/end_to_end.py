@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import moderngl
@@ -97,9 +98,9 @@ def process_rows(
     beyond which nothing is measured.
     """
     with tempfile.TemporaryDirectory() as folder:
-        works = {VERSION: _process("--version")}
+        works = {VERSION: partial(_shviewer, "--version")}
         if not isinstance(drawing, str):
-            works[SCREENSHOT] = _process("screenshot", str(Path(folder) / "out.png"), text)
+            works[SCREENSHOT] = partial(_shviewer, "screenshot", str(Path(folder) / "out.png"), text)
         times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least)
     places = {VERSION: ("", None), SCREENSHOT: (name, Recipe.n_bands)}
     return [_row(method, *places[method], times.get(method)) for method in works]
@@ -197,15 +198,11 @@ class _Frames:
         self.renderer.context.finish()
 
 
-def _process(*arguments: str) -> Work:
-    """A run of the program, to be timed. GraphicsError if it fails."""
-
-    def run() -> None:
-        done = _run("-m", "shviewer", *arguments)
-        if done.returncode:
-            raise GraphicsError(f"shviewer {' '.join(arguments)} ended with {done.returncode}: {done.stderr.strip()}")
-
-    return run
+def _shviewer(*arguments: str) -> None:
+    """Run the program in a new process. GraphicsError if it fails."""
+    done = _run("-m", "shviewer", *arguments)
+    if done.returncode:
+        raise GraphicsError(f"shviewer {' '.join(arguments)} ended with {done.returncode}: {done.stderr.strip()}")
 
 
 def _run(*arguments: str, patience: float = PATIENCE) -> subprocess.CompletedProcess[str]:
