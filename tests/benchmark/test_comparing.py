@@ -43,14 +43,9 @@ def test_a_time_within_the_quartiles_of_the_other_does_not_differ() -> None:
 def test_the_yardsticks_drift_has_to_be_passed() -> None:
     steady = {"median": 1.0, "low_quartile": 0.95, "high_quartile": 1.05}
     drifting = {"median": 1.5, "low_quartile": 1.4, "high_quartile": 1.9}
-    assert (
-        verdicts(report(row(1.0), yardstick_milliseconds=steady), report(row(1.6), yardstick_milliseconds=steady))[0]
-        == "slower"
-    )
-    assert (
-        verdicts(report(row(1.0), yardstick_milliseconds=steady), report(row(1.6), yardstick_milliseconds=drifting))[0]
-        == ""
-    )
+    before = report(row(1.0), yardstick_milliseconds=steady)
+    assert verdicts(before, report(row(1.6), yardstick_milliseconds=steady))[0] == "slower"
+    assert verdicts(before, report(row(1.6), yardstick_milliseconds=drifting))[0] == ""
 
 
 def test_errors_of_deterministic_methods_differ_beyond_rounding() -> None:
