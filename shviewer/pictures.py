@@ -51,9 +51,10 @@ def view(
 
     """
     from shviewer.viewer.desktop import window
+    from shviewer.viewer.desktop.task import Task
 
     state = _state(light, bands, options, size)
-    window.run(state, size)
+    window.run(Task(lambda: prepare(state)), size)
 
 
 def _state(light: LightLike, bands: int | None, options: dict[str, Any], size: Any) -> State:

@@ -15,6 +15,7 @@ from typing import Any, Concatenate, Generic, ParamSpec, TypeVar, cast
 import numpy as np
 
 from shviewer.lights.light import Light
+from shviewer.progress import tell
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -134,9 +135,10 @@ MEMORY = Memory()
 class Remembered(Generic[P, R]):
     """A function of a light and of hashable values whose last results for each light are kept in MEMORY."""
 
-    def __init__(self, function: Callable[Concatenate[Light, P], R], most: int) -> None:
+    def __init__(self, function: Callable[Concatenate[Light, P], R], most: int, doing: str) -> None:
         self.function = function
         self.most = most
+        self.doing = doing
         self.__doc__ = function.__doc__
 
     def __call__(self, light: Light, *arguments: P.args, **named: P.kwargs) -> R:
@@ -147,6 +149,7 @@ class Remembered(Generic[P, R]):
                 results.move_to_end(key)
                 known: R = results[key]
                 return known
+        tell(self.doing)
         found = self.function(light, *arguments, **named)  # outside: threads that want other results need not wait
         with MEMORY.lock:
             results[key] = found
@@ -159,9 +162,9 @@ class Remembered(Generic[P, R]):
         MEMORY.forget_results(self)
 
 
-def remember(most: int) -> Callable[[Callable[Concatenate[Light, P], R]], Remembered[P, R]]:
-    """Decorator: keep the last `most` results for each light and its irradiance together."""
-    return lambda function: Remembered(function, most)
+def remember(most: int, doing: str = "") -> Callable[[Callable[Concatenate[Light, P], R]], Remembered[P, R]]:
+    """Decorator: keep the last `most` results for each light and its irradiance together. doing: told where one is made."""
+    return lambda function: Remembered(function, most, doing)
 
 
 def array_bytes(*roots: object) -> int:

@@ -62,7 +62,7 @@ def caption(recipe: Recipe) -> str:
     return f"{name if len(name) <= LONGEST_NAME else f'{name[:11]}...{name[-14:]}'}: "
 
 
-@remember(most=4)
+@remember(most=4, doing="comparing conventions")
 def verdict(light: Light, given: CoefficientLight) -> str:
     """One line on given coefficients: how well they agree with the light's own, or which usual mistake explains that not."""
     exact = project(light, *BEST, given.n_bands).coefficients

@@ -111,7 +111,7 @@ def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
     return split_half_estimate(first, second, 4 * np.pi * float(squares.mean()), deviation, recipe.tolerance)
 
 
-@remember(most=16)
+@remember(most=16, doing="searching bands")
 def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
     """The relative L2 error for every band count searched: (MAX_BANDS,), or for samples (MAX_DIRECT_BANDS,)."""
     exact = project(light, *BEST, MAX_BANDS).coefficients
@@ -120,7 +120,7 @@ def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: 
     return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 
 
-@remember(most=64)
+@remember(most=64, doing="comparing")
 def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Array, Figures]:
     """The coefficients shown of a projection, (n_bands**2, 3), and their figures."""
     n_bands, muted, window_name, width = what
@@ -165,7 +165,7 @@ def grid_rows(n_bands: int) -> int:
     return next(rows for bands, rows in ((16, 96), (32, 128), (64, 256), (MAX_BANDS, 512)) if n_bands <= bands)
 
 
-@remember(most=8)
+@remember(most=8, doing="sampling the light")
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
     return ErrorGrid(light.radiance, light.landmarks(), rows, light.rows)

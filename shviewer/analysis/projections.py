@@ -134,7 +134,7 @@ def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Pr
     return Projection(coefficients, f"read as {given.convention}", None, 0.0)
 
 
-@remember(most=16)
+@remember(most=16, doing="projecting")
 def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
     """Project, take the time, and keep the measurement."""
     projection = _timed_projection(light, method, samples, seed, n_bands)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from shviewer.analysis.cache import MEMORY, remember
 from shviewer.analysis.recipe import Recipe
@@ -12,6 +13,7 @@ from shviewer.files import FileVersion
 from shviewer.lights.find import built_in_lights, file_version, find_light
 from shviewer.lights.light import Light, Split
 from shviewer.lights.suns.sun import Sun
+from shviewer.progress import tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +55,7 @@ def read_again(recipe: Recipe) -> Light:
     if not isinstance(recipe.light, str):
         return recipe.light
     read = file_version(recipe.light)  # asked first: a change during the reading is a later version
+    tell(f"reading {Path(recipe.light).name}")
     safe = recipe.light in built_in_lights()
     light = find_light(recipe.light, replace(recipe.reading, isolated=False) if safe else recipe.reading)
     MEMORY.name(_name(recipe), light)
@@ -77,7 +80,7 @@ def _name(recipe: Recipe) -> Hashable:
     return recipe.light, recipe.reading
 
 
-@remember(most=1)
+@remember(most=1, doing="looking for suns")
 def _split(light: Light) -> Split | str:
     """The light and its suns apart, or the reason why nothing can be split off."""
     try:
@@ -88,7 +91,7 @@ def _split(light: Light) -> Split | str:
     return split
 
 
-@remember(most=4)
+@remember(most=4, doing="making the irradiance")
 def irradiance_of(light: Light) -> Light:
     """The irradiance of a light, remembered with it; an irradiance is its own."""
     return light.irradiance()

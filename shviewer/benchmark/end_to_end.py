@@ -60,6 +60,8 @@ WATCHED_WINDOW = """
 import _thread, signal, sys, threading, time
 from shviewer.errors import GraphicsError
 from shviewer.viewer.desktop import window
+from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import State
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job is started without it
@@ -80,7 +82,7 @@ class Watched(window.Window):
 
 window.Window = Watched
 try:
-    window.run(State(), (1280, 640))
+    window.run(Task(lambda: prepare(State())), (1280, 640))
 except KeyboardInterrupt:
     pass
 except GraphicsError as error:

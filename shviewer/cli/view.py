@@ -6,8 +6,13 @@ import argparse
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from shviewer.cli.from_options import state_from
+
+if TYPE_CHECKING:
+    from shviewer.viewer.picture import Picture
+    from shviewer.viewer.state import State
 
 
 def run(options: argparse.Namespace) -> int:
@@ -23,23 +28,32 @@ def run(options: argparse.Namespace) -> int:
             print(f"{name:<20}{find_light(name).description}")
         return 0
     from shviewer.analysis.subjects import subject
-    from shviewer.cli.notes import print_notes
     from shviewer.files import file_stem
     from shviewer.viewer.composition import compose
     from shviewer.viewer.desktop import window
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
-    from shviewer.viewer.picture import prepare
+    from shviewer.viewer.desktop.task import Task
     from shviewer.viewer.screenshot import save_picture
 
     state = state_from(options, all_lights=True)
-    print_notes(state.recipe)
+    first = Task(lambda: _announced(state))
     try:
-        window.run(state, tuple(options.size), verbose=options.verbose, watch=options.watch)
+        window.run(first, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
         stem = f"shviewer-{file_stem(subject(state.recipe).light.name)}"
         names = (Path(f"{stem}{f'-{number:03d}' if number else ''}.png") for number in range(10_000))
         out = next(name for name in names if not os.path.lexists(name))
         composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
-        save_picture(prepare(state), composition, out)
+        save_picture(first.result(), composition, out)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0
+
+
+def _announced(state: State) -> Picture:
+    """The picture of a state; the notes on its light are printed."""
+    from shviewer.cli.notes import print_notes
+    from shviewer.viewer.picture import prepare
+
+    picture = prepare(state)
+    print_notes(state.recipe)
+    return picture

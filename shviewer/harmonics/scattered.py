@@ -21,6 +21,7 @@ import numpy as np
 from shviewer.harmonics.basis import Array, check_bands, evaluate_basis, normalisation, normalise
 from shviewer.harmonics.quadrature import DirectionSet, Radiance
 from shviewer.harmonics.theta_series import degrees_and_orders, theta_series
+from shviewer.progress import tell
 
 Values = Callable[[slice], tuple[Array, Array | float]]
 """A slice of the samples -> their values (k, 3) and weights, (k,) or one for all."""
@@ -69,6 +70,7 @@ def _project(directions: Array, values: Values, n_bands: int) -> Array:
     blocks = (slice(start, min(start + block, count)) for start in range(0, count, block))
     sums = _Products(n_bands, block) if n_bands <= WAVE_BANDS else _BasisSums(n_bands)
     for rows in blocks:
+        tell("projecting", rows.start / count)
         sums.add(directions[rows], *values(rows))
     return sums.coefficients()
 

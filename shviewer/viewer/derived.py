@@ -57,7 +57,7 @@ def surfaces(view: View, light: Light, projection: Projection, shown: Shown) -> 
     return (original, reconstruction, error)[: view.n_spheres]
 
 
-@remember(most=2)
+@remember(most=2, doing="drawing the map")
 def reconstruction_map(
     light: Light, projection: Projection, shown: Shown, size: tuple[int, int]
 ) -> NDArray[np.float32]:
@@ -65,7 +65,7 @@ def reconstruction_map(
     return Synthesis(reconstruct(light, projection, shown)[0]).spline_map(*size)
 
 
-@remember(most=4)
+@remember(most=4, doing="making surfaces")
 def _compared_surfaces(
     light: Light,
     projection: Projection,

@@ -22,8 +22,16 @@ from shviewer.viewer import camera
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
 from shviewer.viewer.error_scale import ErrorScale
-from shviewer.viewer.state import State
+from shviewer.viewer.state import FRONT, State, changed
 from shviewer.viewer.tone import steepest
+
+LIVE = (
+    *("camera", "light_rotation", "zoom", "marks", "cursor", "cursor_visible"),
+    *("sweep_to", "help_visible", "message", "layout_tried"),
+)
+"""Fields of the view on which nothing depends that takes time."""
+
+EXPOSURE = ("exposure_stops", "exposure_offset")
 
 
 class Source(NamedTuple):
@@ -67,6 +75,21 @@ class Picture:
         """The light that the figures are computed for."""
         return self.subject.light
 
+    def seen(self, state: State) -> Picture:
+        """The same picture with the live parts and the exposure of another state: at once, whatever the light is."""
+        last, view = self.state.view, state.view
+        live = {name: getattr(view, name) for name in (*LIVE, *EXPOSURE)}
+        stops = self.exposure_stops + view.exposure_offset - last.exposure_offset
+        if view.exposure_stops is not None:
+            stops = view.exposure_stops + view.exposure_offset
+        return replace(
+            self,
+            state=changed(self.state, **live),
+            world_from_view=camera.world_from_view(*view.camera),
+            light_from_world=camera.light_from_world(view.light_rotation),
+            exposure_stops=stops,
+        )
+
     def rest_at(self, directions: Array) -> Array:
         """Radiance of the coefficients, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
         return np.asarray(evaluate_basis(directions, self.state.recipe.n_bands) @ self.coefficients)
@@ -74,6 +97,11 @@ class Picture:
     def suns_at(self, directions: Array) -> Array:
         """Radiance of the suns that are drawn on top of it, (k, 3)."""
         return LobeLight(self.suns).radiance(directions) if self.suns else np.zeros((len(directions), 3))
+
+
+def still(state: State) -> State:
+    """The state without its live parts: pictures of states with equal still parts differ in what takes no time."""
+    return changed(state, **{name: getattr(FRONT, name) for name in LIVE})
 
 
 def prepare(state: State, *, by_map: bool = False) -> Picture:

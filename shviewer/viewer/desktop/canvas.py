@@ -16,7 +16,7 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.marks import mark_layers
-from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
+from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
 from shviewer.viewer.overlay.plots.plane import measured
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture
@@ -40,13 +40,21 @@ class Canvas:
         pixels = summed_pixels(composition)
         return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
 
-    def show(self, picture: Picture, composition: Composition) -> None:
-        """Upload what has changed, and draw its text. GraphicsError for a map that this OpenGL cannot hold."""
+    def show(self, picture: Picture, composition: Composition, status: str = "") -> None:
+        """Upload what has changed, and draw its text, with what is being done meanwhile in place of the message.
+
+        GraphicsError for a map that this OpenGL cannot hold.
+        """
         self.renderer.show(picture)
-        key = _overlay_key(picture, composition)
+        written = replace(picture, state=changed(picture.state, message=status)) if status else picture
+        key = _overlay_key(written, composition)
         if key != self._overlay_key:
-            self.overlay = draw_overlay(picture, composition, timing=True, opengl=self.renderer.version)
+            self.overlay = draw_overlay(written, composition, timing=True, opengl=self.renderer.version)
             self._overlay_key = key
+
+    def wait(self, status: str, composition: Composition) -> None:
+        """Draw what is being done, as long as there is no picture."""
+        self.renderer.draw_text(self.renderer.context.screen, composition, status_layers(status, composition))
 
     def draw(self, composition: Composition, pointer: Point | None = None) -> bool:
         """Draw the picture last shown, with the values under the pointer; return whether another frame is due.
@@ -82,15 +90,6 @@ class Canvas:
             if found is not None:
                 layers += probe_layers(found, composition, *pointer)
         return layers
-
-    def say(self, message: str, picture: Picture, composition: Composition) -> None:
-        """Draw a picture with a message over it; the text of the next picture is drawn anew."""
-        self.renderer.show(picture)
-        waiting = replace(picture, state=changed(picture.state, message=message))
-        self.renderer.draw(
-            self.renderer.context.screen, composition, draw_overlay(waiting, composition, timing=True).layers
-        )
-        self._overlay_key = None
 
     def release(self) -> None:
         self.renderer.release()

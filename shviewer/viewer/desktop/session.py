@@ -1,13 +1,17 @@
-"""The session: between a key and a frame, one state and its picture, kept together whatever fails. Knows no window."""
+"""The session: between a key and a frame, one state and its picture, kept together whatever fails. Knows no window.
+
+What takes time is a task behind the window. Until it has ended, the last picture stays, seen from where the camera is now.
+The newest wish wins: a task whose picture nobody wants any more is ended.
+"""
 
 from __future__ import annotations
 
 import sys
 import traceback
+from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
 
-from shviewer.analysis.figures import needs
 from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError
 from shviewer.files import file_stem
@@ -18,11 +22,13 @@ from shviewer.viewer.animation.metronome import Metronome
 from shviewer.viewer.camera import facing
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
+from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.marks import marks_of
-from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.overlay.overlay import foresee
+from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.saving.picture_files import write_numbered
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import render_rgb
@@ -32,16 +38,33 @@ from shviewer.words import one_line
 LOOK_SECONDS = 0.2
 """The least time between two looks at a watched file, also while events come."""
 
-LONG_PROJECTION = 1e8
-"""The number of basis values from which a projection is announced: about half a second."""
+PATIENCE = 0.05
+"""The longest that a window waits for a task, in seconds."""
+
+STATUS_SECONDS = 0.1
+"""Seconds between two looks at how far a task is."""
+
+QUIET = 0.3
+"""Seconds after which a task is spoken of."""
 
 
 class Session:
     """The state, and its picture or that of the last state that could be shown."""
 
-    def __init__(self, state: State, *, verbose: bool = False, watch: bool = False) -> None:
-        """LightError or UsageError if the first state cannot be shown."""
-        first = prepare(state)
+    def __init__(
+        self,
+        state: State,
+        first: Picture | None = None,
+        *,
+        verbose: bool = False,
+        watch: bool = False,
+        wake: Callable[[], None] | None = None,
+    ) -> None:
+        """first: the picture of the state; without it, it is made here: LightError or UsageError if that is impossible.
+
+        wake: called from another thread when a task has ended.
+        """
+        first = first or prepare(state)
         isolated = replace(state.recipe.reading, isolated=True)
         self.state = changed(state, reading=isolated, message=state.view.message or notes_of(first.light))
         self.picture: Picture = replace(first, state=self.state)
@@ -52,6 +75,15 @@ class Session:
         self._looked_at = perf_counter()
         self._read_anew = False
         self._marks_faced = 0
+        self._wake = wake
+        self._task: Task[Picture] | None = None
+        self._ended: Task[Picture] | None = None
+        """The task before it, which may still be at its last step."""
+        self._wish: object = None
+        """What the task makes: the still part of a state, and how it is drawn and read."""
+        self._later: list[Callable[[], None]] = []
+        """Commands that wait for the picture."""
+        self._said = ""
 
     @property
     def title(self) -> str:
@@ -71,12 +103,30 @@ class Session:
         if command is Command.RELOAD:
             self._read_anew = True
         elif command is Command.FIT:
-            self._fit()
+            self._when_ready(self._fit)
         elif command is Command.FACE_MARK:
-            self._face_mark()
+            self._when_ready(self._face_mark)
+        elif command is Command.CLOSE and self._task is not None:
+            self.stop()
         else:
             return command
         return None
+
+    @property
+    def status(self) -> str:
+        """What the task at work does, once it has taken a while; "" while nothing is at work."""
+        task = self._task
+        return task.status if task is not None and task.seconds > QUIET else ""
+
+    def stop(self) -> None:
+        """End the task, and stay with the picture there is."""
+        if self._task is not None:
+            what = self._task.status.rstrip("0123456789 %")
+            self._end_task()
+            self._later.clear()
+            self._read_anew = False
+            keep_light(self.picture.state.recipe, self.picture.subject.whole)
+            self.state = changed(self.picture.state, message=f"stopped {what}", sweep_to=None)
 
     def drop(self, path: str) -> None:
         """Open a file, which may have been edited since it was last opened; never code, which is no file."""
@@ -90,44 +140,82 @@ class Session:
 
     def tick(self, now: float) -> bool:
         """Take a step of the sweep and a look at a watched file, where they are due; return whether anything changed."""
-        last, anew = self.state, self._read_anew
-        if self.metronome.beats(self.state.view.sweep_to is not None, now):
+        last, anew, said = self.state, self._read_anew, self._said
+        self._said = self.status
+        if self._task is None and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
         if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
             self._looked_at = now
             recipe = self.state.recipe
             if isinstance(recipe.light, str) and self._watch.changed(recipe.light, version_read(recipe)):
                 self.do(Command.RELOAD)
-        return self.state is not last or self._read_anew != anew
+        ended = self._task is not None and self._task.finished
+        return ended or self.state is not last or self._read_anew != anew or self._said != said
 
-    def prepare(self, by_map: bool = False) -> None:
-        """Make the picture of the state. For a state that cannot be shown, keep the present picture and say why."""
-        last, anew = self.picture, self._read_anew
-        if last.state == self.state and self.by_map == by_map and not anew:
-            return
-        self._read_anew = False
+    def wait(self, now: float, most: float) -> float:
+        """The seconds until the next tick is due, at most `most`."""
+        return min(most, STATUS_SECONDS) if self._task is not None else self.metronome.wait(now, most)
+
+    def prepare(self, by_map: bool = False, patience: float | None = None) -> bool:
+        """Make the picture of the state; return whether it is there. For a state that cannot be shown, keep the last one.
+
+        patience: the seconds to wait for it since it was first wished for; None: as long as it takes.
+        """
+        while self._make(by_map, patience):
+            if not self._later:
+                return True
+            self._later.pop(0)()
+        return False
+
+    def _make(self, by_map: bool, patience: float | None) -> bool:
+        """Make the picture; return whether it is there."""
+        last, state, anew = self.picture, self.state, self._read_anew
+        wish = still(state), by_map, anew
+        if wish == (still(last.state), self.by_map, False):
+            self._end_task()
+            self.picture = last if last.state == state else last.seen(state)
+            return True
+        if self._task is None or wish != self._wish:
+            self._end_task()
+            self._wish = wish
+            self._task = Task(lambda: _picture_of(state, by_map, anew), self._ended, self._wake)
+        if not self._task.wait(None if patience is None else patience - self._task.seconds):
+            self.picture = last if last.state.view == state.view else last.seen(state)
+            return False
+        task, self._task, self._read_anew = self._task, None, False
         try:
-            if anew:
-                read_again(self.state.recipe)
-            picture = prepare(self.state, by_map=by_map)
+            picture = task.result()
         except ShviewerError as error:
             self.keep(error)
-            return
-        except Exception:  # a fault of this program: the session goes on with the picture there is
-            traceback.print_exc()
+            return True
+        except Exception as error:  # a fault of this program: the session goes on with the picture there is
+            traceback.print_exception(error)
             self.keep(ShviewerError("internal error, see the terminal"))
-            return
+            return True
+        picture = picture.seen(state)
         if picture.light is not last.light:
-            message = self._news(picture.light, again=anew and self.state.recipe.light == last.state.recipe.light)
-            message = "; ".join(filter(None, (reading_news(last.state.recipe, self.state.recipe), message)))
-            if message and not self.state.view.message:
-                self.state = changed(self.state, message=message)
+            message = self._news(picture.light, again=anew and state.recipe.light == last.state.recipe.light)
+            message = "; ".join(filter(None, (reading_news(last.state.recipe, state.recipe), message)))
+            if message and not state.view.message:
+                self.state = changed(state, message=message)
                 picture = replace(picture, state=self.state)
         self.picture, self.by_map = picture, by_map
+        return True
+
+    def _end_task(self) -> None:
+        """Want the task's result no more; the next one begins when it has ended."""
+        if self._task is not None:
+            self._task.stop()
+            self._ended, self._task = self._task, None
+
+    def _when_ready(self, command: Callable[[], None]) -> None:
+        """Carry a command out that needs the picture: now, or when it is there."""
+        self._later.append(command)
+        self.prepare(self.by_map, PATIENCE)
 
     def keep(self, error: ShviewerError, picture: Picture | None = None) -> None:
         """Stay with the picture there is, or go back to another one, and say why; a sweep ends."""
-        shown = picture or self.picture
+        shown = (picture or self.picture).seen(self.state)
         keep_light(shown.state.recipe, shown.subject.whole)
         message = with_keys(str(error), self.state.recipe.light, shown.state.recipe.reading)
         tried = self.state.view.layout_tried
@@ -135,28 +223,17 @@ class Session:
         self.picture = replace(shown, state=self.state)
         self._log(f"kept {shown.light.name}: {error}")
 
-    def announcement(self) -> str:
-        """The message over the last picture while a long projection runs; "" if the projection is short."""
-        recipe, last = self.state.recipe, self.picture.state.recipe
-        new = self._read_anew or (recipe.light, recipe.reading, recipe.method, recipe.samples) != (
-            last.light,
-            last.reading,
-            last.method,
-            last.samples,
-        )
-        if recipe.method != "jittered" or not new or recipe.samples * recipe.projected_bands**2 < LONG_PROJECTION:
-            return ""
-        return f"projecting {recipe.samples} samples to {recipe.projected_bands} bands ..."
-
     def save(self, renderer: Renderer, composition: Composition) -> None:
-        """Save the picture under the next free name in the current folder."""
-        self.prepare()
-        self.state = changed(self.state, message="")
-        self.prepare()
+        """Save the picture, as soon as it is there, under the next free name in the current folder."""
+        self._when_ready(lambda: self._save(renderer, composition))
+
+    def _save(self, renderer: Renderer, composition: Composition) -> None:
+        state = changed(self.state, message="")
+        picture = prepare(state) if self.by_map else self.picture.seen(state)
         try:
-            pixels = render_rgb(renderer, self.picture, composition)
-            text = metadata(self.picture, composition, renderer.version)
-            path = write_numbered(f"shviewer-{file_stem(self.picture.light.name)}", pixels, text)
+            pixels = render_rgb(renderer, picture, composition)
+            text = metadata(picture, composition, renderer.version)
+            path = write_numbered(f"shviewer-{file_stem(picture.light.name)}", pixels, text)
         except ShviewerError as error:
             self.state = changed(self.state, message=str(error))
         else:
@@ -173,8 +250,7 @@ class Session:
 
     def _fit(self) -> None:
         """Use as many bands as the tolerance needs; where none are enough, say what is the best there is."""
-        self.prepare()
-        found = needs(self.state.recipe)
+        found = self.picture.needs
         wanted = found.irradiance if self.state.recipe.quantity == "irradiance" else found.radiance
         if wanted is None:
             best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"
@@ -185,7 +261,6 @@ class Session:
 
     def _face_mark(self) -> None:
         """Turn the spheres so that the next mark is in front."""
-        self.prepare()
         marks = marks_of(self.picture)
         if not marks:
             message = "nothing is marked: X marks what is negative, D shows the error and marks where it is largest"
@@ -198,3 +273,12 @@ class Session:
     def _log(self, text: str) -> None:
         if self.verbose:
             print(text, file=sys.stderr, flush=True)
+
+
+def _picture_of(state: State, by_map: bool, anew: bool) -> Picture:
+    """The picture of a state, with everything ready that its text needs."""
+    if anew:
+        read_again(state.recipe)
+    picture = prepare(state, by_map=by_map)
+    foresee(picture)
+    return picture

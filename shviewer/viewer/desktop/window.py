@@ -25,7 +25,8 @@ from shviewer.viewer.actions import (
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.desktop.glfw_window import key_name, open_window
-from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.desktop.session import PATIENCE, Session
+from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State, changed
 
@@ -34,28 +35,47 @@ CLICK_PIXELS = 4.0
 """A press is a click if the mouse moves less than this before its release."""
 
 
-def run(state: State, size: tuple[int, int], *, verbose: bool = False, watch: bool = False) -> None:
-    """Open a window of `size` screen coordinates and stay until it is closed.
+def run(first: Task[Picture], size: tuple[int, int], *, verbose: bool = False, watch: bool = False) -> None:
+    """Open a window of `size` screen coordinates, show the first picture when it is there, and stay until it is closed.
 
-    NoDisplayError without a display, GraphicsError without OpenGL 3.3. verbose: one line on stderr per frame. watch: read
-    the light's file again when it changes.
+    NoDisplayError without a display, GraphicsError without OpenGL 3.3, and what the first picture raises. verbose: one line
+    on stderr per frame. watch: read the light's file again when it changes.
     """
+    if first.wait(PATIENCE):
+        first.result()  # what is refused at once is refused without a window
     with open_window(size) as handle:
-        window = Window(handle, state, verbose, watch)
+        canvas = Canvas(moderngl.create_context(require=330))
         try:
-            window.loop()
+            if _wait_for(first, handle, canvas):
+                Window(handle, canvas, first.result(), verbose, watch).loop()
         finally:
-            window.canvas.release()
+            canvas.release()
+
+
+def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
+    """Say what is done for the first picture, until it is there; return False if the window is closed before."""
+    said = ""
+    while not first.wait(PATIENCE):
+        glfw.poll_events()
+        if glfw.window_should_close(handle) or glfw.get_key(handle, glfw.KEY_ESCAPE) == glfw.PRESS:
+            first.stop()
+            return False
+        width, height = glfw.get_framebuffer_size(handle)
+        if first.status != said and width * height:
+            said = first.status
+            canvas.wait(said, compose(width, height, 1.0, _scale(handle)))
+            glfw.swap_buffers(handle)
+    return True
 
 
 class Window:
     """One window, one session, one canvas: events in, frames out."""
 
-    def __init__(self, handle: Any, state: State, verbose: bool, watch: bool = False) -> None:
+    def __init__(self, handle: Any, canvas: Canvas, first: Picture, verbose: bool, watch: bool = False) -> None:
         self.handle = handle
-        self.session = Session(state, verbose=verbose, watch=watch)
+        self.canvas = canvas
         self.verbose = verbose
-        self.canvas = Canvas(moderngl.create_context(require=330))
+        self.session = Session(first.state, first, verbose=verbose, watch=watch, wake=glfw.post_empty_event)
         self.frames_due = 2  # the first swap may still have the old size
         self.frame_count = 0
         self.pressed_at: tuple[float, float] | None = None
@@ -84,7 +104,7 @@ class Window:
             if self.frames_due:
                 glfw.poll_events()
             else:
-                glfw.wait_events_timeout(self.session.metronome.wait(perf_counter(), IDLE_SECONDS))
+                glfw.wait_events_timeout(self.session.wait(perf_counter(), IDLE_SECONDS))
             if self.session.tick(perf_counter()):
                 self._due()
 
@@ -115,14 +135,10 @@ class Window:
         if composition is None:
             return
         start = perf_counter()
-        message = session.announcement()
-        if message:
-            self.canvas.say(message, session.picture, composition)
-            glfw.swap_buffers(self.handle)
-        session.prepare(self.canvas.by_map(session.state, composition))
+        ready = session.prepare(self.canvas.by_map(session.state, composition), PATIENCE)
         composition = self.composition() or composition  # a state that was refused has left another one
         try:
-            self.canvas.show(session.picture, composition)
+            self.canvas.show(session.picture, composition, session.status)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             if self.shown is None:
                 raise
@@ -139,8 +155,10 @@ class Window:
         if self.verbose:
             milliseconds = 1000 * (perf_counter() - start)
             print(
-                f"frame {self.frame_count}: {session.picture.light.name}, {session.state.recipe.n_bands} bands, "
-                f"{composition.width} x {composition.height}, {milliseconds:.1f} ms",
+                f"{'frame' if ready else 'meanwhile'} {self.frame_count}: {session.picture.light.name}, "
+                f"{session.picture.state.recipe.n_bands} bands, "
+                f"{composition.width} x {composition.height}, {milliseconds:.1f} ms"
+                + (f", {session.status}" if session.status else ""),
                 file=sys.stderr,
                 flush=True,
             )
@@ -150,9 +168,8 @@ class Window:
         width, height = glfw.get_framebuffer_size(self.handle)
         if width * height == 0:
             return None
-        scale = float(glfw.get_window_content_scale(self.handle)[1])
         view = self.session.state.view
-        return compose(width, height, view.zoom, scale if scale > 0 else 1.0, view.n_spheres)
+        return compose(width, height, view.zoom, _scale(self.handle), view.n_spheres)
 
     def _due(self) -> None:
         """Note that a frame has to be drawn."""
@@ -235,3 +252,9 @@ class Window:
         if paths:
             self.session.drop(paths[0])
             self._due()
+
+
+def _scale(handle: Any) -> float:
+    """Pixels per point of the design, on the monitor that the window is on."""
+    scale = float(glfw.get_window_content_scale(handle)[1])
+    return scale if scale > 0 else 1.0

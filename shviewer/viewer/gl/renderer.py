@@ -103,10 +103,7 @@ class Renderer:
             raise ValueError("nothing to draw: show a picture first")
         if linear and isinstance(picture.drawn, Surfaces):
             raise ValueError("surfaces hold no radiance")
-        target.use()
-        target.viewport = (0, 0, composition.width, composition.height)
-        self.context.disable(moderngl.BLEND)
-        target.clear(color=(0.0, 0.0, 0.0, 0.0) if linear else (*_encode(BACKGROUND), 1.0))
+        self._clear(target, composition, (0.0, 0.0, 0.0, 0.0) if linear else _GROUND)
         if isinstance(picture.drawn, Surfaces):
             self._draw_surfaces(target, composition, picture.drawn, picture.light_from_world @ picture.world_from_view)
         else:
@@ -114,6 +111,11 @@ class Renderer:
         target.viewport = (0, 0, composition.width, composition.height)
         if not linear:
             self._draw_layers(target, composition, layers)
+
+    def draw_text(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
+        """Draw layers over the background alone, as long as there is no picture."""
+        self._clear(target, composition, _GROUND)
+        self._draw_layers(target, composition, layers)
 
     def release(self) -> None:
         """Free everything this object made."""
@@ -135,6 +137,14 @@ class Renderer:
             if attachment is not None:
                 attachment.release()
         self.rest.release()
+
+    def _clear(
+        self, target: moderngl.Framebuffer, composition: Composition, colour: tuple[float, float, float, float]
+    ) -> None:
+        target.use()
+        target.viewport = (0, 0, composition.width, composition.height)
+        self.context.disable(moderngl.BLEND)
+        target.clear(color=colour)
 
     def _draw_surfaces(
         self, target: moderngl.Framebuffer, composition: Composition, drawn: Surfaces, light_from_view: Array
@@ -252,3 +262,7 @@ def _encode(colour: tuple[float, float, float]) -> tuple[float, float, float]:
     """sRGB of a linear colour, as in shaders/display.glsl."""
     red, green, blue = (12.92 * c if c < 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055 for c in colour)
     return red, green, blue
+
+
+_GROUND = (*_encode(BACKGROUND), 1.0)
+"""The background as it is written into a framebuffer."""

@@ -21,6 +21,7 @@ from shviewer.viewer.overlay.help_sheet import draw_help
 from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import FAINT, GREY, WARNING
 from shviewer.viewer.overlay.painter import Painter
+from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.convergence import Convergence, draw_convergence
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane
 from shviewer.viewer.picture import Picture
@@ -83,10 +84,24 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     return Overlay(image, strips(image), painter.boxes, painter.bars, plane, convergence)
 
 
+def status_layers(status: str, composition: Composition) -> tuple[Layer, ...]:
+    """What is being done, where messages stand; for a window that has no picture yet."""
+    sheet = Image.new("RGBA", (composition.width, composition.height))
+    painter = Painter(ImageDraw.Draw(sheet), composition)
+    painter.text("message", composition.margin, _hint_y(composition), status, 13, GREY, "lm")
+    return strips(np.asarray(sheet))
+
+
+def foresee(picture: Picture) -> None:
+    """Compute what the text of a picture needs beyond the picture, so that drawing it takes no time for the light."""
+    if picture.state.view.sheet == "convergence":
+        band_series(picture)
+
+
 def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
     """Write a message, a remark, the suns that were split off, or else the most useful keys; at the right the exposure."""
     at, state = painter.at, picture.state
-    y = at.hairline_y + at.px(104)
+    y = _hint_y(at)
     message = state.view.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
     if message:
         face = painter.face(13)
@@ -105,6 +120,10 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
     if not message:
         hints = [*_describe_suns(picture), HINT]
         any(painter.text("hint", at.margin, y, text, 12, GREY if text is not HINT else FAINT, "lm") for text in hints)
+
+
+def _hint_y(at: Composition) -> float:
+    return at.hairline_y + at.px(104)
 
 
 def _describe_suns(picture: Picture) -> list[str]:

@@ -192,7 +192,7 @@ def output_of(display: str, script: str, *arguments: str) -> str:
     """What a Python script prints on a display; it must end well."""
     done = subprocess.run(
         [sys.executable, "-c", script, *arguments],
-        env={**os.environ, "DISPLAY": display},
+        env={**os.environ, "DISPLAY": display, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
         capture_output=True,
         text=True,
         check=False,

@@ -226,7 +226,7 @@ DROP_SCRIPT = """
 import sys
 from pathlib import Path
 from shviewer.lights.environment import EnvironmentLight
-from shviewer.viewer.desktop import window
+from viewer.desktop.still_window import window, window_of
 from shviewer.viewer.state import state_of
 
 isolated, read = [], EnvironmentLight.read
@@ -236,7 +236,7 @@ EnvironmentLight.read = classmethod(
 path, *contents = map(Path, sys.argv[1:])
 path.write_bytes(contents[0].read_bytes())
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, state_of(str(path)), False)
+    shown = window_of(handle, state_of(str(path)))
     for content in contents[1:]:
         path.write_bytes(content.read_bytes())
         shown._on_drop(handle, [str(path)])

@@ -16,12 +16,12 @@ from viewer.desktop.desktop import PATIENCE
 SCRIPT = """
 import json
 import sys
-from shviewer.viewer.desktop import window
+from viewer.desktop.still_window import window, window_of
 from shviewer.viewer.state import state_of
 
 first, *steps = sys.argv[1:]
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, state_of(first), False)
+    shown = window_of(handle, state_of(first))
     for step in ["", *steps]:
         if step.startswith("drop "):
             shown._on_drop(handle, [step.removeprefix("drop ")])
@@ -41,7 +41,7 @@ def steps(display: str, folder: Path, first: str, *keys: str) -> list[Step]:
     """What a window shows at first and after every key or drop."""
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, first, *keys],
-        env={**os.environ, "DISPLAY": display},
+        env={**os.environ, "DISPLAY": display, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
         cwd=folder,
         capture_output=True,
         text=True,

@@ -80,7 +80,8 @@ SCRIPT = """
 import json
 import operator
 import sys
-from shviewer.viewer.desktop import canvas, window
+from shviewer.viewer.desktop import canvas
+from viewer.desktop.still_window import window, window_of
 from shviewer.viewer.state import state_of
 from shviewer.viewer.actions import orbit, rotate_light
 
@@ -89,7 +90,7 @@ draw_overlay = canvas.draw_overlay
 canvas.draw_overlay = lambda *a, **k: (drawn.append(1), draw_overlay(*a, **k))[1]
 said = {}
 with window.open_window((800, 400)) as handle:
-    shown = window.Window(handle, state_of(evaluate=sys.argv[1], n_bands=int(sys.argv[2])), False)
+    shown = window_of(handle, state_of(evaluate=sys.argv[1], n_bands=int(sys.argv[2])))
     for _ in range(4):
         shown.frame()
     said["evaluated"] = type(shown.session.picture.drawn).__name__

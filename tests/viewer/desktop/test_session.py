@@ -101,16 +101,10 @@ def test_what_a_sweep_cannot_show_ends_it(tmp_path: Path) -> None:
     assert "dering takes at most 32" in session.state.view.message
 
 
-def test_a_long_projection_is_announced_and_a_short_one_is_not() -> None:
-    session = Session(state_of(samples=16_000_000))
-    assert session.announcement() == ""
-    assert session.press("M") is None
-    assert session.announcement() == "projecting 16000000 samples to 32 bands ..."
-
-
 def test_the_title_is_that_of_the_light_shown_however_it_came_there() -> None:
     """T makes the picture before the next frame does: a window that compares pictures from frame to frame misses it."""
     session = Session(state_of("green", "constant"))
     assert session.press("Right") is None
     assert session.press("T") is None
+    session.prepare()
     assert session.title == "shviewer - constant"

@@ -163,10 +163,10 @@ def test_pictures_are_numbered_and_never_overwritten(start: Start, tmp_path: Pat
 
 DROP_SCRIPT = """
 import sys
-from shviewer.viewer.desktop import window
+from viewer.desktop.still_window import window, window_of
 from shviewer.viewer.state import state_of
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, state_of(), False)
+    shown = window_of(handle, state_of())
     for path in sys.argv[1:]:
         shown._on_drop(handle, [path])
         shown.frame()
@@ -188,11 +188,11 @@ def test_a_dropped_file_opens_and_a_bad_one_leaves_the_present_light_and_says_wh
 
 
 REFUSED_SWEEP_SCRIPT = """
-from shviewer.viewer.desktop import window
+from viewer.desktop.still_window import window, window_of
 from shviewer.viewer.actions import step_sweep
 from shviewer.viewer.state import state_of
 with window.open_window((640, 320)) as handle:
-    shown = window.Window(handle, state_of(n_bands=32, window="dering", sweep_to=40), False)
+    shown = window_of(handle, state_of(n_bands=32, window="dering", sweep_to=40))
     shown.frame()
     shown.change(step_sweep(shown.session.state))
     shown.frame()
@@ -248,12 +248,12 @@ def test_a_sweep_goes_on_under_other_keys_until_space_or_a_band_key(start: Start
 TWO_KEYS_SCRIPT = """
 import glfw
 from shviewer.errors import GraphicsError
-from shviewer.viewer.desktop import window
+from viewer.desktop.still_window import window, window_of
 from shviewer.viewer.state import state_of
 titles = []
 glfw.set_window_title = lambda handle, title: titles.append(title)
 with window.open_window((320, 160)) as handle:
-    shown = window.Window(handle, state_of("green", "constant", "studio"), False)
+    shown = window_of(handle, state_of("green", "constant", "studio"))
     shown.frame()
     for key in ("Right", "T"):
         shown.press(key)
@@ -261,7 +261,7 @@ with window.open_window((320, 160)) as handle:
     print(titles[-1])
     show = shown.canvas.show
 
-    def too_large(picture, composition):
+    def too_large(picture, composition, status=""):
         if picture.light.name == "studio":
             raise GraphicsError("a map too large")
         show(picture, composition)

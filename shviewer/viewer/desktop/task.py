@@ -1,0 +1,71 @@
+"""Work behind the window: one thread that tells how far it is, and ends early when nobody wants its result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Thread
+from time import perf_counter
+from typing import Generic, TypeVar
+
+from shviewer.progress import Stopped, in_words, listening
+
+T = TypeVar("T")
+
+
+class Task(Generic[T]):
+    """One computation. It begins when the task before it has ended, so that only one is at work at a time."""
+
+    def __init__(
+        self, make: Callable[[], T], after: Task[T] | None = None, done: Callable[[], None] | None = None
+    ) -> None:
+        """done: called from the thread at the end, whatever happened."""
+        self.started = perf_counter()
+        self.status = ""
+        """What it is doing, in words."""
+        self._stopped = False
+        self._result: T | None = None
+        self._error: BaseException | None = None
+        self._thread: Thread = Thread(target=self._run, args=(make, after and after._thread, done), daemon=True)
+        self._thread.start()
+
+    @property
+    def seconds(self) -> float:
+        return perf_counter() - self.started
+
+    @property
+    def finished(self) -> bool:
+        return not self._thread.is_alive()
+
+    def wait(self, seconds: float | None) -> bool:
+        """Wait for the end, at most so many seconds (None: as long as it takes); return whether it has come."""
+        self._thread.join(None if seconds is None else max(seconds, 0.0))
+        return self.finished
+
+    def stop(self) -> None:
+        """Want the result no more: the thread ends at its next step."""
+        self._stopped = True
+
+    def result(self) -> T:
+        """What was made. Raises what the computation raised, or Stopped."""
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+        return self._result  # type: ignore[return-value]  # without an error, it was made
+
+    def _run(self, make: Callable[[], T], before: Thread | None, done: Callable[[], None] | None) -> None:
+        if before is not None:
+            before.join()
+        try:
+            with listening(self._hear):
+                self._hear("", None)
+                self._result = make()
+        except BaseException as error:
+            self._error = error
+        if done is not None:
+            done()
+
+    def _hear(self, what: str, share: float | None) -> None:
+        if self._stopped:
+            raise Stopped
+        if what:
+            self.status = in_words(what, share)

@@ -1,0 +1,230 @@
+"""A session never waits for a light: what takes time goes on behind the picture that there is."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from viewer.desktop.desktop import output_of
+
+from shviewer.lights.function import FunctionLight
+from shviewer.progress import Stopped, listening, tell
+from shviewer.viewer.actions import Command
+from shviewer.viewer.desktop import session as sessions
+from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.state import changed, state_of
+
+NOW = 0.0
+"""Seconds of patience: none at all."""
+
+
+class Gate:
+    """A light that answers only while its gate is open."""
+
+    def __init__(self, name: str = "slow") -> None:
+        self.open, self.asked = threading.Event(), threading.Event()
+        self.light = FunctionLight(self._radiance, name)
+
+    def _radiance(self, directions: np.ndarray) -> np.ndarray:
+        self.asked.set()
+        assert self.open.wait(60)
+        return 2 + directions[:, 2]
+
+
+@pytest.fixture
+def gate() -> Iterator[Gate]:
+    gate = Gate()
+    yield gate
+    gate.open.set()
+
+
+def waiting(gate: Gate, **values: Any) -> Session:
+    """A session that shows Green's light and waits for the slow one."""
+    session = Session(state_of("green", gate.light, **values))
+    session.press("Right")
+    assert not session.prepare(patience=NOW)
+    assert gate.asked.wait(60)
+    return session
+
+
+def test_the_last_picture_can_be_turned_zoomed_and_exposed_while_a_light_is_awaited(gate: Gate) -> None:
+    session = waiting(gate)
+    session.state = changed(session.state, camera=(10.0, 20.0), zoom=2.0)
+    session.press("E")
+    session.press("H")
+    before = session.picture
+    assert not session.prepare(patience=NOW)
+    shown = session.picture
+    assert shown.light.name == "green"
+    assert (shown.state.view.camera, shown.state.view.zoom, shown.state.view.help_visible) == ((10.0, 20.0), 2.0, True)
+    assert not np.allclose(shown.world_from_view, before.world_from_view)
+    assert shown.exposure_stops != before.exposure_stops
+    gate.open.set()
+    assert session.prepare()
+    assert session.picture.light is gate.light
+    assert session.picture.state == session.state
+    assert session.state.view.camera == (10.0, 20.0)
+
+
+def test_the_newest_wish_wins_and_what_it_makes_stale_never_shows(gate: Gate) -> None:
+    session = waiting(gate)
+    session.press("Left")
+    session.press("Up")
+    assert session.prepare(patience=NOW) in (True, False)
+    gate.open.set()
+    seen = set()
+    while not session.prepare(patience=0.01):
+        seen.add(session.picture.light.name)
+    assert seen <= {"green"}
+    assert (session.picture.light.name, session.state.recipe.n_bands) == ("green", 6)
+
+
+def test_a_key_that_takes_nothing_away_from_the_task_does_not_begin_it_again(gate: Gate) -> None:
+    session = waiting(gate)
+    task = session._task
+    session.press("X")
+    assert not session.prepare(patience=NOW)
+    assert session._task is task
+
+
+def test_escape_stops_the_work_before_it_closes_anything(gate: Gate) -> None:
+    session = waiting(gate)
+    assert session.press("Esc") is None
+    assert session.prepare(patience=NOW)
+    assert session.picture.light.name == session.state.recipe.light == "green"
+    assert session.state.view.message.startswith("stopped")
+    assert session.press("Esc") is Command.CLOSE
+
+
+def test_what_is_refused_late_keeps_the_picture_and_where_the_camera_is_by_then(gate: Gate) -> None:
+    session = Session(state_of("green", FunctionLight(lambda d: gate.open.wait(60) and np.nan * d, "bad")))
+    session.press("Right")
+    assert not session.prepare(patience=NOW)
+    session.state = changed(session.state, camera=(1.0, 2.0))
+    gate.open.set()
+    assert session.prepare()
+    assert "must be finite" in session.state.view.message
+    assert (session.state.recipe.light, session.state.view.camera) == ("green", (1.0, 2.0))
+    assert session.picture.state == session.state
+
+
+def test_a_command_that_needs_the_picture_is_carried_out_when_it_is_there(gate: Gate) -> None:
+    session = waiting(gate, tolerance=0.2)
+    session.press("T")
+    assert session.state.recipe.n_bands == 5
+    gate.open.set()
+    assert session.prepare()
+    assert session.state.recipe.n_bands == session.picture.needs.radiance == 2
+    assert session.picture.state == session.state
+
+
+def test_saving_waits_for_the_picture_that_was_asked_for(gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    saved = []
+    monkeypatch.setattr(sessions, "render_rgb", lambda renderer, picture, composition: None)
+    monkeypatch.setattr(sessions, "metadata", lambda picture, *rest: picture.light.name)
+    monkeypatch.setattr(sessions, "write_numbered", lambda stem, pixels, text: saved.append((stem, text)) or "it")
+
+    class Anything:
+        version = ""
+
+    session = waiting(gate)
+    session.save(Anything(), Anything())  # type: ignore[arg-type]
+    assert saved == []
+    gate.open.set()
+    assert session.prepare()
+    assert saved == [("shviewer-slow", "slow")]
+    assert session.state.view.message == "saved it"
+
+
+def test_a_sweep_waits_for_its_pictures(gate: Gate) -> None:
+    session = waiting(gate)
+    session.press("Space")
+    bands = session.state.recipe.n_bands
+    assert not session.prepare(patience=NOW)
+    for second in range(4):
+        session.tick(float(second))
+    assert session.state.recipe.n_bands == bands
+
+
+def test_work_is_spoken_of_only_once_it_has_taken_a_while(gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sessions, "QUIET", 1e9)
+    session = waiting(gate)
+    assert session.status == ""
+    assert not session.tick(1.0)
+    monkeypatch.setattr(sessions, "QUIET", 0.0)
+    assert session.status == "projecting"
+    assert session.tick(2.0)
+    assert not session.tick(3.0)
+
+
+def test_a_task_ends_at_its_next_step_and_the_next_one_begins_then() -> None:
+    order, go = [], threading.Event()
+
+    def first() -> None:
+        assert go.wait(60)
+        tell("first")
+        order.append("never")
+
+    def second() -> str:
+        order.append("second")
+        return "made"
+
+    task = Task(first)
+    task.stop()
+    after = Task(second, after=task)
+    assert not after.wait(0.01)
+    go.set()
+    assert after.result() == "made"
+    assert order == ["second"]
+    with pytest.raises(Stopped):
+        task.result()
+
+
+def test_a_listener_hears_one_thread_and_only_as_long_as_it_listens() -> None:
+    heard: list[tuple[str, float | None]] = []
+    with listening(lambda what, share: heard.append((what, share))):
+        tell("reading", 0.5)
+        thread = threading.Thread(target=tell, args=("elsewhere",))
+        thread.start()
+        thread.join()
+    tell("too late")
+    assert heard == [("reading", 0.5)]
+
+
+QUITTING = """
+import sys, time
+import numpy as np
+from shviewer.lights.function import FunctionLight
+from shviewer.viewer.state import changed, state_of
+from viewer.desktop.still_window import window, window_of
+window.PATIENCE = 0.05
+asleep = FunctionLight(lambda directions: time.sleep(3600), "asleep")
+import glfw
+with window.open_window((640, 320)) as handle:
+    shown = window_of(handle, state_of("green", asleep))
+    shown.frame()
+    shown.press("Right")
+    start, slowest = time.perf_counter(), 0.0
+    for turn in range(20):
+        begin = time.perf_counter()
+        shown.change(changed(shown.session.state, camera=(float(turn), 20.0)))
+        shown.frame()
+        slowest = max(slowest, time.perf_counter() - begin)
+    picture = shown.session.picture
+    print(picture.light.name, picture.state.view.camera, shown.session.status != "" or time.perf_counter() - start < 0.3)
+    print(glfw.window_should_close(handle))
+    shown.press("Esc")
+    print(glfw.window_should_close(handle), shown.session.state.view.message)
+    shown.frame()
+    shown.press("Esc")
+    print(glfw.window_should_close(handle))
+"""
+
+
+def test_a_window_turns_and_closes_while_a_light_sleeps(display: str) -> None:
+    printed = output_of(display, QUITTING).splitlines()
+    assert printed == ["green (19.0, 20.0) True", "0", "0 stopped projecting", "1"]
