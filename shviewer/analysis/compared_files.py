@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from math import ceil, sqrt
 from pathlib import Path
-from typing import Any
-
-from numpy.typing import NDArray
 
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.finding import FITS, Found, find_convention
+from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.reading import interpreted, read_numbers
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.errors import LightError
@@ -25,7 +23,7 @@ from shviewer.words import brief_percent
 
 
 def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple[Recipe, str]:
-    """The recipe with the coefficients in the file `text` to compare, and a line on the convention that was found, or "".
+    """The recipe with the coefficients in the file `text` to compare, and a line on what was assumed and found out, or "".
 
     A bare list without a named convention is read in the convention that fits the recipe's light, or else the nearest.
     LightError if the file is bad or no coefficient file. option: the name of the option in messages.
@@ -37,21 +35,24 @@ def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple
             "makes them of a light"
         )
     with naming(text):
-        numbers, stamp = read_numbers(file, recipe.reading.limits)
-        if stamp or recipe.reading.convention:
-            read, found = interpreted(numbers, stamp, recipe.reading.convention), None
+        listed = read_numbers(file, recipe.reading.limits)
+        if listed.stamp or listed.implied or recipe.reading.convention:
+            read, found = interpreted(listed, recipe.reading.convention), None
         else:
-            found = _found(recipe, numbers)
-            read = interpreted(numbers, {}, found.best.text)
+            found = _found(recipe, listed)
+            read = interpreted(listed, found.best.text)
     light = CoefficientLight.of_file(read, file.name)
-    return replace(recipe, compare=light), _said(file.name, found) if found else ""
+    said = (
+        [] if found and found.fits else [f"{file.name}: {note}" for note in read.notes]
+    )  # what fits was guessed rightly
+    return replace(recipe, compare=light), "; ".join([*said, *([_said(file.name, found)] if found else [])])
 
 
-def _found(recipe: Recipe, numbers: NDArray[Any]) -> Found:
+def _found(recipe: Recipe, listed: Listed) -> Found:
     """The conventions in which the numbers fit the radiance of the light that is projected."""
     light = load_light(replace(recipe, quantity="radiance"))
-    most = min(MAX_BANDS, max(1, ceil(sqrt(numbers.size))))  # the bands of a grey list; others have fewer
-    return find_convention(numbers, project(light, *BEST, most).coefficients)
+    most = min(MAX_BANDS, max(1, ceil(sqrt(listed.numbers.size))))  # the bands of a grey list; others have fewer
+    return find_convention(listed, project(light, *BEST, most).coefficients)
 
 
 def _said(name: str, found: Found) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.coefficients.numbers import MAX_NUMBERS
+from shviewer.coefficients.numbers import MAX_NUMBERS, Listed, arranged
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError
 from shviewer.files import decoding
@@ -20,7 +20,7 @@ from shviewer.words import one_line
 NPY = ".npy"
 
 
-def read_arrays(data: bytes) -> tuple[NDArray[Any], Stamp]:
+def read_arrays(data: bytes) -> Listed:
     """The numbers and the stamp in an .npz with `coefficients` and, if project wrote it, `stamp`; or in an .npy. LightError."""
     most = 16 * MAX_NUMBERS + 2**16
     with decoding("readable NPZ or NPY"), warnings.catch_warnings(action="ignore"):  # of headers that Python 2 wrote
@@ -29,8 +29,8 @@ def read_arrays(data: bytes) -> tuple[NDArray[Any], Stamp]:
     if numbers.dtype.kind not in "fiuc" or numbers.ndim not in (1, 2) or not numbers.size:
         raise LightError(f"coefficients of type {numbers.dtype} and shape {numbers.shape}; they are (n^2, 3) numbers")
     if "stamp" not in arrays:
-        return numbers, {}
-    return numbers, _stamp_text(str(arrays["stamp"]))
+        return arranged(numbers)
+    return Listed(numbers, _stamp_text(str(arrays["stamp"])))
 
 
 def _arrays(data: bytes, most: int) -> dict[str, NDArray[Any]]:

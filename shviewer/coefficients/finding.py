@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shviewer.coefficients.convention import QUANTITIES, RADIANCE
+from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.reading import CoefficientFile, interpreted
 from shviewer.coefficients.suspects import (
@@ -61,7 +60,7 @@ class Found:
     alike: tuple[str, ...] = ()
 
 
-def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
+def find_convention(numbers: Listed, exact: Array) -> Found:
     """The convention of a bare list as it was read. exact: the light's radiance in our convention, with at least its bands.
 
     The programs' own conventions come first, then ours with modifiers. LightError if the numbers are no table in any of them.
@@ -69,7 +68,7 @@ def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
     names = [*CONVENTIONS, *(f"shviewer,{quantity}" for quantity in QUANTITIES if quantity != RADIANCE)]
     fits = list(_fits(numbers, exact, names))
     if not fits:
-        interpreted(numbers, {}, "shviewer")  # says what is wrong
+        interpreted(numbers, "shviewer")  # says what is wrong
         raise LightError("numbers in no known convention: name it, --convention")
     best = min(fits, key=lambda fit: max(fit.error, TINY))
     if best.error > FITS:
@@ -79,11 +78,11 @@ def find_convention(numbers: NDArray[Any], exact: Array) -> Found:
     return Found(best, best.error <= FITS, tuple(same) if best.error <= FITS else ())
 
 
-def _fits(numbers: NDArray[Any], exact: Array, conventions: list[str]) -> Iterator[Fit]:
+def _fits(numbers: Listed, exact: Array, conventions: list[str]) -> Iterator[Fit]:
     """The numbers read in each convention that can hold them."""
     for text in conventions:
         with suppress(LightError):
-            file = interpreted(numbers, {}, text)
+            file = interpreted(numbers, text)
             wanted = exact[: file.n_bands**2]
             if file.quantity != RADIANCE:
                 wanted = wanted * per_coefficient(irradiance_factors(file.n_bands))
@@ -91,12 +90,12 @@ def _fits(numbers: NDArray[Any], exact: Array, conventions: list[str]) -> Iterat
             yield Fit(text, file, float(np.linalg.norm(file.coefficients - wanted)) / norm if norm else np.inf)
 
 
-def _bent(numbers: NDArray[Any], exact: Array) -> list[str]:
+def _bent(numbers: Listed, exact: Array) -> list[str]:
     """Our convention with modifiers for the changes that the usual suspects name, as far as there are modifiers."""
     found = []
     for base in ("shviewer", "shviewer,polynomial"):
         with suppress(LightError):
-            given = interpreted(numbers, {}, base).coefficients
+            given = interpreted(numbers, base).coefficients
             for suspect in usual_suspects(exact, given):
                 modifiers = modifiers_of(suspect.changes)
                 if suspect.error <= FITS and modifiers is not None and not ("no-phase" in modifiers and "," in base):

@@ -5,7 +5,6 @@ Nothing in a file is run: an .npz with pickled objects is refused unread, and si
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from collections import Counter
@@ -20,10 +19,12 @@ from numpy.typing import NDArray
 
 from shviewer.coefficients.array_files import read_arrays
 from shviewer.coefficients.convention import OVER_PI, RADIANCE, Convention
-from shviewer.coefficients.numbers import MAX_NUMBERS, as_table, plain_numbers
+from shviewer.coefficients.numbers import Listed, as_table
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp
+from shviewer.coefficients.structures import read_structure, rows_of_numbers
 from shviewer.coefficients.suffixes import HOLDS
+from shviewer.coefficients.text_lists import plain_numbers, read_list
 from shviewer.errors import LightError
 from shviewer.files import decoding, naming, read_bytes
 from shviewer.harmonics.basis import Array, count_bands
@@ -38,8 +39,6 @@ LARGEST = 1e100
 TABLE_BEGINS, TABLE_ENDS = "coefficients begin", "coefficients end"
 """The words of two comments in a .h or .glsl file; between them stand the numbers, and nothing else."""
 
-CHANNELS = ("red", "green", "blue")
-
 
 @dataclass(frozen=True, eq=False)
 class CoefficientFile:
@@ -50,6 +49,8 @@ class CoefficientFile:
     coefficients: Array
     stamp: Stamp
     """The file's stamp; empty for a bare list."""
+    notes: tuple[str, ...] = ()
+    """One line on each thing that was assumed."""
 
     @property
     def n_bands(self) -> int:
@@ -68,11 +69,11 @@ def read_coefficients(path: Path, named: str = "", limits: Limits = DEFAULT_LIMI
     LightError, one line with file, finding and next step, for whatever is wrong with it.
     """
     with naming(str(path)):
-        return interpreted(*read_numbers(path, limits), named)
+        return interpreted(read_numbers(path, limits), named)
 
 
-def read_numbers(path: Path, limits: Limits = DEFAULT_LIMITS) -> tuple[NDArray[Any], Stamp]:
-    """Read the numbers in a file, in whichever shape, and its stamp, empty for a bare list. LightError if it is bad."""
+def read_numbers(path: Path, limits: Limits = DEFAULT_LIMITS) -> Listed:
+    """Read the numbers in a file, of whichever shape. LightError if it is bad."""
     limits = Limits(file_bytes=min(MAX_FILE_BYTES, limits.file_bytes))
     _check_size(path)
     return _READERS[HOLDS[path.suffix.lower()]](read_bytes(path, limits))
@@ -87,26 +88,31 @@ def _check_size(path: Path) -> None:
             )
 
 
-def interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientFile:
-    """Interpret numbers in the convention of their stamp, or the one that was named. LightError if that is impossible."""
+def interpreted(listed: Listed, named: str) -> CoefficientFile:
+    """Interpret numbers in the convention of their stamp, the one that was named, or the one that their file implies.
+
+    LightError if that is impossible.
+    """
+    stamp, notes = listed.stamp, listed.notes
     if stamp:
         convention = read_stamp(stamp)
         if named and parse_convention(named) != parse_convention(str(stamp["convention"])):
             raise LightError(
                 f"says itself that its convention is {stamp['convention']}; leave out --convention {named}"
             )
-    elif named:
+    elif named or listed.implied:
         try:
-            convention = parse_convention(named)
+            convention = parse_convention(named or listed.implied)
         except ValueError as error:
             raise LightError(str(error)) from error
+        notes = notes if named else (*notes, listed.implied_by)
     else:
         raise LightError(
             f"a bare list of numbers; name its convention: --convention {', '.join(CONVENTIONS)}, such as --convention three "
             "(in Python convention='three'); "
             "if the light is at hand, --compare finds it out: shviewer LIGHT --compare FILE"
         )
-    table = as_table(numbers, complex_pairs=convention.complex)
+    table = as_table(listed.numbers, complex_pairs=convention.complex)
     if stamp and "bands" in stamp and str(stamp["bands"]) != str(count_bands(table)):
         raise LightError(
             f"says {stamp['bands']} bands but has {len(table)} rows; n bands have n^2: project the light again"
@@ -119,31 +125,18 @@ def interpreted(numbers: NDArray[Any], stamp: Stamp, named: str) -> CoefficientF
     if np.abs(table).max() > LARGEST:
         raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")
     try:
-        return CoefficientFile(table, convention, convention.to_ours(table), stamp)
+        return CoefficientFile(table, convention, convention.to_ours(table), stamp, notes)
     except ValueError as error:
         raise LightError(str(error)) from error
 
 
-def _read_json(data: bytes) -> tuple[NDArray[Any], Stamp]:
+def _read_json(data: bytes) -> Listed:
     with decoding("JSON"):
         found = json.loads(_text(data), parse_constant=_no_constant, object_pairs_hook=_no_key_twice)
-    stamp: Stamp = {}
-    if isinstance(found, dict):
-        if "coefficients" not in found:
-            raise LightError('a JSON object without "coefficients"; it holds rows of red, green and blue there')
-        if SCHEMA_KEY in found:
-            stamp = {key: value for key, value in found.items() if isinstance(value, str | int | float)}
-        found = found["coefficients"]
-    try:
-        numbers = np.array(found)
-    except (ValueError, OverflowError):  # rows of different lengths
-        numbers = np.array([])
-    rows = found if isinstance(found, list) else []
-    if any(type(value) is bool for row in rows for value in (row if isinstance(row, list) else [row])):
-        raise LightError("true or false among the coefficients; they are numbers")
-    if numbers.ndim not in (1, 2) or not numbers.size or numbers.dtype.kind not in "fiu":
-        raise LightError("coefficients must be rows of three numbers each, or one list of numbers")
-    return numbers.astype(np.float64), stamp
+    if not isinstance(found, dict) or SCHEMA_KEY not in found:
+        return read_structure(found)
+    stamp = {key: value for key, value in found.items() if isinstance(value, str | int | float | None)}
+    return Listed(rows_of_numbers(found.get("coefficients")), stamp)
 
 
 def _no_key_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -158,60 +151,27 @@ def _no_constant(name: str) -> float:
     raise LightError(f"{name} among the coefficients; they are finite numbers: project the light again")
 
 
-def _read_csv(data: bytes) -> tuple[NDArray[Any], Stamp]:
-    """Read a CSV file. A header names the columns; without one there are three: red, green and blue."""
+def _read_text(data: bytes, table: bool = False) -> Listed:
+    """Read a .csv (table), .txt, .h or .glsl file: its list, or what stands between the marks."""
     text = _text(data)
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    if not lines:
-        raise LightError("no rows; a CSV file has n^2 rows of red, green, blue")
-    header = [cell.strip().lower() for cell in _cells(lines[:1])[0]]
-    if not any(re.fullmatch(r"[A-Za-z][\w-]*", cell) and cell not in ("nan", "inf", "infinity") for cell in header):
-        numbers = plain_numbers(text)
-        return numbers.reshape(len(lines), -1) if _even(lines, numbers.size) else numbers, _comments(text)
-    wanted = [name for name in header if name.removesuffix("-imaginary") in CHANNELS]
-    if missing := [name for name in CHANNELS if name not in wanted]:
-        raise LightError(f"no column {' and no column '.join(missing)}; the header must name red, green and blue")
-    rows = []
-    for number, row in enumerate(_cells(lines[1:]), 1):
-        if len(row) != len(header):
-            raise LightError(f"row {number} has {len(row)} cells, the header {len(header)}: complete it")
-        if number > MAX_NUMBERS:
-            raise LightError(f"more than {MAX_NUMBERS} rows: at most 128 bands, 16384 rows, are read")
-        rows.append(plain_numbers(" ".join(row[header.index(name)] for name in _in_order(wanted))))
-        if len(rows[-1]) != len(wanted):
-            raise LightError(f"row {number} lacks a number: complete it")
-    return np.array(rows), _comments(text)
-
-
-def _cells(lines: list[str]) -> list[list[str]]:
-    with decoding("CSV"):
-        return list(csv.reader(lines))
-
-
-def _in_order(columns: list[str]) -> list[str]:
-    return [name for channel in CHANNELS for name in (channel, f"{channel}-imaginary") if name in columns]
-
-
-def _even(lines: list[str], count: int) -> bool:
-    """Whether all lines hold the same number of numbers."""
-    return "," in lines[0] and all((line.count(",") + 1) * len(lines) == count for line in lines)
-
-
-def _read_text(data: bytes) -> tuple[NDArray[Any], Stamp]:
-    """Read a .txt, .h or .glsl file: all its numbers, or those between the marks."""
-    text = _text(data)
-    begins, ends = text.find(TABLE_BEGINS), text.find(TABLE_ENDS)
-    table = text if begins < 0 else text[text.find("\n", begins) : text.rfind("\n", 0, ends)] if ends > begins else ""
-    numbers = plain_numbers(re.sub(r"\bd?vec3\b", "", table))
-    stamp = _comments(text)
+    stamp, begins, ends = _comments(text), text.find(TABLE_BEGINS), text.find(TABLE_ENDS)
+    if not stamp:
+        return read_list(text, table=table)
+    if begins < 0:
+        return Listed(read_list(text, table=table, sort=False).numbers, stamp)
+    numbers = plain_numbers(text[text.find("\n", begins) : text.rfind("\n", 0, ends)] if ends > begins else "")
     columns = len(str(stamp.get("columns", "")).split())
-    return numbers.reshape(-1, columns) if columns and numbers.size % columns == 0 else numbers, stamp
+    return Listed(numbers.reshape(-1, columns) if columns and numbers.size % columns == 0 else numbers, stamp)
+
+
+def _read_table(data: bytes) -> Listed:
+    return _read_text(data, table=True)
 
 
 def _comments(text: str) -> Stamp:
     """The stamp in the comments; empty if there is none."""
     found: dict[str, str | int | float | None] = {}
-    for line in text.splitlines():
+    for line in text.splitlines() if SCHEMA_KEY in text else ():
         match = re.match(r"\s*(?:#|//|\*)\s?([a-z][a-z0-9-]*): (.*)$", line)
         if match:
             found.setdefault(match[1], match[2].strip())
@@ -225,9 +185,9 @@ def _text(data: bytes) -> str:
         raise LightError(f"byte {error.start} is no UTF-8: save it as text") from error
 
 
-_READERS: dict[str, Callable[[bytes], tuple[NDArray[Any], Stamp]]] = {
+_READERS: dict[str, Callable[[bytes], Listed]] = {
     "json": _read_json,
-    "csv": _read_csv,
+    "csv": _read_table,
     "text": _read_text,
     "arrays": read_arrays,
 }

@@ -70,7 +70,7 @@ def read_stamp(stamp: Stamp) -> Convention:
 
     LightError for a later schema, a missing key or a contradiction.
     """
-    schema = stamp[SCHEMA_KEY]
+    schema = stamp.get(SCHEMA_KEY)
     if str(schema) != str(SCHEMA):
         raise LightError(
             f"{SCHEMA_KEY} {schema}: this version reads schema {SCHEMA}; update shviewer, or write the file again with this one"

@@ -99,9 +99,9 @@ class CoefficientLight(FiniteSum, RadianceLight):
     def notes(self) -> tuple[str, ...]:
         if self.file is None:
             return ()
-        suns = str(self.file.stamp.get(SUNS_KEY, 0))
-        left_out = (f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright",)
-        notes = left_out if suns != "0" else ()
+        suns, notes = str(self.file.stamp.get(SUNS_KEY, 0)), self.file.notes
+        if suns != "0":
+            notes = (*notes, f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright")
         if self.quantity == RADIANCE:
             return notes
         lost = recovered_radiance(self.file.coefficients)[1]

@@ -135,7 +135,12 @@ def test_a_file_of_irradiance_is_the_light_with_that_irradiance(tmp_path: Path) 
         ("a.csv", "1,2\n3,4\n", "rows of 2 numbers"),
         ("a.csv", "# nothing\n", "no rows"),
         ("a.txt", "1 2 three", "'three' in line 1 is no number"),
-        ("a.txt", "1 2\n3; int x = 4;", "'int' in line 2 is no number"),
+        (
+            "a.txt",
+            "1 2\n3; int x = 4;",
+            "with the names one without a name, x; keep the one that holds the coefficients",
+        ),
+        ("a.txt", "1 2\n3; int x;", "'int' in line 2 is no number"),
         ("a.json", "{", "no JSON"),
         ("a.json", "[" * 100_000, "no JSON"),
         ("a.json", '{"rows": []}', 'without "coefficients"'),
@@ -257,7 +262,21 @@ def seeds() -> dict[str, bytes]:
     found = project_recipe(Recipe(n_bands=2))
     files = {f"seed.{kind}": found.encode(CONVENTIONS["three"], kind) for kind in FORMATS}
     scipy = {f"complex.{kind}": found.encode(CONVENTIONS["scipy"], kind) for kind in ("json", "csv", "h")}
-    return files | scipy | {"bare.txt": b"(1, 2, 3); // L\n(4, 5, 6);\n7 8 9f\n-1e-3 0 .5"}
+    return files | scipy | BARE
+
+
+BARE = {
+    "bare.txt": b"(1, 2, 3); // L\n(4, 5, 6);\n7 8 9f\n-1e-3 0 .5",
+    "planes.csv": b"1;2;3;4\n5,5;6;7;8\n9;8;7;6\n",
+    "names.glsl": b"const vec3 L00 = vec3(1, 2, 3);\nvec3 L1m1 = vec3(1), L10 = vec3(2), L11 = vec3(3);",
+    "objects.txt": b"4\n{r: 1, g: 2, b: 3}, {r: 1, g: 2, b: 3}, {r: 1, g: 2, b: 3}, {r: 1, g: 2, b: \xe2\x88\x923}",
+    "header.csv": b"l\tm\tr\tg\tb\n0\t0\t1\t2\t3\n1\t1\t4\t5\t6\n1\t-1\t7\t8\t9\n1\t0\t1,5\t2\t3\n",
+    "shtools.txt": b"0, 0, 1.5, 0\n1, 0, 2.5e-1, 0\n1, 1, 3, 4\n",
+    "rgba.txt": b"1 2 3 1\n4 5 6 1\n7 8 9 1\n1 2 3 1\n",
+    "probe.json": b'{"object": {"type": "LightProbe", "intensity": 2, "sh": [' + b"1, " * 26 + b"2]}}",
+    "scene.json": b'{"lights": [{"intensity": 2, "irradianceCoefficients": [' + b"[1, 2, 3], " * 8 + b"[4, 5, 6]]}]}",
+    "babylon.json": b'{"l00": {"_x": 1, "_y": 2, "_z": 3}, "l1_1": [4, 5, 6], "l10": [7, 8, 9], "l11": [1, 2, 3]}',
+}
 
 
 def outcome(path: Path, reading: Reading) -> tuple[CoefficientLight | None, str]:
@@ -296,7 +315,7 @@ def test_no_mutation_of_a_file_is_anything_but_a_light_or_one_line(tmp_path: Pat
                     if not mutated:
                         break
             path.write_bytes(mutated)
-            light, said = outcome(path, THREE if name == "bare.txt" else Reading())
+            light, said = outcome(path, THREE if name in BARE else Reading())
             assert "\n" not in said
             assert light is None or np.isfinite(light.given).all()
             lights += light is not None
