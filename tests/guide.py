@@ -5,6 +5,7 @@ In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT
     keys                    the table of keys
     usage                   the modes and their arguments
     exit codes
+    found images            which program writes what
     options MODE MODE ...   the options that all of these modes have and no other has; the window's mode is called "view"
 """
 
@@ -14,6 +15,7 @@ import argparse
 import re
 
 from documents import PAGES
+from lights.found_images import table as found_images
 
 from shviewer.cli.main import PARSERS
 from shviewer.cli.options import EXIT_CODES, view_parser
@@ -32,6 +34,8 @@ def generated(what: str) -> str:
     if what.startswith("options "):
         rows = options_by_modes()[tuple(what.split()[1:])]
         return "\n".join(["", "| option | meaning |", "|---|---|", *rows, "", ""])
+    if what == "found images":
+        return found_images()
     texts = {"keys": key_table(), "usage": usage(), "exit codes": exit_codes()}
     return f"\n```text\n{texts[what]}\n```\n\n"
 

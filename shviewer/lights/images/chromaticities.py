@@ -27,9 +27,9 @@ _FARTHEST = 10.0  # of x and y from 0; the widest space in use (REDWideGamutRGB)
 _FLATTEST = 1e-4  # twice the area of the triangle of primaries; that of Rec. 709 is 0.22
 
 
-def is_rec709(chromaticities: ArrayLike) -> bool:
-    """Whether (4, 2) chromaticities are those of Rec. 709, each within 1e-3: the RGB may be taken as it is."""
-    return bool(np.all(np.abs(np.asarray(chromaticities, np.float64) - REC709) <= _SAME))
+def are_same(chromaticities: ArrayLike, others: ArrayLike) -> bool:
+    """Whether (4, 2) chromaticities are those others, each within 1e-3."""
+    return bool(np.all(np.abs(np.asarray(chromaticities, np.float64) - np.asarray(others)) <= _SAME))
 
 
 def rec709_from(chromaticities: ArrayLike) -> NDArray[np.float64]:

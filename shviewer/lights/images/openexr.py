@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.images.chromaticities import is_rec709, rec709_from
+from shviewer.lights.images.chromaticities import REC709, are_same, rec709_from
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.luminance_chroma import rgb_from_luminance_chroma
 from shviewer.lights.images.openexr_headers import Part, Window, read_headers
@@ -85,7 +85,7 @@ def _to_rec709(part: Part, source: Source) -> tuple[NDArray[np.float64] | None, 
         return None, ()
     xy = np.array(part.chromaticities, np.float64).reshape(4, 2)
     matrix = rec709_from(xy)  # also refuses chromaticities that make no colour space
-    if source.grey or is_rec709(xy):
+    if source.grey or are_same(xy, REC709):
         return None, ()
     red, green, blue, white = (f"({x:.4g}, {y:.4g})" for x, y in xy)
     return matrix, (f"colours converted to Rec. 709 from the primaries {red}, {green}, {blue} and the white {white}",)

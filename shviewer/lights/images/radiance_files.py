@@ -5,6 +5,7 @@ The decoders are beside this file, one per format. A *value* is one channel of o
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,20 +17,20 @@ from shviewer.files import naming, read_bytes
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import Limits, check_brightness
-from shviewer.words import counted
+from shviewer.words import counted, one_line
 
 
 @dataclass(frozen=True)
 class _Kind:
     name: str
-    magic: bytes
+    magics: tuple[bytes, ...]
     suffixes: tuple[str, ...]
 
 
-_RGBE = _Kind("Radiance RGBE", b"#?", (".hdr", ".pic", ".rgbe"))
-_OPENEXR = _Kind("OpenEXR", b"\x76\x2f\x31\x01", (".exr",))
-_PNG = _Kind("PNG", b"\x89PNG", (".png",))
-_JPEG = _Kind("JPEG", b"\xff\xd8\xff", (".jpg", ".jpeg"))
+_RGBE = _Kind("Radiance RGBE", (b"#?", b"\xef\xbb\xbf#?"), (".hdr", ".pic", ".rgbe"))
+_OPENEXR = _Kind("OpenEXR", (b"\x76\x2f\x31\x01",), (".exr",))
+_PNG = _Kind("PNG", (b"\x89PNG",), (".png",))
+_JPEG = _Kind("JPEG", (b"\xff\xd8\xff",), (".jpg", ".jpeg"))
 _KINDS = (_RGBE, _OPENEXR, _PNG, _JPEG)
 
 IMAGE_SUFFIXES = tuple(suffix for kind in _KINDS for suffix in kind.suffixes)
@@ -69,8 +70,13 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
     with naming(name):
         kind = _kind(data, Path(name).suffix.lower())
         decoded = _decoded(kind, data, reading.limits, layer, reading.isolated)
-        notes = _repair(decoded.pixels) if reading.sanitize else _check(decoded.pixels)
-    check_brightness(max(float(decoded.pixels.max()), -float(decoded.pixels.min())), name)
+        notes = _repair(decoded.pixels) if reading.sanitize else ()
+        smallest, largest = float(decoded.pixels.min()), float(decoded.pixels.max())  # NaN if there is one
+        if not math.isfinite(largest - smallest):
+            _refuse_what_is_not_finite(decoded.pixels)
+        if smallest < 0.0:
+            notes += (f"{_negative(decoded.pixels)}, minimum {smallest:.4g}, kept",)
+    check_brightness(max(largest, -smallest), one_line(name))
     return replace(decoded, notes=decoded.notes + notes)
 
 
@@ -93,7 +99,7 @@ def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: boo
 def _kind(data: bytes, suffix: str) -> _Kind:
     """The kind by the first bytes. A suffix that says otherwise is refused, since one of the two is a mistake."""
     for kind in _KINDS:
-        if not data.startswith(kind.magic):
+        if not data.startswith(kind.magics):
             continue
         if any(suffix in other.suffixes for other in _KINDS if other is not kind):
             raise LightError(f"named {suffix} but holds {kind.name}; rename it to end in {kind.suffixes[0]}")
@@ -105,8 +111,8 @@ def _kind(data: bytes, suffix: str) -> _Kind:
     raise LightError(f"begins with {data[:8]!r}, which is no known image; {wanted}")
 
 
-def _check(pixels: NDArray[np.float32]) -> tuple[str, ...]:
-    """Refuse NaN and Inf; return a note on negative values, if there are any."""
+def _refuse_what_is_not_finite(pixels: NDArray[np.float32]) -> None:
+    """LightError for NaN and Inf, if there are any."""
     finite = np.isfinite(pixels)
     if not finite.all():
         row, column = (int(i) for i in np.argwhere(~finite.all(axis=2))[0])
@@ -115,8 +121,6 @@ def _check(pixels: NDArray[np.float32]) -> tuple[str, ...]:
             f"{nan} NaN, {up} +Inf and {down} -Inf values, the first at row {row}, column {column} (from 0, top left);"
             " a light must be finite: --sanitize repairs them"
         )
-    count = int((pixels < 0.0).sum())
-    return (f"{_negative(count)}, minimum {pixels.min():.4g}, kept",) if count else ()
 
 
 def _repair(pixels: NDArray[np.float32]) -> tuple[str, ...]:
@@ -136,11 +140,11 @@ def _repair(pixels: NDArray[np.float32]) -> tuple[str, ...]:
             pixels[wrong] = value
             repairs.append(f"{count} {name} -> {value:.6g}")
     notes = ["sanitised: " + ", ".join(repairs)] if repairs else []
-    if count := int((pixels < 0.0).sum()):
+    if smallest < 0.0:
+        notes.append(f"sanitised: {_negative(pixels)}, minimum {smallest:.4g} -> 0")
         np.maximum(pixels, 0.0, out=pixels)
-        notes.append(f"sanitised: {_negative(count)}, minimum {smallest:.4g} -> 0")
     return tuple(notes)
 
 
-def _negative(count: int) -> str:
-    return counted(count, "negative value")
+def _negative(pixels: NDArray[np.float32]) -> str:
+    return counted(int((pixels < 0.0).sum()), "negative value")

@@ -4,9 +4,13 @@ A texel is four bytes: three mantissas and one exponent e. A channel's value is 
 is black. Writers and readers agree on this; only Radiance itself adds half a step to the mantissa.
 
 Primaries. Radiance's own are near Rec. 709 but have another white (1/3, 1/3). No reader converts a file that states no
-primaries: its RGB is taken as it is, here too. Primaries that a file states are believed, and the colours adapted to
+primaries: its RGB is taken as it is, here too. A file that states Radiance's own says what a silent one means, and some
+libraries write them into every file: it is the same light. Other primaries are believed, and the colours adapted to
 D65. XYZE counts as such an RGB written as XYZ: it becomes RGB with Radiance's primaries, as by ra_xyze -r, or with those
-of Rec. 709 if the file states primaries. Its unit is luminance, 179 lm/W times radiance.
+of Rec. 709 if the file states other primaries. Its unit is luminance, 179 lm/W times radiance.
+
+Headers are read as they are found: with or without the empty line, in any line ending, behind a byte order mark. A
+setting without sense is ignored with a note, since the texels do not depend on it.
 
 Source
     [R] Radiance File Formats, radsite.lbl.gov/radiance/refer/filefmts.pdf, "Picture File Format (.hdr suffix)"
@@ -22,13 +26,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.images.chromaticities import is_rec709, rec709_from, xyz_from_rgb
+from shviewer.lights.images.chromaticities import REC709, are_same, rec709_from, xyz_from_rgb
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.rgbe_scanlines import Packing, check_enough_bytes, read_scanlines
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
 MAX_HEADER_BYTES = 64 * 2**10
 _SIZE_LINE = re.compile(rb"\s*([+-])([XY])\s+([+-]?\d{1,30})\s+([+-])([XY])\s+([+-]?\d{1,30})\s*")
+_FIRST_ENDING = re.compile(rb"[^\r\n]*\r(?!\n)")  # a CR alone
+_DUE = "one like '-Y 512 +X 1024' must follow the header"
 _FORMATS = {b"32-bit_rle_rgbe": "RGBE", b"32-bit_rle_xyze": "XYZE"}
 _PACKINGS: dict[Packing, str] = {"flat": "not packed", "old": "old run-length packing", "new": "new run-length packing"}
 
@@ -58,7 +64,7 @@ class _Settings:
 
     def __init__(self) -> None:
         self.channels = "RGBE"
-        self.exposure = 1.0  # stored = radiance * exposure * colour_correction
+        self.exposure = np.ones(1)  # stored = radiance * exposure * colour_correction
         self.colour_correction = np.ones(3)
         self.primaries: NDArray[np.float64] | None = None  # (4, 2), stated and sensible; the last ones count [X]
         self.ignored: list[str] = []
@@ -66,24 +72,39 @@ class _Settings:
     def read(self, line: bytes) -> None:
         """Read one header line. A setting counts only at the start of its line: indented ones are history."""
         key, _, value = line.partition(b"=")
-        match key:
+        match key.rstrip():
             case b"FORMAT":
-                if value.strip() not in _FORMATS:
+                if not value.strip():
+                    self.ignored.append(f"{_shown(line)} ignored: RGBE assumed")
+                elif value.strip().lower() not in _FORMATS:
                     raise LightError(
                         f"{_shown(line)}: only 32-bit_rle_rgbe and 32-bit_rle_xyze are read; convert it, e.g. with"
                         " ra_xyze -r"
                     )
-                self.channels = _FORMATS[value.strip()]
+                else:
+                    self.channels = _FORMATS[value.strip().lower()]
             case b"EXPOSURE":
-                self.exposure *= _positive_numbers(line, 1)[0]
+                self.exposure = self._times(line, self.exposure, 1)
             case b"COLORCORR":
-                self.colour_correction *= _positive_numbers(line, 3)
+                self.colour_correction = self._times(line, self.colour_correction, 3)
             case b"PRIMARIES":
                 self._read_primaries(line)
             case b"GAMMA":
                 numbers = _numbers(line, 1)
                 if len(numbers) != 1 or numbers[0] != 1.0:
                     self.ignored.append(f"{_shown(line)} ignored: the texels are linear by definition")
+
+    def _times(self, line: bytes, product: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+        """The product with the numbers of a line; without them, and with a note, if nothing can be divided by it."""
+        numbers = _numbers(line, count)
+        if len(numbers) == count and _can_divide(numbers):
+            if _can_divide(product * numbers):
+                return product * numbers
+            self.ignored.append(f"{_shown(line)} ignored: with the lines before it, it leaves the range of numbers")
+        else:
+            number = "one finite number" if count == 1 else f"{count} finite numbers"
+            self.ignored.append(f"{_shown(line)} ignored: it is not {number} above 0")
+        return product
 
     def _read_primaries(self, line: bytes) -> None:
         numbers = _numbers(line, 8)
@@ -97,33 +118,34 @@ class _Settings:
             except LightError as error:
                 self.ignored.append(f"PRIMARIES ignored: {str(error).rpartition(';')[0]}")
             else:
-                self.primaries = numbers.reshape(4, 2)
+                own = are_same(numbers.reshape(4, 2), _RADIANCE)
+                self.primaries = None if own else numbers.reshape(4, 2)
+                if own:
+                    self.ignored.append(
+                        "PRIMARIES are Radiance's own: taken for Rec. 709, as in a file that states none"
+                    )
 
     def rec709_from_stored(self) -> NDArray[np.float64] | None:
         """The matrix (3, 3) from stored values to linear Rec. 709; None for the identity."""
         divisor = self.exposure * self.colour_correction
-        if not np.all(np.isfinite(divisor) & (divisor > 0.0) & np.isfinite(1.0 / divisor)):
-            raise LightError(
-                f"EXPOSURE and COLORCORR multiply to {divisor}; that must be finite and above 0: correct them"
-            )
         matrix = np.diag(1.0 / divisor)
         if self.channels == "XYZE":
             rgb = np.linalg.inv(xyz_from_rgb(_RADIANCE)) if self.primaries is None else rec709_from(_XYZ)
             matrix = rgb / _WHITE_EFFICACY @ matrix
-        elif self.primaries is not None and not is_rec709(self.primaries):
+        elif self.primaries is not None and not are_same(self.primaries, REC709):
             matrix = rec709_from(self.primaries) @ matrix
         return None if np.array_equal(matrix, np.eye(3)) else matrix
 
     def notes(self) -> tuple[str, ...]:
         notes = []
-        if self.exposure != 1.0:
-            notes.append(f"EXPOSURE {self.exposure:g} divided out")
+        if self.exposure[0] != 1.0:
+            notes.append(f"EXPOSURE {self.exposure[0]:g} divided out")
         if np.any(self.colour_correction != 1.0):
             notes.append("COLORCORR {:g} {:g} {:g} divided out".format(*self.colour_correction))
         if self.channels == "XYZE":
             target = "RGB of Radiance's primaries" if self.primaries is None else "Rec. 709"
             notes.append(f"XYZE converted to {target}, 179 lm/W")
-        elif self.primaries is not None and not is_rec709(self.primaries):
+        elif self.primaries is not None and not are_same(self.primaries, REC709):
             notes.append("PRIMARIES {} converted to Rec. 709".format(" ".join(f"{x:g}" for x in self.primaries.flat)))
         return (*notes, *self.ignored)
 
@@ -177,17 +199,13 @@ def _read_header(data: bytes, limits: Limits) -> _Header:
     """Everything before the first texel."""
     settings = _Settings()
     line, position = _next_line(data, 0)
-    while line:
+    ended = False  # by an empty line, after which nothing but the size is due
+    while not (size := _SIZE_LINE.fullmatch(line.upper())) or size[2] == size[5]:
+        if ended and line and not line.startswith(b"#") and b"=" not in line:
+            raise LightError(f"size line {_shown(line)}; {_DUE}: re-export it")
+        ended = ended or not line
         settings.read(line)
         line, position = _next_line(data, position)
-    matrix = settings.rec709_from_stored()
-
-    line, position = _next_line(data, position)
-    size = _SIZE_LINE.fullmatch(line)
-    if size is None or size[2] == size[5]:
-        raise LightError(
-            f"size line {_shown(line)}; one like '-Y 512 +X 1024' must follow the empty line: re-export it"
-        )
     scanlines, length = int(size[3]), int(size[6])
     columns = size[2] == b"X"
     limits.check_size(*((scanlines, length) if columns else (length, scanlines)))
@@ -200,36 +218,35 @@ def _read_header(data: bytes, limits: Limits) -> _Header:
         reversed_scanlines=size[1] == reversal[size[2]],
         reversed_texels=size[4] == reversal[size[5]],
         channels=settings.channels,
-        rec709_from_stored=matrix,
+        rec709_from_stored=settings.rec709_from_stored(),
         notes=settings.notes(),
     )
 
 
 def _next_line(data: bytes, start: int) -> tuple[bytes, int]:
-    """The header line at `start` without its LF or CR LF, and where the next one begins."""
-    end = data.find(b"\n", start, MAX_HEADER_BYTES)
+    """The header line at `start` without its LF, CR LF or (if the first line ends so) CR, and where the next one begins."""
+    ending = b"\r" if _FIRST_ENDING.match(data, 0, MAX_HEADER_BYTES) else b"\n"
+    end = data.find(ending, start, MAX_HEADER_BYTES)
     if end >= 0:
         return data[start:end].removesuffix(b"\r"), end + 1
     if len(data) >= MAX_HEADER_BYTES:
         raise LightError(
-            f"no size line in the first {MAX_HEADER_BYTES} bytes, the longest header allowed: re-export it"
+            f"no size line in the first {MAX_HEADER_BYTES} bytes, the longest header allowed; {_DUE}: re-export it"
         )
-    raise LightError(f"the header is cut short at byte {len(data)}, before its size line: fetch the file again")
+    raise LightError(f"the header is cut short at byte {len(data)}, before its size line; {_DUE}: fetch the file again")
 
 
 def _numbers(line: bytes, count: int) -> NDArray[np.float64]:
-    """The first `count` numbers after the equals sign; none at all if one of them is no number."""
+    """The first `count` numbers after the equals sign, with a decimal comma too; none at all if one of them is no number."""
     try:
-        return np.array([float(word) for word in line.partition(b"=")[2].split()[:count]])
+        return np.array([float(word.replace(b",", b".")) for word in line.partition(b"=")[2].split()[:count]])
     except ValueError:
         return np.array([])
 
 
-def _positive_numbers(line: bytes, count: int) -> NDArray[np.float64]:
-    numbers = _numbers(line, count)
-    if len(numbers) != count or not np.all(np.isfinite(numbers) & (numbers > 0.0)):
-        raise LightError(f"{_shown(line)}: expected {count} finite number(s) above 0; correct the header")
-    return numbers
+def _can_divide(numbers: NDArray[np.float64]) -> bool:
+    """Whether all numbers and their reciprocals are finite and above 0."""
+    return bool(np.all(np.isfinite(numbers) & (numbers > 0.0) & np.isfinite(1.0 / numbers)))
 
 
 def _shown(line: bytes) -> str:

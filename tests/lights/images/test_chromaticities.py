@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shviewer.errors import LightError
-from shviewer.lights.images.chromaticities import REC709, is_rec709, rec709_from
+from shviewer.lights.images.chromaticities import REC709, are_same, rec709_from
 
 E = (1 / 3, 1 / 3)
 D65 = (0.3127, 0.3290)
@@ -76,12 +76,12 @@ def test_moving_only_the_white_keeps_grey_grey_and_turns_back_when_applied_backw
 
 
 def test_rec_709_is_recognised_within_a_thousandth():
-    assert is_rec709(REC709)
-    assert is_rec709(REC709 + 0.0009)
-    assert not is_rec709(np.vstack([REC709[:3], REC709[3] + (0.0, 0.0011)]))
+    assert are_same(REC709, REC709)
+    assert are_same(REC709 + 0.0009, REC709)
+    assert not are_same(np.vstack([REC709[:3], REC709[3] + (0.0, 0.0011)]), REC709)
     for other in (REC2020, RADIANCE, AP0, XYZ):
-        assert not is_rec709(other)
-    assert not is_rec709(np.full((4, 2), np.nan))
+        assert not are_same(other, REC709)
+    assert not are_same(np.full((4, 2), np.nan), REC709)
 
 
 def changed(index, xy):

@@ -153,7 +153,7 @@ def test_running_out_of_memory_is_said_in_one_line(monkeypatch):
     def starved(*arguments):
         raise MemoryError
 
-    monkeypatch.setattr(radiance_files, "_check", starved)
+    monkeypatch.setattr(radiance_files, "_decoded", starved)
     with pytest.raises(LightError, match=r"^light\.hdr: not enough memory"):
         decode_radiance_image(GOLDEN, "light.hdr")
 
