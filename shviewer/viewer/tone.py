@@ -41,8 +41,15 @@ def toned(exposed: NDArray[np.floating], tone: str) -> Array:
 
 
 def steepest(tone: str) -> float:
-    """The largest slope of a curve, that is, how much it can enlarge a difference: in the dark, where it is steepest."""
-    return LOG_RANGE / math.log1p(LOG_RANGE) if tone == "log" else 1.0
+    """The largest slope of a curve, that is, how much it can enlarge a difference: in the dark, but for ACES's foot."""
+    if tone == "log":
+        return LOG_RANGE / math.log1p(LOG_RANGE)
+    if tone == "aces":  # p/q is steepest where (p' q - p q')' q = 2 (p' q - p q') q'
+        p, q = np.poly1d((*ACES[:2], 0)), np.poly1d(ACES[2:])
+        rise = p.deriv() * q - p * q.deriv()
+        turns = (rise.deriv() * q - 2 * rise * q.deriv()).roots
+        return float(max(rise(x) / q(x) ** 2 for x in turns.real[(turns.imag == 0) & (turns.real > 0)]))
+    return 1.0
 
 
 def exposed_for(level: float, tone: str) -> float:

@@ -9,7 +9,7 @@ from harmonics.independent import random_directions
 from shviewer.viewer.derived import WHITE_LEVEL
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import state_of
-from shviewer.viewer.tone import exposed_for, toned
+from shviewer.viewer.tone import exposed_for, steepest, toned
 from shviewer.viewer.view import TONES
 
 
@@ -27,6 +27,24 @@ def test_a_curve_rises_and_its_way_back_is_its_inverse(tone: str) -> None:
     assert (np.diff(toned(exposed, tone)) > 0).all()
     for level in (0.01, 0.5, 0.8, 0.99):
         assert toned(np.array(exposed_for(level, tone)), tone) == pytest.approx(level, rel=1e-12)
+
+
+@pytest.mark.parametrize("tone", TONES)
+def test_the_steepest_slope_of_a_curve_is_reached_and_never_passed(tone: str) -> None:
+    exposed = np.append(0, np.geomspace(1e-9, 1e3, 200_001))
+    slopes = np.diff(toned(exposed, tone)) / np.diff(exposed)
+    assert slopes.max() == pytest.approx(steepest(tone), rel=1e-6)
+
+
+def test_a_map_is_within_its_bound_under_the_steepest_curve() -> None:
+    """The bound of a map's error holds in the picture only if no curve enlarges it further than `steepest` says."""
+    exposed = np.random.default_rng(1).uniform(0, 1, 100_000)
+    shift = 1e-3
+    for tone in TONES:
+        moved = np.abs(toned(exposed + shift, tone) - toned(exposed, tone)).max()
+        assert moved <= shift * steepest(tone) * (1 + 1e-9)
+        if tone not in ("log", "reinhard"):  # those two are steepest at 0 alone
+            assert moved >= 0.99 * shift * steepest(tone)
 
 
 @pytest.mark.parametrize("tone", TONES)
