@@ -55,7 +55,7 @@ class Needs:
     """The least relative L2 error, of the quantity shown, that any number of bands reaches."""
     best_bands: int
     searched: int
-    """The number of bands up to which the quantity shown was searched: fewer for samples, which are rarely good for more."""
+    """The number of bands up to which was searched: fewer for samples, and of given coefficients all that there are."""
 
 
 @dataclass(frozen=True)
@@ -80,14 +80,13 @@ class Figures:
 
 
 def needs(recipe: Recipe) -> Needs:
-    """How many bands the recipe's light needs for its tolerance, by the best way and for both quantities.
+    """How many bands the recipe's light needs for its tolerance, for both quantities.
 
-    With a sampled method, the answer for the quantity shown follows from the error of the samples.
+    Both answers are of what is shown: the light's own coefficients, those of its samples, or those that are compared.
     """
     answers = {}
     for quantity in QUANTITIES:
-        light = load_light(replace(recipe, quantity=quantity))
-        errors = errors_of(light, *(sampling_of(recipe) if quantity == recipe.quantity else BEST))
+        errors = errors_of(load_light(replace(recipe, quantity=quantity)), *sampling_of(recipe))
         answers[quantity] = smallest_band_count(errors, recipe.tolerance), errors
     errors = answers[recipe.quantity][1]
     best = int(errors.argmin())
@@ -113,9 +112,14 @@ def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
 
 @remember(most=16, doing="searching bands")
 def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
-    """The relative L2 error for every band count searched: (MAX_BANDS,), or for samples (MAX_DIRECT_BANDS,)."""
+    """The relative L2 error for every band count searched: (MAX_BANDS,), for samples (MAX_DIRECT_BANDS,), of given
+    coefficients all that there are.
+    """
     exact = project(light, *BEST, MAX_BANDS).coefficients
-    n_bands = MAX_BANDS if method == "best" else MAX_DIRECT_BANDS  # samples are rarely good for more
+    given = (
+        method.n_bands if isinstance(method, CoefficientLight) else MAX_DIRECT_BANDS
+    )  # samples are rarely good for more
+    n_bands = MAX_BANDS if method == "best" else min(given, MAX_BANDS)
     shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
     return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 

@@ -10,7 +10,7 @@ import numpy as np
 from shviewer.analysis.figures import error_grid, grid_rows, needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import reconstruction_of
-from shviewer.analysis.subjects import load_light, subject
+from shviewer.analysis.subjects import subject
 from shviewer.coefficients.stamp import stamp_of
 from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.basis import Array
@@ -164,7 +164,6 @@ def _describe(text: str, reading: Reading) -> Information:
         _grid_values(light) if about.size is None else (_gather(light.texels(), "texels"), light.landmarks()[0])
     )
     mean = found.projection.coefficients[0] / (2 * np.sqrt(np.pi))
-    irradiance = load_light(replace(recipe, quantity="irradiance"))
     file = file_version(text)
     split = subject(replace(recipe, split_sun=True))
     total = float(mean.mean()) * 4 * np.pi
@@ -185,7 +184,7 @@ def _describe(text: str, reading: Reading) -> Information:
         peak=0.0 + (values.maximum if values.maximum >= -values.minimum else values.minimum),
         peak_direction=_triple(peak),
         peak_theta_phi_degrees=theta_phi_degrees(peak),
-        irradiance_up=_triple(irradiance.radiance(np.array([[0.0, 0.0, 1.0]]))[0]),
+        irradiance_up=_triple(light.irradiance_up()),
         method=found.projection.method,
         energy_share=found.figures.energy_share[:SHOWN_BANDS],
         bands_needed=_needed(recipe),

@@ -36,7 +36,8 @@ class Projection:
     coefficients: Array
     method: str
     evaluations: int | None
-    milliseconds: float
+    milliseconds: float | None
+    """The time; None if nothing was projected: given coefficients, or some that the light had kept."""
 
     @property
     def n_bands(self) -> int:
@@ -110,13 +111,15 @@ def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Meas
 
 
 def _measure(light: Light, sampling: tuple[str, int, int], projection: Projection) -> None:
-    """Measure a projection and keep the numbers; a repetition keeps the lesser time."""
+    """Measure a projection and keep the numbers; a repetition keeps the lesser time, and without a time there is none."""
+    if projection.milliseconds is None:
+        return
     n_bands, shown = projection.n_bands, projection.coefficients
     exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
     errors = errors_by_band_count(light.products(), exact, shown)
     with MEMORY.lock:
         known = _known(light, n_bands)
-        spent = _known(light.source, n_bands).get(sampling) if light is not light.source and sampling != BEST else None
+        spent = _known(light.source, n_bands).get(sampling) if light is not light.source else None
         if spent:  # the only time spent was that on the light itself
             known[sampling] = replace(spent, errors=errors)
         else:
@@ -131,10 +134,10 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
 @remember(most=8)
 def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Projection:
     coefficients = light.from_source(given.coefficients(n_bands))
-    return Projection(coefficients, f"read as {given.convention}", None, 0.0)
+    return Projection(coefficients, f"read as {given.convention}", None, None)
 
 
-@remember(most=16, doing="projecting")
+@remember(most=32, doing="projecting")
 def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
     """Project, take the time, and keep the measurement."""
     projection = _timed_projection(light, method, samples, seed, n_bands)
@@ -143,12 +146,11 @@ def _measured_projection(light: Light, method: str, samples: int, seed: int, n_b
 
 
 def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project and take the time."""
-    start = perf_counter()
-    if light is not light.source and method != "best":
+    """Project and take the time: of an irradiance that of its source, of kept coefficients the one measured before."""
+    if light is not light.source:
         source = project(light.source, method, samples, seed, n_bands)
         return replace(source, coefficients=light.from_source(source.coefficients))
-    evaluations = None
+    start, evaluations = perf_counter(), None
     if method == "jittered":
         directions = jittered(samples, seed)
         evaluations = len(directions.weights)
@@ -160,6 +162,11 @@ def _timed_projection(light: Light, method: str, samples: int, seed: int, n_band
         coefficients = project_product(light.integrand, rule, n_bands)[0]
         words = "Gauss-Legendre"
     else:
+        kept = n_bands <= light.kept_bands
         coefficients = light.coefficients(n_bands)
+        if kept:
+            with MEMORY.lock:
+                before = _known(light, n_bands).get(BEST)
+            return Projection(coefficients, light.best_method, None, before.milliseconds if before else None)
         words = light.best_method
     return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))

@@ -69,21 +69,25 @@ def _sentence(measured: MeasuredLight, tolerance: float, needed: int, rows: Sequ
     paper = next((row for row in rivals if row.method == PAPER and row.samples == PAPER_SAMPLES), None)
     if paper is not None and paper.total_error is not None:
         end = "stop at" if paper.total_error > tolerance else "reach"
+        takes = _times(paper, winner)
+        if best is not None:  # two ways were named, and each stands for another figure
+            words = method(winner.method).words
+            takes = f"{_times(paper, winner, words)}, {_times(paper, best, measured.light.best_method)},"
         others.append(
-            f"the paper's {grouped(PAPER_SAMPLES)} jittered samples take {_times(paper, winner)} and {end}"
-            f" {percent(paper.total_error)}"
+            f"the paper's {grouped(PAPER_SAMPLES)} jittered samples take {takes} and {end} {percent(paper.total_error)}"
         )
     return "; ".join([answer, *others]) + "."
 
 
-def _times(row: Row, other: Row) -> str:
-    """How many times as long a row takes as another, in words; no factor if their quartiles overlap."""
+def _times(row: Row, other: Row, name: str = "") -> str:
+    """How many times as long a row takes as another, in words, with its name; no factor if their quartiles overlap."""
+    name = name and f" as {name}"
     if row.milliseconds is None or not other.milliseconds:
         return "an unknown time"
     if alike(row, other):
-        return "as long, within the spread"
+        return f"as long{name}, within the spread"
     ratio = row.milliseconds / other.milliseconds
-    return f"{ratio:.2g} times as long" if ratio < 10 else f"{ratio:.0f} times as long"
+    return f"{ratio:.2g} times as long{name}" if ratio < 10 else f"{ratio:.0f} times as long{name}"
 
 
 def alike(first: Row, second: Row) -> bool:

@@ -23,7 +23,7 @@ from shviewer.lights.irradiance import BandLimitedIrradiance, FiniteSum, Radianc
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import About, Light
 from shviewer.lights.reading import DEFAULT_READING, Reading
-from shviewer.limits import check_brightness
+from shviewer.limits import MAX_BANDS, check_brightness
 from shviewer.words import counted
 
 MAP_SIZE = (1025, 2048)
@@ -118,6 +118,10 @@ class CoefficientLight(FiniteSum, RadianceLight):
         kept = min(n_bands, self.n_bands) ** 2
         found[:kept] = self.given[:kept]
         return found
+
+    @property
+    def kept_bands(self) -> int:
+        return MAX_BANDS
 
     def products(self) -> Array:
         return np.asarray(self.given.T @ self.given)

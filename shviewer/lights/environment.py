@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.lights.images.radiance_files import read_radiance_image
@@ -119,6 +119,10 @@ class EnvironmentLight(RadianceLight):
             self._projected[:] = held
         return held[0][: n_bands**2]
 
+    @property
+    def kept_bands(self) -> int:
+        return count_bands(self._projected[0]) if self._projected else 0
+
     @cached_property
     def _projected(self) -> list[Array]:
         return []
@@ -136,6 +140,12 @@ class EnvironmentLight(RadianceLight):
             wide = row.astype(np.float64)
             products += (wide.T * weights) @ wide
         return products
+
+    def irradiance_up(self) -> Array:
+        """As in Light: Y(1, 0), which is z, times the texels of the upper half, by the layout's exact integrals."""
+        places = np.indices(self.pixels.shape[:2]).reshape(2, -1)
+        above = (self.layout.centres(*places)[:, 2] > 0).reshape(*self.pixels.shape[:2], 1)
+        return np.asarray(self.layout.project(self.pixels * above, 2)[2] * np.sqrt(4 * np.pi / 3))
 
     def landmarks(self) -> Array:
         """The centre of the brightest texel."""

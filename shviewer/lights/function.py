@@ -107,6 +107,10 @@ class FunctionLight(RadianceLight):
             return sampling.coefficients[: n_bands**2]
         return project_product(self.radiance, gauss_legendre(2 * max(sampling.rows, n_bands + 1) ** 2), n_bands)[0]
 
+    @property
+    def kept_bands(self) -> int:
+        return SAMPLED_BANDS if "_sampling" in vars(self) else 0
+
     def products(self) -> Array:
         return self._sampling.products
 

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.synthesis import Synthesis
@@ -27,6 +27,8 @@ SERIES_BANDS = 1024
 
 MAP_BANDS = 128
 """Bands of an image or a function; a point light misses 6e-7 of its norm, any broader light far less."""
+
+UP = np.array([0.0, 0.0, 1.0])
 
 TABLE_NODES, EDGE_NODES = 2049, 513
 
@@ -63,8 +65,15 @@ class IrradianceLight(LightBase):
     def irradiance(self) -> Light:
         return self
 
+    def irradiance_up(self) -> Array:
+        return self.source.irradiance_up()
+
     def from_source(self, coefficients: Array) -> Array:
         return coefficients * per_coefficient(irradiance_factors(count_bands(coefficients)))
+
+    @property
+    def kept_bands(self) -> int:
+        return self.source.kept_bands
 
     def coefficients(self, n_bands: int) -> Array:
         return self.from_source(self.source.coefficients(n_bands))
@@ -158,6 +167,10 @@ class RadianceLight(LightBase):
 
     def irradiance(self: Light) -> Light:
         return MappedIrradiance(self)
+
+    def irradiance_up(self: Light) -> Array:
+        factors = per_coefficient(irradiance_factors(MAP_BANDS))
+        return np.asarray(evaluate_basis(UP, MAP_BANDS) @ (factors * self.coefficients(MAP_BANDS)))
 
 
 def _lobe_products(lobes: tuple[Lobe, ...]) -> Array:

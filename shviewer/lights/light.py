@@ -66,6 +66,10 @@ class Light(Protocol):
     def coefficients(self, n_bands: int) -> Array:
         """Coefficients (n_bands**2, 3) by the best way this light knows."""
 
+    @property
+    def kept_bands(self) -> int:
+        """How many bands `coefficients` has at hand, so that asking for no more takes no time worth measuring."""
+
     def products(self) -> Array:
         """Integrals of f_i f_j over the sphere for channels i and j, (3, 3), by the same quadrature as `coefficients`."""
 
@@ -84,6 +88,9 @@ class Light(Protocol):
 
     def irradiance(self) -> Light:
         """Its irradiance as a light, a new one at each call; itself, if it is irradiance."""
+
+    def irradiance_up(self) -> Array:
+        """The irradiance of a surface that faces +z, (3,)."""
 
     def split_suns(self) -> Split:
         """The light without its suns, and the suns. LightError, one line, if it has none."""
@@ -135,6 +142,10 @@ class LightBase(ABC):
 
     def integrand(self, directions: Array) -> Array:
         return self.radiance(directions)
+
+    @property
+    def kept_bands(self) -> int:
+        return 0
 
     def texels(self) -> Iterator[tuple[Array, Array]]:
         return iter(())

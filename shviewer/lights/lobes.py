@@ -10,7 +10,7 @@ import numpy as np
 from shviewer.harmonics.basis import Array, normalise
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Constant, Disc, orient
-from shviewer.lights.irradiance import LobeIrradiance, RadianceLight
+from shviewer.lights.irradiance import UP, LobeIrradiance, RadianceLight
 from shviewer.lights.light import Light, Split
 from shviewer.lights.lobe import Lobe, angle_between, pair_products
 from shviewer.limits import check_brightness
@@ -78,6 +78,9 @@ class LobeLight(RadianceLight):
 
     def irradiance(self) -> Light:
         return LobeIrradiance(self)
+
+    def irradiance_up(self) -> Array:
+        return np.asarray(self.irradiance().radiance(UP[None])[0])
 
     def split_suns(self) -> Split:
         """Split off the discs that are suns by the rule for images; no rest of them is left."""

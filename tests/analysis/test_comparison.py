@@ -15,6 +15,7 @@ from coefficients.peer_cases import spoiled
 
 from shviewer.analysis.compared_files import compared_with
 from shviewer.analysis.comparison import as_the_file_holds, caption, verdict
+from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.cli.main import main
@@ -71,6 +72,26 @@ def test_mutes_and_windows_work_on_the_given_coefficients() -> None:
     assert not compared(file, muted=frozenset({1})).coefficients[1:4].any()
     hann = compared(file, window="hann").coefficients
     np.testing.assert_allclose(hann[1:4], file.given[1:4] * (1 + np.cos(np.pi / 4)) / 2, rtol=1e-14)
+
+
+@pytest.mark.parametrize("quantity", ["radiance", "irradiance"])
+def test_the_bands_needed_are_those_of_the_file_for_both_quantities(quantity: str) -> None:
+    """The phase mistake changes no norm but leaves no count within 5 %; the light's own coefficients need 3 as irradiance."""
+    file = given(spoiled(venice().coefficients(3), "phase"))
+    found = compared(file, quantity=quantity, tolerance=0.05).needs
+    own = prepare(State(Recipe(venice(), tolerance=0.05))).needs
+    assert own.irradiance is not None
+    assert (found.radiance, found.irradiance, found.searched) == (None, None, 3)
+
+
+def test_samples_answer_for_both_quantities() -> None:
+    found = {
+        of: needs(Recipe("green", method="jittered", samples=400, quantity=of)) for of in ("radiance", "irradiance")
+    }
+    assert (found["radiance"].radiance, found["radiance"].irradiance) == (
+        found["irradiance"].radiance,
+        found["irradiance"].irradiance,
+    )
 
 
 def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from shviewer.benchmark.front import front_of, sentences
 from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
+from shviewer.benchmark.page import tables
 from shviewer.benchmark.row import Row
 from shviewer.harmonics.metrics import pareto_front
 from shviewer.lights.find import find_light
@@ -76,10 +77,22 @@ def test_the_sentence_has_the_cheapest_way_and_what_the_paper_would_do(green: Me
 
 def test_a_sampled_winner_is_compared_with_the_best_way(green: MeasuredLight) -> None:
     rows = [row("best", 15, 0.4, 0.046), row("fejer", 15, 0.1, 0.048, 1000)]
-    assert sentences(green, rows) == [
+    said = (
         "for 5 % relative L2: 15 bands, Fejer lat-long, 1 000 samples, 0.100 ms, which leaves 4.8 %;"
-        " closed form takes 4 times as long."
+        " closed form takes 4 times as long"
+    )
+    assert sentences(green, rows) == [f"{said}."]
+    rows.append(row("jittered", 15, 1.6, 0.0534, 10_000))
+    assert sentences(green, rows) == [
+        f"{said}; the paper's 10 000 jittered samples take 16 times as long as Fejer lat-long,"
+        " 4 times as long as closed form, and stop at 5.34 %."
     ]
+
+
+def test_an_error_next_to_1_has_the_digits_that_tell_it_from_1() -> None:
+    shares = (None, 0, 1, 1.04, 0.0512, 0.1, 0.957, 0.99731, 0.9999974)
+    words = ["-", "0", "1.0e+00", "1.0e+00", "5.1e-02", "1.0e-01", "0.957", "0.9973", "0.9999974"]
+    assert [tables.error(share) for share in shares] == words
 
 
 def test_times_within_the_spread_are_not_called_different(green: MeasuredLight) -> None:

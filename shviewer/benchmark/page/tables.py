@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
+from math import floor, log10
 
 import numpy as np
 
@@ -26,7 +27,11 @@ def percent(share: float | None) -> str:
 
 
 def error(value: float | None) -> str:
-    return ABSENT if value is None else "0" if value == 0 else f"{value:.1e}"
+    """An error in two digits; one next to 1 in as many as tell it from 1."""
+    if value is None or value == 0:
+        return ABSENT if value is None else "0"
+    missing = 1 - value
+    return f"{value:.{1 - floor(log10(missing))}f}" if 1e-12 < missing < 0.1 else f"{value:.1e}"
 
 
 def plain(value: float, digits: int = 4) -> str:

@@ -41,7 +41,8 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     method = projection.method
     if projection.evaluations is not None:
         method = f"{method}, {grouped(projection.evaluations)} {projection.evaluation_noun}"
-    time = f"{projection.n_bands} bands projected in {grouped_number(projection.milliseconds)} ms" if timing else ""
+    spent = f"{grouped_number(projection.milliseconds)} ms" if timing and projection.milliseconds is not None else ""
+    time = f"{projection.n_bands} bands projected in {spent}" if spent else ""
     drawn = describe_evaluation(picture, timing)
     times = [", ".join(filter(None, (time, drawn))), drawn or time, time]
     far, below = at.width - at.margin, y + at.px(20)
@@ -65,7 +66,7 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
             painter.text("time", at.margin, low, text, 12, FAINT, "lm") for text in times
         )
     else:
-        both = f"{method}, {grouped_number(projection.milliseconds)} ms" if time else method
+        both = f"{method}, {spent}" if spent else method
         painter.text("method", far, below, both, 12, FAINT, "rm") or painter.text(
             "method", far, below, method, 12, FAINT, "rm"
         )

@@ -23,12 +23,13 @@ from shviewer.viewer.overlay.lettering import FAINT, GREY, WARNING
 from shviewer.viewer.overlay.painter import Painter
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.convergence import Convergence, draw_convergence
-from shviewer.viewer.overlay.plots.plane import Plane, draw_plane
+from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_exposure
 from shviewer.words import radiance, theta_phi_degrees
 
 HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
+NOT_TIMED = "time against error: nothing was projected that could be timed; M changes the method"
 NO_ROOM = {
     "plane": "no room for time against error: enlarge the window, or B",
     "convergence": "no room for error against bands: enlarge the window, or G",
@@ -77,7 +78,8 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     convergence = draw_convergence(*drawing) if wanted == "convergence" else None
     shown = plane or convergence
     painter.boxes.update(shown.boxes if shown else {})
-    _write_hint(painter, picture, NO_ROOM[wanted] if wanted and not shown else "")
+    timed = wanted != "plane" or measured(picture)
+    _write_hint(painter, picture, (NO_ROOM[wanted] if timed else NOT_TIMED) if wanted and not shown else "")
     if picture.state.view.help_visible:
         draw_help(sheet, picture.state, composition, opengl)
     image = np.asarray(sheet)

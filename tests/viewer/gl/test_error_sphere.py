@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from viewer.gl.frames import lobes, picture_view, positions, reconstructing, rounding, sum_of_harmonics
 
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes import LUMINANCE
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobe import Lobe
-from shviewer.viewer.colour_maps import map_of, table
+from shviewer.viewer.colour_maps import linear, map_of, table
 from shviewer.viewer.composition import Box, Composition, Sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.error_scale import error_values
@@ -107,8 +108,16 @@ def test_an_exact_reconstruction_has_no_colour_but_that_of_zero(renderer: Render
     picture = picture_of("constant", n_bands=2, error="signed")
     seen = picture_view(frame, ERROR, picture)
     drawn = render_rgb(renderer, picture, frame, overlay=False)[seen.mask][seen.facing > 0.2]
-    middle = table("berlin")[127:129].astype(int)
-    assert (np.abs(drawn.astype(int) - middle[0]) <= 2).all()
+    assert drawn.max() <= 2
+
+
+@pytest.mark.parametrize("error", ["signed", "absolute"])
+def test_no_error_is_black_and_more_of_it_is_brighter(error: str) -> None:
+    luminance = linear(table(map_of(error))) @ LUMINANCE
+    halves = (luminance[127::-1], luminance[128:]) if error == "signed" else (luminance,)
+    for half in halves:
+        assert half[0] < 1e-4
+        assert (np.diff(half) >= 0).all()
 
 
 @pytest.mark.parametrize("error", ["signed", "absolute", "relative"])

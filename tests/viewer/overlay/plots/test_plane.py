@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from helpers import centre, overlap
 
+from shviewer import api
 from shviewer.analysis import projections
 from shviewer.analysis.cache import MEMORY, MOST_LIGHTS
 from shviewer.analysis.projections import BEST, Measurement, measurements, project
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.metrics import errors_by_band_count
+from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
@@ -106,7 +109,7 @@ def test_a_measurement_outlives_its_projection_and_a_repetition_keeps_the_fastes
             project(light, "jittered", 100, 0, 8)
         found = next(found for found in measurements(light, 8) if found.samples == 100)
         seen.append((found.milliseconds, found.repetitions))
-        for samples in range(200, 220):
+        for samples in range(200, 240):
             project(light, "jittered", samples, 0, 8)
         assert found in measurements(light, 8)
     assert seen == [(3, 1), (1, 2), (1, 3)]
@@ -141,6 +144,40 @@ def test_the_irradiance_takes_the_time_of_the_lights_own_samples_and_has_errors_
     (_, radiance), (_, irradiance) = (measurements(of, 8) for of in (light, light.irradiance()))
     assert (irradiance.milliseconds, irradiance.repetitions) == (radiance.milliseconds, 2)
     assert irradiance.errors[4] < radiance.errors[4] / 5
+
+
+@pytest.mark.parametrize("method", ["best", "jittered"])
+def test_an_irradiance_has_the_time_that_its_light_took(method: str) -> None:
+    """What the cache takes to multiply coefficients by factors is no time to project them."""
+    for name in ("green", "venice_sunset", "film_studio"):
+        radiance, irradiance = (shown(light=name, method=method, quantity=of) for of in ("radiance", "irradiance"))
+        assert irradiance.projection.milliseconds == radiance.projection.milliseconds
+        assert [(found.sampling, found.milliseconds) for found in measured(irradiance)] == [
+            (found.sampling, found.milliseconds) for found in measured(radiance)
+        ]
+
+
+def test_coefficients_that_a_light_has_kept_have_the_time_that_was_measured_or_none() -> None:
+    light = find_light("film_studio")
+    many = project(light, *BEST, 128)
+    assert project(light, *BEST, 32).milliseconds is None  # the first rows of what is there
+    assert measurements(light, 32) == ()
+    for _ in range(2):
+        projections._measured_projection.cache_clear()
+        assert project(light, *BEST, 128).milliseconds == many.milliseconds
+
+
+def test_what_was_not_projected_has_no_time(tmp_path: Path) -> None:
+    written = tmp_path / "green.json"
+    api.project("green", 4).save(written)
+    picture = shown(light=str(written))
+    assert picture.projection.milliseconds is None
+    drawn = draw_overlay(picture, compose(1280, 640), timing=True)
+    assert drawn.plane is None
+    assert {"method", "message"} <= set(drawn.boxes)
+    compared = shown(light="green", compare=CoefficientLight.read(written), n_bands=4)
+    assert compared.projection.milliseconds is None
+    assert {found.sampling for found in measured(compared)} == {BEST}
 
 
 def test_times_of_32_and_of_128_bands_are_never_compared() -> None:
