@@ -6,6 +6,7 @@ In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT
     usage                   the modes and their arguments
     exit codes
     found images            which program writes what
+    found lists             the same of coefficients
     options MODE MODE ...   the options that all of these modes have and no other has; the window's mode is called "view"
 """
 
@@ -14,6 +15,7 @@ from __future__ import annotations
 import argparse
 import re
 
+from coefficients.found_lists import table as found_lists
 from documents import PAGES
 from lights.found_images import table as found_images
 
@@ -36,6 +38,8 @@ def generated(what: str) -> str:
         return "\n".join(["", "| option | meaning |", "|---|---|", *rows, "", ""])
     if what == "found images":
         return found_images()
+    if what == "found lists":
+        return found_lists()
     texts = {"keys": key_table(), "usage": usage(), "exit codes": exit_codes()}
     return f"\n```text\n{texts[what]}\n```\n\n"
 

@@ -54,7 +54,7 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
         from shviewer.lights.scene import read_scene
 
         return read_scene(path)
-    if path.suffix.lower() in IMAGE_SUFFIXES:
+    if path.suffix.lower() in IMAGE_SUFFIXES or (path.suffix.lower() == ".npy" and _holds_image(path, reading)):
         from shviewer.lights.environment import EnvironmentLight
 
         return EnvironmentLight.read(path, reading, part)
@@ -67,6 +67,12 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
 
         return load_function(path, part)
     raise LightError(_unknown(text))
+
+
+def _holds_image(path: Path, reading: Reading) -> bool:
+    from shviewer.lights.images.others.arrays import holds_image
+
+    return holds_image(path, reading.limits)
 
 
 def _exists(path: Path) -> bool:

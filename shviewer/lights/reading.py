@@ -26,8 +26,11 @@ class Reading:
     limits: Limits = DEFAULT_LIMITS
     convention: str = ""
     """The convention of coefficient files that do not name theirs: a text for parse_convention (coefficients/programs.py)."""
-    isolated: bool = field(default=False, compare=False)
-    """Decode OpenEXR files in a child process, which a broken file may kill without harm. It changes no value."""
+    isolated: bool | None = field(default=None, compare=False)
+    """Decode in a child process, which a broken file may kill without harm: OpenEXR if True, OpenImageIO unless False.
+
+    It changes no value.
+    """
 
 
 DEFAULT_READING = Reading()

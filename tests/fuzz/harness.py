@@ -32,7 +32,9 @@ from seeds import seeds
 
 FOUND = Path(__file__).parent / "found"
 COUNT = 20_000
-_SHARES = {".hdr": 45, ".exr": 30, ".png": 15, ".jpg": 10}  # percent; the reader of .hdr is the one written here
+_SHARES = {".hdr": 40, ".exr": 27, ".png": 13, ".jpg": 9, ".pfm": 2, ".dds": 3, ".npy": 2, ".tif": 3, ".psd": 1}
+"""Percent of the mutations; the reader of .hdr is the one written here. Kinds without a seed have none."""
+
 _LARGE = 2048  # bytes; of seeds up to this size every truncation is tried
 _AT_ONCE = 1000
 _OF_A_KIND = 3
@@ -61,7 +63,8 @@ class Mutations:
 
     def __getitem__(self, number: int) -> tuple[str, bytes]:
         random = Random(f"{self.seed}/{number}")
-        (kind,) = random.choices(list(_SHARES), list(_SHARES.values()))
+        kinds = [kind for kind in _SHARES if _names(kind)]
+        (kind,) = random.choices(kinds, [_SHARES[kind] for kind in kinds])
         names = _names(kind)
         name, other = random.choice(names), random.choice(names)
         return name, mutated(_seeds()[name], kind, random, _seeds()[other])

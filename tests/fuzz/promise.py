@@ -72,7 +72,7 @@ class Witness:
 def _outcome(name: str, data: bytes, limits: Limits) -> Decoded | None:
     """None if it was refused as it should be."""
     try:
-        return decode_radiance_image(data, name, Reading(limits=limits))
+        return decode_radiance_image(data, name, Reading(limits=limits, isolated=False))
     except LightError as error:
         message = str(error)
         if not message.isprintable() or not message.startswith(f"{name}: ") or len(message) > 1000:
@@ -118,9 +118,35 @@ def declared_sizes(data: bytes) -> set[tuple[int, int]]:
     if data.startswith(b"#?"):
         sizes = re.finditer(rb"\n\s*[+-]([XY])\s+\+?(\d+)\s+[+-][XY]\s+\+?(\d+)", data)
         return {(int(m[2]), int(m[3])) if m[1] == b"Y" else (int(m[3]), int(m[2])) for m in sizes}
+    if data.startswith((b"PF", b"Pf")):
+        stated = re.match(rb"P.\s(?:\s|#[^\n]*\n)*(\d+)\s+(\d+)\s", data)
+        return {(int(stated[2]), int(stated[1]))} if stated else set()
+    if data.startswith(b"DDS "):
+        height, width = struct.unpack_from("<II", data, 12)
+        return {(height, width), (height, 6 * width)}
+    if data.startswith(b"\x93NUMPY"):
+        shape = re.search(rb"'shape': \((\d+), *(\d+), *3", data)
+        return {(int(shape[1]), int(shape[2]))} if shape else set()
+    if data.startswith(b"8BPS"):
+        return {struct.unpack_from(">II", data, 14)}
+    if data.startswith((b"II*\0", b"MM\0*")):
+        return _tiff_sizes(data, "<" if data.startswith(b"II") else ">")
     windows = re.finditer(rb"(?s)displayWindow\0box2i\0....(.{16})", data)
     corners = [struct.unpack("<4i", found[1]) for found in windows]
     return {(bottom - top + 1, right - left + 1) for left, top, right, bottom in corners}
+
+
+def _tiff_sizes(data: bytes, order: str) -> set[tuple[int, int]]:
+    """Sizes by the first directory: the image, and the full one that it is part of, each also turned."""
+    (at,) = struct.unpack_from(f"{order}I", data, 4)
+    (count,) = struct.unpack_from(f"{order}H", data, at)
+    found: dict[int, set[int]] = {}
+    for entry in range(count):
+        tag, kind = struct.unpack_from(f"{order}HH", data, at + 2 + 12 * entry)
+        value = struct.unpack_from(f"{order}{'I' if kind == 4 else 'H'}", data, at + 10 + 12 * entry)[0]
+        found.setdefault(tag, set()).add(value)
+    widths, heights = (found.get(tag, set()) | found.get(full, set()) for tag, full in ((256, 33300), (257, 33301)))
+    return {size for width in widths for height in heights for size in ((height, width), (width, height))}
 
 
 def _forget_peak() -> None:

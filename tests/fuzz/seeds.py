@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import struct
 from functools import cache
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 import OpenEXR
 from lights.images.hdr_files import exr_file, exr_part, exr_parts, hdr_file, random_texels, window
 from lights.images.ldr_files import GREY, GREY_ALPHA, PALETTE, RGB, RGBA, exif, png_file, saved_by_pillow
+from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -22,7 +24,7 @@ CODECS = ("NO", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DW
 @cache
 def seeds() -> dict[str, bytes]:
     """Name -> file. The suffix is that of its kind."""
-    return {**_hdr_seeds(), **_exr_seeds(), **_png_seeds(), **_jpeg_seeds()}
+    return {**_hdr_seeds(), **_exr_seeds(), **_png_seeds(), **_jpeg_seeds(), **_other_seeds()}
 
 
 def stb_seeds() -> dict[str, bytes]:
@@ -138,6 +140,34 @@ def _jpeg_seeds() -> dict[str, bytes]:
         "baseline.jpg": saved_by_pillow(codes, "JPEG"),
         "progressive.jpg": saved_by_pillow(codes, "JPEG", progressive=True, exif=exif(6)),
         "grey.jpg": saved_by_pillow(codes[..., 0].copy(), "JPEG", restart_marker_rows=1),
+    }
+
+
+def _other_seeds() -> dict[str, bytes]:
+    """Those of OpenImageIO, whose bytes are written here, only where it is installed."""
+    single, alpha = _picture(6, 12, np.float32), np.ones((6, 12, 1), np.float32)
+    faces = np.concatenate([np.concatenate([_picture(4, 4, np.float32), np.ones((4, 4, 1), np.float32)], 2)[None]] * 6)
+    ours = {
+        "colour.pfm": pfm_file(single),
+        "grey.pfm": pfm_file(single[..., 0], ">", "2"),
+        "angular.pfm": pfm_file(_picture(10, 10, np.float32)),
+        "float.dds": dds_file([np.dstack([single, alpha])], dxgi=2, caps=0),
+        "half-cube.dds": dds_file(faces.astype(np.float16), dxgi=10),
+        "mip-mapped-cube.dds": dds_file(faces, 116, levels=3),
+        "float.npy": npy_file(single),
+        "double.npy": npy_file(single.astype(np.float64)),
+        "half.npy": npy_file(np.asfortranarray(single.astype(np.float16))),
+    }
+    if find_spec("OpenImageIO") is None:
+        return ours
+    codes = (single * 15000).astype(np.uint16)
+    return ours | {
+        "codes.tif": tiff_file(codes),
+        "float.tif": tiff_file(single),
+        "turned.tif": tiff_file((codes >> 8).astype(np.uint8), orientation=6),
+        "codes.psd": psd_file(codes),
+        "float.psd": psd_file(single),
+        "bytes.psd": psd_file((codes >> 8).astype(np.uint8)),
     }
 
 

@@ -8,6 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
+
 GREY = ((128 / 255 + 0.055) / 1.055) ** 2.4
 """The linear value of the sRGB code 128."""
 
@@ -25,7 +28,7 @@ class Found(NamedTuple):
 
 
 def found_images() -> tuple[Found, ...]:
-    return (*_hdr(),)
+    return (*_hdr(), *_others())
 
 
 def table() -> str:
@@ -58,3 +61,79 @@ def _hdr() -> tuple[Found, ...]:
         Found("writers of their own", "`.hdr` without the empty line, with two, with CR, with a byte order mark",
               "as if it had one", "a.hdr", file(b"\xef\xbb\xbf#?RGBE\r\nFORMAT=32-bit_rle_rgbe\r\n"), base),
     )  # fmt: skip
+
+
+def _others() -> tuple[Found, ...]:
+    column = np.full((8, 16, 3), 0.5, np.float32)
+    column[:4] = (1, 0.5, 0.25)  # what is above
+    mean = (0.75, 0.5, 0.375)
+    codes = np.full((8, 16, 3), 128 * 257, np.uint16)
+    cube = np.tile(np.array([1, 0.5, 0.25, 1], np.float16), (6, 4, 4, 1))
+    return (
+        Found(
+            "HDRShop and Debevec's light probes",
+            "`.pfm`, the lowest row first",
+            "that, with a note; angular with a disc",
+            "a.pfm",
+            lambda: pfm_file(column),
+            mean,
+            "the lowest row first",
+        ),
+        Found(
+            "ffmpeg, libvips",
+            "`.pfm`, the top row first",
+            "upside down, which a note warns of",
+            "a.pfm",
+            lambda: pfm_file(column[::-1]),
+            mean,
+            "upside down if ffmpeg or libvips wrote it",
+        ),
+        Found(
+            "programs that use Direct3D",
+            "`.dds` of halfs or floats, a cube",
+            "the cube of Direct3D, with the front ahead",
+            "a.dds",
+            lambda: dds_file(cube, dxgi=10),
+            (1, 0.5, 0.25),
+            "alpha dropped",
+        ),
+        Found(
+            "NumPy", "`.npy` of floats (height, width, 3)", "a lat-long image", "a.npy", lambda: npy_file(column), mean
+        ),
+        Found(
+            "NumPy",
+            "`.npy` of integers (height, width, 3)",
+            "refused: codes are no radiance",
+            "a.npy",
+            lambda: npy_file(codes),
+            None,
+            "linearise and convert it",
+        ),
+        Found(
+            "ImageMagick, ffmpeg, libvips",
+            "`.tif` of 8 or 16 bit",
+            "sRGB codes, with a note",
+            "a.tif",
+            lambda: tiff_file(codes),
+            (GREY,) * 3,
+            "16 bit sRGB, linearised",
+        ),
+        Found(
+            "oiiotool, libvips",
+            "`.tif` of halfs, floats or doubles",
+            "linear light",
+            "a.tif",
+            lambda: tiff_file(column),
+            mean,
+        ),
+        Found("Photoshop", "`.psd` of 32 bit", "linear light", "a.psd", lambda: psd_file(column), mean),
+        Found(
+            "ImageMagick",
+            "`.tif` of CMYK or Lab",
+            "refused: export it as RGB",
+            "a.tif",
+            lambda: tiff_file(codes, photometric=8),
+            None,
+            "neither RGB nor grey",
+        ),
+    )

@@ -121,9 +121,9 @@ def test_missing_and_damaged_files_are_one_line(tmp_path):
     ("name", "said"),
     [
         (
-            "picture.tif",
-            "a file must end in .toml, .hdr, .pic, .rgbe, .exr, .png, .jpg, .jpeg, .json, .csv, .txt, .h, .glsl, .npz or .npy:"
-            " convert it",
+            "picture.gif",
+            "a file must end in .toml, .hdr, .pic, .rgbe, .exr, .png, .jpg, .jpeg, .pfm, .dds, .tif, .tiff, .psd, .psb, .webp,"
+            " .bmp, .json, .csv, .txt, .h, .glsl, .npz or .npy: convert it",
         ),
         ("light.py", "a Python file; name a function in it, such as light.py:light"),
         ("folder", "a directory; name one file in it"),

@@ -41,7 +41,7 @@ _SRGB_GAMMA = 0.45455  # what encoders write for sRGB
 _TRANSFERS_OF_HDR = {16: "PQ", 18: "HLG"}  # of a PNG's cICP chunk, as numbered by ITU-T H.273
 _EXIF_ORIENTATION = 0x0112
 
-_TURNS: dict[int, Callable[[NDArray[Any]], NDArray[Any]]] = {
+TURNS: dict[int, Callable[[NDArray[Any]], NDArray[Any]]] = {
     2: lambda codes: codes[:, ::-1],
     3: lambda codes: codes[::-1, ::-1],
     4: lambda codes: codes[::-1],
@@ -53,7 +53,7 @@ _TURNS: dict[int, Callable[[NDArray[Any]], NDArray[Any]]] = {
 """EXIF orientation -> how the stored rows become upright; 1 is upright already."""
 
 
-class _Codes(NamedTuple):
+class Codes(NamedTuple):
     values: NDArray[Any]  # (height, width), or (height, width, 2 to 4) with the colours first; integers
     bits: int
     alpha: bool
@@ -74,10 +74,10 @@ def decode_png(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     gamma, notes = _png_colour(chunks)
     codes = _decode(PngImageFile, plain_png(chunks, compressed), limits)
     if b"cICP" not in chunks:
-        notes += _profile_notes(codes.profile)
+        notes += profile_notes(codes.profile)
     if b"acTL" in chunks:
         notes.append("animated: only the first frame is read")
-    return _linear("PNG", codes, gamma, notes)
+    return linearised("PNG", codes, gamma, notes)
 
 
 def decode_jpeg(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
@@ -91,15 +91,15 @@ def decode_jpeg(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):  # in the texels, 0xff is followed by 0 or a restart number
         raise damaged("no end of the image after its last scan")
     codes = _decode(JpegImageFile, data, limits, most_texels=_MOST_TEXELS_OF_A_BYTE * len(data))
-    return _linear("JPEG", codes, None, _profile_notes(codes.profile))
+    return linearised("JPEG", codes, None, profile_notes(codes.profile))
 
 
-def _linear(kind: str, codes: _Codes, gamma: float | None, notes: list[str]) -> Decoded:
+def linearised(kind: str, codes: Codes, gamma: float | None, notes: list[str]) -> Decoded:
     """Codes as linear radiance. gamma: the power by which codes were made from light; None for the sRGB curve."""
     steps = np.arange(2**codes.bits) / (2**codes.bits - 1)
     table = (_linear_from_srgb(steps) if gamma is None else steps ** (1.0 / gamma)).astype(np.float32)
     values, turned = codes.values, []
-    if turn := _TURNS.get(codes.orientation):
+    if turn := TURNS.get(codes.orientation):
         values = turn(values)
         turned = [f"turned upright: its EXIF orientation is {codes.orientation}"]
     curve = "sRGB" if gamma is None else f"gamma {gamma:g}"
@@ -130,7 +130,7 @@ def _look_up(table: NDArray[np.float32], values: NDArray[Any]) -> NDArray[np.flo
 
 def _decode(
     image_class: Callable[[io.BytesIO], Any], data: bytes, limits: Limits, most_texels: int | None = None
-) -> _Codes:
+) -> Codes:
     """Decode with Pillow, and turn its errors into LightErrors.
 
     most_texels: how many texels a file of this length can hold, if that is known.
@@ -149,7 +149,7 @@ def _decode(
         raise damaged(f"Pillow says: {_one_line(error)}") from None
 
 
-def _read_codes(image: Any, reopened: Callable[[], Any]) -> _Codes:
+def _read_codes(image: Any, reopened: Callable[[], Any]) -> Codes:
     """Decode an image that is opened but not yet decoded."""
     raw_mode = image.tile[0][3] if image.tile else None
     bits = 16 if raw_mode in _LOW_BYTES or image.mode in ("I", "I;16") else 8
@@ -166,7 +166,7 @@ def _read_codes(image: Any, reopened: Callable[[], Any]) -> _Codes:
             raise LightError(f"colours in {mode}; only RGB and grey are read: convert it to RGB")
     if raw_mode in _LOW_BYTES:
         values = _with_low_bytes(reopened(), values, raw_mode)
-    return _Codes(
+    return Codes(
         values,
         bits,
         alpha=image.mode in ("LA", "PA", "RGBA") or "transparency" in image.info,
@@ -190,7 +190,7 @@ def _orientation(image: Any) -> int:
         orientation = image.getexif().get(_EXIF_ORIENTATION, 1)
     except Exception:  # as many kinds as there are ways to damage a TIFF directory
         return 1
-    return orientation if orientation in _TURNS else 1
+    return orientation if orientation in TURNS else 1
 
 
 def _one_line(error: Exception) -> str:
@@ -218,7 +218,7 @@ def _png_colour(chunks: dict[bytes, bytes]) -> tuple[float | None, list[str]]:
     return gamma, [f"its gAMA of {gamma:g} is honoured"]
 
 
-def _profile_notes(profile: bytes) -> list[str]:
+def profile_notes(profile: bytes) -> list[str]:
     """The note on an ICC profile; a profile that calls itself sRGB needs none."""
     if not profile or b"sRGB" in profile or "sRGB".encode("utf-16-be") in profile:
         return []

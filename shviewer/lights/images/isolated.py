@@ -1,9 +1,9 @@
-"""Decodes an OpenEXR file in a child process, so that a file that breaks the library does not break the window.
+"""Decodes an image file in a child process, so that a file that breaks the library does not break the window.
 
-The library is C++ and reads files of unknown origin. A child that crashes, runs out of memory, hangs or answers rubbish
-becomes one LightError; the child's own errors come back word for word.
+The libraries, OpenEXR and OpenImageIO, are C++ and read files of unknown origin. A child that crashes, runs out of memory,
+hangs or answers rubbish becomes one LightError; the child's own errors come back word for word.
 
-    to the child, stdin:     {"limits": ..., "layer": ..., "bytes": n} newline, the n bytes of the file
+    to the child, stdin:     {"limits": ..., "layer": ..., "kind": ..., "folder": ..., "bytes": n} newline, the file's n bytes
     from the child, stdout:  {"height": ..., "width": ..., ...} or {"error": ...} newline, the pixels as float32
 
 Nothing that the child says is executed, and sizes are checked against the limits before memory is taken.
@@ -21,6 +21,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 from dataclasses import asdict
 from typing import IO, Any
@@ -31,6 +32,8 @@ from shviewer.errors import LightError
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.openexr import decode_openexr
 from shviewer.limits import DEFAULT_LIMITS, Limits
+
+OPENEXR = "OpenEXR"
 
 TIME_LIMIT = 60.0
 """Seconds from the start of the child to the end of its answer."""
@@ -45,12 +48,20 @@ _PER_THREAD = 2**27  # bytes of address space that a thread of the library reser
 _NEXT_STEP = "the rest of the program is unharmed: export the file again, or convert it to .hdr"
 
 
-def decode_isolated(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "") -> Decoded:
+def decode_isolated(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "", kind: str = OPENEXR) -> Decoded:
     """Decode in a child process: the result of `decode_openexr` for the same arguments, or its LightError or MemoryError.
 
+    kind: any other is decoded by `decode_openimageio`, whose temporary file is removed even if the child dies.
     Raises LightError, too, if the child ends without an answer, or has not answered after TIME_LIMIT.
     """
-    request = {"limits": asdict(limits), "layer": layer, "bytes": len(data)}
+    if kind == OPENEXR:
+        return _decode({"limits": asdict(limits), "layer": layer, "kind": kind, "bytes": len(data)}, data, limits)
+    with tempfile.TemporaryDirectory(prefix="shviewer-", ignore_cleanup_errors=True) as folder:
+        request = {"limits": asdict(limits), "kind": kind, "folder": folder, "bytes": len(data)}
+        return _decode(request, data, limits)
+
+
+def _decode(request: dict[str, Any], data: bytes, limits: Limits) -> Decoded:
     with _start() as child:
         assert child.stdin is not None
         assert child.stdout is not None
@@ -162,7 +173,7 @@ def answer() -> None:
         pixels = None
         head: dict[str, Any]
         try:
-            decoded = decode_openexr(data, limits, request["layer"])
+            decoded = _decoded(data, limits, request)
         except LightError as error:
             head = {"error": str(error)}
         except MemoryError:
@@ -177,6 +188,15 @@ def answer() -> None:
         out.write(json.dumps(head).encode() + b"\n")
         if pixels is not None:
             out.write(pixels.data.cast("B"))
+
+
+def _decoded(data: bytes, limits: Limits, request: dict[str, Any]) -> Decoded:
+    if request["kind"] == OPENEXR:
+        return decode_openexr(data, limits, request["layer"])
+    from shviewer.lights.images.others.openimageio import decode_openimageio
+
+    tempfile.tempdir = request["folder"]
+    return decode_openimageio(data, limits, request["kind"])
 
 
 def _bound_resources(limits: Limits, file_bytes: int) -> None:

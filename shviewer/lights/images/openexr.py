@@ -52,7 +52,7 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     pixels = _radiance(planes, part, source)
     if matrix is not None:
         _convert(pixels, matrix)
-    pixels, cut = _on_display_window(pixels, part.window, part.display)
+    pixels, cut = on_display_window(pixels, part.window, part.display)
 
     words = ["OpenEXR", kinds, *part.storage]
     if source.grey or source.luminance_chroma:
@@ -140,7 +140,7 @@ def _convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64]) -> None:
             np.copyto(rows, rows @ transposed, where=np.isfinite(rows).all(axis=2, keepdims=True))
 
 
-def _on_display_window(
+def on_display_window(
     radiance: NDArray[np.float32], window: Window, display: Window
 ) -> tuple[NDArray[np.float32], tuple[str, ...]]:
     """The radiance on the display window, which is the whole sphere: black where there are no data, cropped outside."""

@@ -31,22 +31,22 @@ _RGBE = _Kind("Radiance RGBE", (b"#?", b"\xef\xbb\xbf#?"), (".hdr", ".pic", ".rg
 _OPENEXR = _Kind("OpenEXR", (b"\x76\x2f\x31\x01",), (".exr",))
 _PNG = _Kind("PNG", (b"\x89PNG",), (".png",))
 _JPEG = _Kind("JPEG", (b"\xff\xd8\xff",), (".jpg", ".jpeg"))
-_KINDS = (_RGBE, _OPENEXR, _PNG, _JPEG)
+_PFM = _Kind("PFM", (b"PF", b"Pf"), (".pfm",))
+_DDS = _Kind("DDS", (b"DDS ",), (".dds",))
+_ARRAY = _Kind("NumPy", (b"\x93NUMPY",), (".npy",))
+_BY_OPENIMAGEIO = (
+    _Kind("TIFF", (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"), (".tif", ".tiff")),
+    _Kind("PSD", (b"8BPS",), (".psd", ".psb")),
+    _Kind("WebP", (b"RIFF",), (".webp",)),
+    _Kind("BMP", (b"BM",), (".bmp",)),
+)
+_KINDS = (_RGBE, _OPENEXR, _PNG, _JPEG, _PFM, _DDS, _ARRAY, *_BY_OPENIMAGEIO)
 
-IMAGE_SUFFIXES = tuple(suffix for kind in _KINDS for suffix in kind.suffixes)
+IMAGE_SUFFIXES = tuple(dict.fromkeys(suffix for kind in _KINDS if kind is not _ARRAY for suffix in kind.suffixes))
 
 _OTHER_MAGICS = (
-    (b"II*\0", "a TIFF"),
-    (b"MM\0*", "a TIFF"),
-    (b"II+\0", "a BigTIFF"),
     (b"GIF8", "a GIF"),
-    (b"BM", "a BMP"),
-    (b"RIFF", "a WebP or other RIFF"),
-    (b"DDS ", "a DDS"),
     (b"\xabKTX", "a KTX"),
-    (b"8BPS", "a Photoshop"),
-    (b"PF\n", "a PFM"),
-    (b"Pf\n", "a PFM"),
     (b"PK\x03\x04", "a ZIP"),
     (b"\x1f\x8b", "a gzip"),
     (b"version https://git-lfs", "a Git LFS pointer"),
@@ -80,7 +80,7 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
     return replace(decoded, notes=decoded.notes + notes)
 
 
-def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: bool) -> Decoded:
+def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: bool | None) -> Decoded:
     """Decode the file; the decoder is imported here, since most lights need none."""
     if kind is _RGBE:
         from shviewer.lights.images.rgbe import decode_rgbe
@@ -91,9 +91,35 @@ def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: boo
         from shviewer.lights.images.openexr import decode_openexr
 
         return (decode_isolated if isolated else decode_openexr)(data, limits, layer)
-    from shviewer.lights.images.display_referred import decode_jpeg, decode_png
+    if kind in (_PNG, _JPEG):
+        from shviewer.lights.images.display_referred import decode_jpeg, decode_png
 
-    return (decode_png if kind is _PNG else decode_jpeg)(data, limits)
+        return (decode_png if kind is _PNG else decode_jpeg)(data, limits)
+    return _of_another_kind(kind, data, limits, isolated)
+
+
+def _of_another_kind(kind: _Kind, data: bytes, limits: Limits, isolated: bool | None) -> Decoded:
+    if kind is _PFM:
+        from shviewer.lights.images.others.pfm import decode_pfm
+
+        return decode_pfm(data, limits)
+    if kind is _ARRAY:
+        from shviewer.lights.images.others.arrays import decode_array
+
+        return decode_array(data, limits)
+    if kind is _DDS:
+        from shviewer.lights.images.others.dds import decode_float_dds
+
+        if (decoded := decode_float_dds(data, limits)) is not None:
+            return decoded
+    from shviewer.lights.images.others.openimageio import check_installed, decode_openimageio
+
+    check_installed(kind.name)  # before a process is started
+    if isolated is False:
+        return decode_openimageio(data, limits, kind.name)
+    from shviewer.lights.images.isolated import decode_isolated
+
+    return decode_isolated(data, limits, kind=kind.name)
 
 
 def _kind(data: bytes, suffix: str) -> _Kind:
@@ -101,7 +127,7 @@ def _kind(data: bytes, suffix: str) -> _Kind:
     for kind in _KINDS:
         if not data.startswith(kind.magics):
             continue
-        if any(suffix in other.suffixes for other in _KINDS if other is not kind):
+        if suffix not in kind.suffixes and any(suffix in other.suffixes for other in _KINDS):
             raise LightError(f"named {suffix} but holds {kind.name}; rename it to end in {kind.suffixes[0]}")
         return kind
     wanted = "an image is read as .hdr (Radiance), .exr (OpenEXR), .png or .jpg: convert it"

@@ -108,7 +108,7 @@ def test_sanitising_a_sound_image_changes_nothing(read):
     [
         (b"", "empty"),
         (b"GIF89a" + bytes(50), "seems to be a GIF file"),
-        (b"II*\0" + bytes(50), "seems to be a TIFF file"),
+        (b"II*\0" + bytes(50), "holds TIFF; rename it to end in .tif"),
         (b"<!DOCTYPE html>", "HTML"),
         (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
         (b"\0\n\xffwhatever", r"\x00\n\xff"),

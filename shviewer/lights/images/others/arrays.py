@@ -1,0 +1,46 @@
+"""An image in a NumPy file: an array (height, width, 3) of linear radiance, lat-long unless --layout says otherwise."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from shviewer.errors import LightError
+from shviewer.files import decoding, read_bytes
+from shviewer.lights.images.decoded import Decoded
+from shviewer.limits import DEFAULT_LIMITS, Limits
+
+
+def holds_image(path: Path, limits: Limits = DEFAULT_LIMITS) -> bool:
+    """Whether the array in a file has the three dimensions of an image. What cannot be read is none."""
+    with suppress(LightError):
+        return len(_header(read_bytes(path, limits))[0]) == 3
+    return False
+
+
+def decode_array(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
+    """The radiance in an .npy. LightError if it is no image of floating-point numbers, damaged or too large."""
+    shape, dtype = _header(data)
+    if len(shape) != 3 or shape[2] != 3:
+        raise LightError(f"an array of shape {shape}; an image is (height, width, 3)")
+    limits.check_size(shape[1], shape[0])
+    if dtype.kind != "f":
+        raise LightError(f"an image of type {dtype}; radiance is linear and floating-point: linearise and convert it")
+    with decoding("NPY"), warnings.catch_warnings(action="ignore"):
+        values = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
+    with np.errstate(over="ignore"):  # what is infinite in float32 is refused later
+        pixels = np.ascontiguousarray(values, dtype=np.float32)
+    return Decoded(pixels, f"NumPy, {dtype}", layout="lat-long")
+
+
+def _header(data: bytes) -> tuple[tuple[int, ...], np.dtype[np.generic]]:
+    with decoding("NPY"), warnings.catch_warnings(action="ignore"):  # of headers that Python 2 wrote
+        file = io.BytesIO(data[: 2**17])
+        version = np.lib.format.read_magic(file)
+        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, dtype = read(file)
+    return shape, dtype
