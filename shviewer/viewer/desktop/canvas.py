@@ -25,6 +25,9 @@ from shviewer.viewer.view import View
 
 Point = tuple[float, float]
 
+UPLOAD_SECONDS = 0.02
+"""About how long a frame uploads maps."""
+
 
 class Canvas:
     """Frames on the screen of a context. release() at the end."""
@@ -40,30 +43,33 @@ class Canvas:
         pixels = summed_pixels(composition)
         return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
 
-    def show(self, picture: Picture, composition: Composition, status: str = "") -> None:
+    def show(self, picture: Picture, composition: Composition, status: str = "") -> bool:
         """Upload what has changed, and draw its text, with what is being done meanwhile in place of the message.
 
-        GraphicsError for a map that this OpenGL cannot hold.
+        Return False while a large map is on its way: the last picture stays. GraphicsError for a map that this OpenGL
+        cannot hold.
         """
-        self.renderer.show(picture)
+        if not self.renderer.show(picture, None if self.renderer.picture is None else UPLOAD_SECONDS):
+            return False
         written = replace(picture, state=changed(picture.state, message=status)) if status else picture
         key = _overlay_key(written, composition)
         if key != self._overlay_key:
             self.overlay = draw_overlay(written, composition, timing=True, opengl=self.renderer.version)
             self._overlay_key = key
+        return True
 
     def wait(self, status: str, composition: Composition) -> None:
         """Draw what is being done, as long as there is no picture."""
         self.renderer.draw_text(self.renderer.context.screen, composition, status_layers(status, composition))
 
-    def draw(self, composition: Composition, pointer: Point | None = None) -> bool:
+    def draw(self, composition: Composition, pointer: Point | None = None, *, alone: bool = True) -> bool:
         """Draw the picture last shown, with the values under the pointer; return whether another frame is due.
 
-        A picture that is summed per pixel is timed, and may turn out to be too slow.
+        alone: nothing else is at work. Then a picture that is summed per pixel is timed, and may turn out to be too slow.
         """
         picture = self._picture
         layers = self.layers(composition, pointer)
-        timed = picture.state.view.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
+        timed = alone and picture.state.view.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
         if timed:
             self.renderer.context.finish()
         start = perf_counter()

@@ -10,6 +10,7 @@ import sys
 import traceback
 from collections.abc import Callable
 from dataclasses import replace
+from threading import Event
 from time import perf_counter
 
 from shviewer.analysis.subjects import keep_light, read_again, version_read
@@ -73,11 +74,12 @@ class Session:
         self.metronome = Metronome()
         self._watch = Watch() if watch else None
         self._looked_at = perf_counter()
-        self._read_anew = False
+        self._reading: Event | None = None
+        """The wish to read the light's file again, set once it has been read; None if there is no such wish."""
         self._marks_faced = 0
         self._wake = wake
-        self._task: Task[Picture] | None = None
-        self._ended: Task[Picture] | None = None
+        self._task: Task[tuple[Picture, bool]] | None = None
+        self._ended: Task[tuple[Picture, bool]] | None = None
         """The task before it, which may still be at its last step."""
         self._wish: object = None
         """What the task makes: the still part of a state, and how it is drawn and read."""
@@ -101,7 +103,7 @@ class Session:
         """Carry a command out; one that only a window can carry out is returned."""
         self.state = changed(self.state, message="")
         if command is Command.RELOAD:
-            self._read_anew = True
+            self._reading = Event()
         elif command is Command.FIT:
             self._when_ready(self._fit)
         elif command is Command.FACE_MARK:
@@ -111,6 +113,11 @@ class Session:
         else:
             return command
         return None
+
+    @property
+    def working(self) -> bool:
+        """Whether a picture is being made."""
+        return self._task is not None
 
     @property
     def status(self) -> str:
@@ -124,7 +131,7 @@ class Session:
             what = self._task.status.rstrip("0123456789 %")
             self._end_task()
             self._later.clear()
-            self._read_anew = False
+            self._reading = None
             keep_light(self.picture.state.recipe, self.picture.subject.whole)
             self.state = changed(self.picture.state, message=f"stopped {what}", sweep_to=None)
 
@@ -136,11 +143,11 @@ class Session:
             self.state = changed(self.state, message=message)
             return
         self.state = open_light(self.state, path)
-        self._read_anew = True
+        self._reading = Event()
 
     def tick(self, now: float) -> bool:
         """Take a step of the sweep and a look at a watched file, where they are due; return whether anything changed."""
-        last, anew, said = self.state, self._read_anew, self._said
+        last, reading, said = self.state, self._reading, self._said
         self._said = self.status
         if self._task is None and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
@@ -150,7 +157,7 @@ class Session:
             if isinstance(recipe.light, str) and self._watch.changed(recipe.light, version_read(recipe)):
                 self.do(Command.RELOAD)
         ended = self._task is not None and self._task.finished
-        return ended or self.state is not last or self._read_anew != anew or self._said != said
+        return ended or self.state is not last or self._reading is not reading or self._said != said
 
     def wait(self, now: float, most: float) -> float:
         """The seconds until the next tick is due, at most `most`."""
@@ -169,22 +176,22 @@ class Session:
 
     def _make(self, by_map: bool, patience: float | None) -> bool:
         """Make the picture; return whether it is there."""
-        last, state, anew = self.picture, self.state, self._read_anew
-        wish = still(state), by_map, anew
-        if wish == (still(last.state), self.by_map, False):
+        last, state, reading = self.picture, self.state, self._reading
+        wish = still(state), reading
+        if wish == (still(last.state), None) and by_map == self.by_map:
             self._end_task()
             self.picture = last if last.state == state else last.seen(state)
             return True
         if self._task is None or wish != self._wish:
             self._end_task()
             self._wish = wish
-            self._task = Task(lambda: _picture_of(state, by_map, anew), self._ended, self._wake)
+            self._task = Task(lambda: (_picture_of(state, by_map, reading), by_map), self._ended, self._wake)
         if not self._task.wait(None if patience is None else patience - self._task.seconds):
             self.picture = last if last.state.view == state.view else last.seen(state)
             return False
-        task, self._task, self._read_anew = self._task, None, False
+        task, self._task, self._reading = self._task, None, None
         try:
-            picture = task.result()
+            picture, made_by_map = task.result()
         except ShviewerError as error:
             self.keep(error)
             return True
@@ -194,13 +201,15 @@ class Session:
             return True
         picture = picture.seen(state)
         if picture.light is not last.light:
-            message = self._news(picture.light, again=anew and state.recipe.light == last.state.recipe.light)
+            message = self._news(
+                picture.light, again=reading is not None and state.recipe.light == last.state.recipe.light
+            )
             message = "; ".join(filter(None, (reading_news(last.state.recipe, state.recipe), message)))
             if message and not state.view.message:
                 self.state = changed(state, message=message)
                 picture = replace(picture, state=self.state)
-        self.picture, self.by_map = picture, by_map
-        return True
+        self.picture, self.by_map = picture, made_by_map
+        return made_by_map == by_map or self._make(by_map, patience)
 
     def _end_task(self) -> None:
         """Want the task's result no more; the next one begins when it has ended."""
@@ -275,10 +284,11 @@ class Session:
             print(text, file=sys.stderr, flush=True)
 
 
-def _picture_of(state: State, by_map: bool, anew: bool) -> Picture:
+def _picture_of(state: State, by_map: bool, reading: Event | None) -> Picture:
     """The picture of a state, with everything ready that its text needs."""
-    if anew:
+    if reading is not None and not reading.is_set():
         read_again(state.recipe)
+        reading.set()  # a later wish need not read it once more
     picture = prepare(state, by_map=by_map)
     foresee(picture)
     return picture

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import sys
-from time import perf_counter
+from time import perf_counter, sleep
 from typing import Any
 
 import glfw
@@ -31,6 +31,9 @@ from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State, changed
 
 IDLE_SECONDS = 0.25
+LEAVE_SECONDS = 0.03
+"""The longest pause between two frames while something is at work behind the window."""
+
 CLICK_PIXELS = 4.0
 """A press is a click if the mouse moves less than this before its release."""
 
@@ -100,7 +103,10 @@ class Window:
         """Draw what is due, then sleep until something happens or a sweep takes its next step."""
         while not glfw.window_should_close(self.handle):
             if self.frames_due:
+                begin = perf_counter()
                 self.frame()
+                if self.session.working:  # the frames leave it half of the time
+                    sleep(min(perf_counter() - begin, LEAVE_SECONDS))
             if self.frames_due:
                 glfw.poll_events()
             else:
@@ -138,17 +144,22 @@ class Window:
         ready = session.prepare(self.canvas.by_map(session.state, composition), PATIENCE)
         composition = self.composition() or composition  # a state that was refused has left another one
         try:
-            self.canvas.show(session.picture, composition, session.status)
+            uploaded = self.canvas.show(session.picture, composition, session.status)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             if self.shown is None:
                 raise
             session.keep(error, self.shown)
-            self.canvas.show(session.picture, composition)
-        self.shown = session.picture
+            uploaded = self.canvas.show(session.picture, composition)
+        if uploaded:
+            self.shown = session.picture
+        else:
+            self._due()
+        ready = ready and uploaded
         if session.title != self.title:
             self.title = session.title
             glfw.set_window_title(self.handle, self.title)
-        if self.canvas.draw(composition, self.mouse if self.hovering and not self.dragged else None):
+        pointer = self.mouse if self.hovering and not self.dragged else None
+        if self.canvas.draw(composition, pointer, alone=ready):
             self._due()
         glfw.swap_buffers(self.handle)
         self.frame_count += 1

@@ -67,20 +67,28 @@ class Renderer:
         code = self.context.version_code
         return f"OpenGL {code // 100}.{code % 100 // 10}, {self.context.info['GL_RENDERER']}"
 
-    def show(self, picture: Picture) -> None:
-        """Upload what differs from the last picture."""
+    def show(self, picture: Picture, seconds: float | None = None) -> bool:
+        """Upload what differs from the last picture; return whether it is all there.
+
+        seconds: about how long to upload maps. Until they are there, the last picture stays.
+        """
+        original = picture.original.map
+        compared = picture.compared.map if picture.error_scale is not None else None
+        texels = None if original is None else original.texels
+        other = None if compared is None or compared is original else compared.texels
+        if not (self.original_map.bring(texels, seconds) and self.compared_map.bring(other, seconds)):
+            return False
         lobes = *picture.original.lobes, *picture.compared.lobes, *picture.suns
         if lobes != self.lobes:
             self.lobe_buffer.write(pack_lobes(lobes))
             self.lobes = lobes
-        original = picture.original.map
-        compared = picture.compared.map if picture.error_scale is not None else None
-        self.original_map.follow(None if original is None else original.texels)
-        self.compared_map.follow(None if compared is None or compared is original else compared.texels)
+        self.original_map.follow(texels)
+        self.compared_map.follow(other)
         self._show_reconstruction(picture.drawn)
         if picture.error_scale is not None:
             self.colour_map.follow(self._colours(colour_maps.map_of(picture.error_scale.kind)))
         self.picture = picture
+        return True
 
     def _show_reconstruction(self, drawn: Drawn) -> None:
         """Upload coefficients or map. Coefficients stay in their buffer while something else is drawn; a map goes."""

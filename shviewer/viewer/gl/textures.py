@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from time import perf_counter
+
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError
+
+BAND_BYTES = 2**23
+"""What is uploaded between two looks at the clock: a few milliseconds."""
 
 
 class ArrayTexture:
@@ -19,30 +24,46 @@ class ArrayTexture:
         self._context = context
         self._array: NDArray[np.generic] | None = None
         self._texture: moderngl.Texture | None = None
+        self._next: _Upload | None = None
 
     def follow(self, array: NDArray[np.generic] | None) -> None:
         """Upload `array` unless it is the one held. GraphicsError if this OpenGL has no textures that large."""
-        if array is self._array:
-            return
+        self.bring(array)
         if array is None:
             self.release()
-            return
+        elif array is not self._array and self._next is not None:
+            upload, self._next = self._next, None
+            if self._texture is not None and self._texture is not upload.texture:
+                self._texture.release()
+            self._array, self._texture = array, upload.texture
+
+    def bring(self, array: NDArray[np.generic] | None, seconds: float | None = None) -> bool:
+        """Upload `array` for at most about `seconds`, beside the one held; return whether all of it is there."""
+        if self._next is not None and self._next.array is not array:
+            self._drop_upload()
+        if array is None or array is self._array:
+            return True
+        if self._next is None:
+            self._next = self._begin(array)
+        return self._next.go_on(None if seconds is None else perf_counter() + seconds)
+
+    def _begin(self, array: NDArray[np.generic]) -> _Upload:
         height, width, components = array.shape
         limit = self._context.info["GL_MAX_TEXTURE_SIZE"]
         if max(height, width) > limit:
             raise GraphicsError(f"a map of {width} x {height} texels: this OpenGL takes at most {limit} a side")
+        components = 4 if components == 3 else components
         dtype = "f4" if array.dtype == np.float32 else "f1"
-        data = np.ascontiguousarray(array)
-        if components == 3:
-            components, data = 4, np.ones((height, width, 4), array.dtype)
-            data[..., :3] = array
         held = self._texture
-        if held is not None and (held.size, held.components, held.dtype) == ((width, height), components, dtype):
-            held.write(data)
-        else:
-            self.release()
-            self._texture = self._context.texture((width, height), components, data, dtype=dtype, alignment=1)
-        self._array = array
+        alike = held is not None and (held.size, held.components, held.dtype) == ((width, height), components, dtype)
+        if held is None or not alike or array.nbytes > BAND_BYTES:  # a small one is written over the one held
+            held = self._context.texture((width, height), components, dtype=dtype, alignment=1)
+        return _Upload(array, held)
+
+    def _drop_upload(self) -> None:
+        if self._next is not None and self._next.texture is not self._texture:
+            self._next.texture.release()
+        self._next = None
 
     def use(self, unit: int) -> None:
         """Bind to a texture unit, if there is an array."""
@@ -50,6 +71,32 @@ class ArrayTexture:
             self._texture.use(unit)
 
     def release(self) -> None:
+        self._drop_upload()
         if self._texture is not None:
             self._texture.release()
         self._texture = self._array = None
+
+
+class _Upload:
+    """An array on its way into a texture, a band of rows at a time."""
+
+    def __init__(self, array: NDArray[np.generic], texture: moderngl.Texture) -> None:
+        self.array = array
+        self.texture = texture
+        self._row = 0
+
+    def go_on(self, end: float | None) -> bool:
+        """Upload until `end` on the clock, at least one band; return whether all rows are there."""
+        height, width, components = self.array.shape
+        step = max(1, BAND_BYTES // max(self.array[0].nbytes, 1))
+        while self._row < height:
+            rows = self.array[self._row : self._row + step]
+            data = np.ascontiguousarray(rows)
+            if components == 3:
+                data = np.ones((len(rows), width, 4), self.array.dtype)
+                data[..., :3] = rows
+            self.texture.write(data, viewport=(0, self._row, width, len(rows)), alignment=1)
+            self._row += len(rows)
+            if end is not None and perf_counter() > end:
+                break
+        return bool(self._row >= height)

@@ -264,7 +264,7 @@ with window.open_window((320, 160)) as handle:
     def too_large(picture, composition, status=""):
         if picture.light.name == "studio":
             raise GraphicsError("a map too large")
-        show(picture, composition)
+        return show(picture, composition)
 
     shown.canvas.show = too_large
     for key in ("Right", "T"):
