@@ -184,16 +184,19 @@ def report(
     *,
     quick: bool = False,
     budget: float | None = None,
+    force: bool = False,
 ) -> Summary:
     """Measure speed against error on this machine and write report.md, .json, .csv and plots into `folder`.
 
     of: a light or several; none for the built-in choice. budget: seconds of measuring, 120 unless given; quick: 15 s in all.
-    OutputError if nothing can be written there.
+    force: replace files there even if shviewer did not write them. OutputError if nothing can be written there.
     """
     from shviewer.benchmark.options import DEFAULT_BUDGET, Options
     from shviewer.benchmark.run import write_report
 
     several = isinstance(of, Iterable) and not isinstance(of, str | os.PathLike | np.ndarray)
     chosen = [find_light(one) for one in (cast(Iterable[LightLike], of) if several else [cast(LightLike, of)])]
-    wanted = Options(budget=DEFAULT_BUDGET if budget is None else budget, quick=quick, command="shviewer.report(...)")
+    wanted = Options(
+        budget=DEFAULT_BUDGET if budget is None else budget, quick=quick, force=force, command="shviewer.report(...)"
+    )
     return write_report(chosen, Path(folder), wanted)

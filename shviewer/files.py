@@ -7,13 +7,14 @@ import errno
 import os
 import re
 import stat
-import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
+from shviewer.ending import at_the_end
 from shviewer.errors import LightError, OutputError
 from shviewer.limits import Limits
 from shviewer.words import one_line
@@ -53,16 +54,19 @@ def read_bytes(path: Path, limits: Limits) -> bytes:
     """The whole file, read once. Looks before it opens, so that no pipe or device can block or be disturbed."""
     try:
         _check_is_small_file(os.stat(path), limits)
-        # The file may have been replaced since: without O_NONBLOCK a pipe in its place would block for ever.
-        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        with open(descriptor, "rb") as file:
-            size = _check_is_small_file(os.fstat(descriptor), limits)
+        with _opened(path) as file:
+            size = _check_is_small_file(os.fstat(file.fileno()), limits)
             data = file.read(size + 1)
     except (OSError, ValueError) as error:
         raise LightError(_reason(error)) from None
     if len(data) != size:
         raise LightError(f"{len(data)} bytes read where it had {size}; it changed meanwhile: try again")
     return data
+
+
+def _opened(path: Path) -> IO[bytes]:
+    """The file, open to be read. Without O_NONBLOCK a pipe that has taken its place since it was looked at would block."""
+    return open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)), "rb")
 
 
 def _check_is_small_file(status: os.stat_result, limits: Limits) -> int:
@@ -118,36 +122,37 @@ def write_atomically(path: Path, data: bytes, *, exclusive: bool = False) -> Non
         if there is not None and exclusive:
             raise FileExistsError(path)
         if there is not None and not stat.S_ISREG(there.st_mode):
-            with open(os.open(target, os.O_WRONLY), "wb") as through:
+            with open(os.open(path, os.O_WRONLY), "wb") as through:
                 through.write(data)
             return
-        handle, name = tempfile.mkstemp(prefix=".shv-", suffix=".tmp", dir=target.parent)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            if there is not None and hasattr(os, "chown"):
-                with suppress(OSError):  # only root may give files away
-                    os.chown(name, there.st_uid, there.st_gid)
-            os.chmod(name, 0o666 & ~_umask() if there is None else stat.S_IMODE(there.st_mode))
+        beside = target.parent / f".shv-{os.urandom(8).hex()}.tmp"
+        with at_the_end(partial(beside.unlink, missing_ok=True)):
+            _write_new(beside, data, there)
             if exclusive:
-                _place_exclusively(name, target, data)
+                _place_exclusively(beside, target)
             else:
-                os.replace(name, target)
-        finally:
-            with suppress(FileNotFoundError):
-                os.unlink(name)
+                os.replace(beside, target)
     except FileExistsError:
         raise
     except OSError as error:
         raise _refused(path, error) from error
 
 
-def writing_folder(path: Path) -> Path | None:
-    """The folder in which a file is made before it becomes `path`; None, the system's own, for a pipe or a device."""
-    target, there = _target(path)
-    return target.parent if there is None or stat.S_ISREG(there.st_mode) else None
+def _write_new(path: Path, data: bytes, like: os.stat_result | None) -> None:
+    """Write a new file to the disk, with the mode and, where that is allowed, the owner of the one that it is to replace."""
+
+    def create(name: str, flags: int) -> int:
+        return os.open(name, flags, 0o666 if like is None else 0o600)
+
+    with open(path, "xb", opener=create) as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    if like is not None:
+        if hasattr(os, "chown"):
+            with suppress(OSError):  # only root may give files away
+                os.chown(path, like.st_uid, like.st_gid)
+        os.chmod(path, stat.S_IMODE(like.st_mode))
 
 
 def check_place(path: Path) -> None:
@@ -155,8 +160,9 @@ def check_place(path: Path) -> None:
     try:
         target, there = _target(path)
         if there is None or stat.S_ISREG(there.st_mode):
-            with tempfile.TemporaryFile(dir=target.parent):
-                pass
+            beside = target.parent / f".shv-{os.urandom(8).hex()}.tmp"
+            with at_the_end(partial(beside.unlink, missing_ok=True)):
+                beside.touch(exist_ok=False)
     except OSError as error:
         raise _refused(path, error) from error
 
@@ -175,7 +181,9 @@ class Replacing:
                 if os.path.samefile(path, source):
                     raise OutputError(f"{path}: the light or a comparison is read from this file; write another one")
         if not (self.force or _may_go(path)):
-            raise OutputError(f"{path}: exists, and shviewer did not write it; write another file, or --force")
+            raise OutputError(
+                f"{path}: exists, and shviewer did not write it; write another file, or --force (in Python force=True)"
+            )
 
 
 ANYTHING = Replacing(force=True)
@@ -186,6 +194,10 @@ OURS = (
     "shviewer-coefficients".encode("utf-32-le"),  # in an NPZ
     b"shviewer\0",  # the key of the stamp in a PNG, the attribute in an EXR
     b'"world_from_view"',  # a key of that stamp, the comment of a GIF and the description of a WebP
+    b'"shviewer-report/',  # the schema of a report's JSON
+    b"section,method,light,n_bands,samples,",  # the head of its CSV
+    b"How long it takes to project a light onto spherical harmonics",  # the first words of its page
+    b"<dc:title>shviewer</dc:title>",  # who made an SVG
 )
 """Bytes of the stamps: each file of this program has some of them within OURS_BYTES of one of its ends."""
 
@@ -195,16 +207,16 @@ OURS_BYTES = 2**16
 def _may_go(path: Path) -> bool:
     """Whether there is nothing at `path` to be lost: no file, an empty one, a pipe or device, or one of this program."""
     try:
-        status = path.stat()
-        if not stat.S_ISREG(status.st_mode) or not status.st_size:
+        if not stat.S_ISREG(os.stat(path).st_mode):
             return True
-        with path.open("rb") as file:
+        with _opened(path) as file:
+            size = os.fstat(file.fileno()).st_size
             ends = file.read(OURS_BYTES)
-            file.seek(max(0, status.st_size - OURS_BYTES))
+            file.seek(max(0, size - OURS_BYTES))
             ends += file.read(OURS_BYTES)
     except (OSError, ValueError):  # what cannot be looked at is for the writer to refuse
         return True
-    return any(mark in ends for mark in OURS)
+    return not ends or any(mark in ends for mark in OURS)
 
 
 def _target(path: Path) -> tuple[Path, os.stat_result | None]:
@@ -226,20 +238,19 @@ def _refused(path: Path, error: OSError) -> OutputError:
     return OutputError(f"{path}: cannot be written: {reason}; choose another place")
 
 
-def _place_exclusively(name: str, path: Path, data: bytes) -> None:
+def _place_exclusively(written: Path, path: Path) -> None:
+    """Give a file that is whole the name `path`. FileExistsError if that is taken."""
     try:
-        os.link(name, path)
+        os.link(written, path)
     except FileExistsError:
         raise
-    except OSError:  # a file system without links
-        with path.open("xb") as file:
-            file.write(data)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    except OSError:  # a file system without links: the name is taken first
+        os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
+        try:
+            os.replace(written, path)
+        except OSError:
+            path.unlink(missing_ok=True)
+            raise
 
 
 def file_stem(name: str) -> str:

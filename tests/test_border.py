@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import io
 import os
-import signal
 import stat
 import subprocess
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +19,18 @@ from PIL import Image
 import shviewer
 from shviewer.analysis import projections
 from shviewer.analysis.cache import MEMORY
+from shviewer.benchmark import run as run_of_report
+from shviewer.benchmark.options import Options
+from shviewer.benchmark.page import plots
 from shviewer.benchmark.page.document import read_report
+from shviewer.benchmark.page.writing import FILES
+from shviewer.benchmark.run import write_report
 from shviewer.cli import project
 from shviewer.cli.main import main
-from shviewer.coefficients.numbers import plain_numbers
 from shviewer.coefficients.reading import read_coefficients
+from shviewer.coefficients.text_lists import plain_numbers
 from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
-from shviewer.files import DEBUG, write_atomically
+from shviewer.files import DEBUG, Replacing, write_atomically
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.state import state_of
@@ -154,16 +158,102 @@ def test_a_full_device_is_one_line(capfd: pytest.CaptureFixture[str]) -> None:
 
 
 @POSIX
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_ends_it_with_its_code_and_leaves_nothing_behind(tmp_path: Path, number: int) -> None:
-    command = [sys.executable, "-m", "shviewer", "sweep", "s.webp", "--turntable"]
-    with subprocess.Popen(command, cwd=tmp_path, env=ENVIRONMENT, stderr=subprocess.PIPE) as child:
-        time.sleep(2)
-        child.send_signal(number)
-        _, errors = child.communicate(timeout=60)
-    assert child.returncode == 128 + number, errors
-    assert b"Traceback" not in errors
+def test_stdout_can_be_named_as_a_file(tmp_path: Path) -> None:
+    """Its path leads to a pipe, for which there is no folder."""
+    command = [sys.executable, "-m", "shviewer", "project", "-o", "/dev/stdout", "--format", "npz"]
+    done = subprocess.run(command, cwd=tmp_path, env=ENVIRONMENT, stdout=subprocess.PIPE, check=True)
+    assert np.load(io.BytesIO(done.stdout.partition(b"wrote ")[0]))["coefficients"].shape == (25, 3)
     assert not list(tmp_path.iterdir())
+
+
+@POSIX
+def test_the_stamp_of_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.json")
+    Replacing().check(tmp_path / "pipe.json")
+
+
+def test_a_new_file_is_whole_where_there_are_no_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def link(*paths: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr(os, "link", link)
+    path = tmp_path / "new.png"
+    write_atomically(path, b"whole", exclusive=True)
+    with pytest.raises(FileExistsError):
+        write_atomically(path, b"other", exclusive=True)
+    monkeypatch.setattr(os, "replace", link)
+    with pytest.raises(OutputError):
+        write_atomically(tmp_path / "other.png", b"other", exclusive=True)
+    assert path.read_bytes() == b"whole"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@POSIX
+def test_a_new_file_has_the_mode_that_the_user_asks_for(tmp_path: Path) -> None:
+    """And no other thread loses its own on the way, as when the mask is asked for by setting it."""
+    before = os.umask(0o027)
+    try:
+        write_atomically(tmp_path / "new.json", b"new")
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "new.json").stat().st_mode) == 0o640
+
+
+# --- from Python, and a report
+
+
+def test_saving_never_replaces_an_input_and_a_file_of_somebody_else_only_by_force(nine: Path) -> None:
+    before = nine.read_bytes()
+    (nine.parent / "link.json").symlink_to(nine)
+    asked = [
+        shviewer.project("nine.json", 1),
+        shviewer.project(shviewer.find_light(nine), 1),
+        shviewer.project(shviewer.find_light(nine), 1, quantity="irradiance"),
+        shviewer.project("green", 1, compare="nine.json"),
+    ]
+    for projected in asked:
+        for name in ("nine.json", "link.json"):
+            with pytest.raises(OutputError, match="read from this file"):
+                projected.save(name, force=True)
+    assert nine.read_bytes() == before
+    Path("a.json").write_text("[somebody else's work]")
+    with pytest.raises(OutputError, match="force=True"):
+        asked[0].save("a.json")
+    assert Path("a.json").read_text() == "[somebody else's work]"
+    asked[0].save("a.json", force=True)
+    asked[0].save("a.json")
+
+
+LITTLE = Options(quick=True, sections=(), shader=False, command="shviewer report")
+
+
+@pytest.mark.parametrize("name", [*FILES, "time-error-green.svg", "frame-time.png"])
+def test_a_report_replaces_a_file_of_somebody_else_only_by_force_and_its_own_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """Before anything is measured: what is replaced is known then."""
+    monkeypatch.setattr(plots, "_plots", lambda rows: dict.fromkeys(("time-error-green", "frame-time"), lambda _: None))
+    monkeypatch.setattr(plots, "INCHES", (1, 1))
+    path = tmp_path / name
+    path.write_bytes(b"somebody else's work")
+    with monkeypatch.context() as patch:
+        patch.setattr(run_of_report, "_measure_sections", lambda run: 1 // 0)
+        with pytest.raises(OutputError, match=f"{name}: exists, and shviewer did not"):
+            write_report(["green"], tmp_path, LITTLE)
+    assert path.read_bytes() == b"somebody else's work"
+    write_report(["green"], tmp_path, replace(LITTLE, force=True))
+    assert path.stat().st_size > 100
+    write_report(["green"], tmp_path, LITTLE)
+
+
+def test_a_report_never_replaces_the_one_that_it_is_compared_with_or_its_light(tmp_path: Path) -> None:
+    write_report(["green"], tmp_path, LITTLE)
+    before = (tmp_path / "report.json").read_bytes()
+    with pytest.raises(OutputError, match="is read from this file"):
+        write_report(["green"], tmp_path, replace(LITTLE, against=tmp_path / "report.json", force=True))
+    with pytest.raises(LightError):
+        write_report([str(tmp_path / "report.json")], tmp_path, replace(LITTLE, force=True))
+    assert (tmp_path / "report.json").read_bytes() == before
 
 
 # --- code runs only when asked

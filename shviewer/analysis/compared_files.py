@@ -16,7 +16,7 @@ from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.errors import LightError
 from shviewer.files import naming
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.find import built_in_lights
+from shviewer.lights.find import built_in_lights, read_from
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.limits import MAX_BANDS
 from shviewer.words import brief_percent
@@ -41,7 +41,7 @@ def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple
         else:
             found = _found(recipe, listed)
             read = interpreted(listed, found.best.text)
-    light = CoefficientLight.of_file(read, file.name)
+    light = read_from(CoefficientLight.of_file(read, file.name), file)
     said = (
         [] if found and found.fits else [f"{file.name}: {note}" for note in read.notes]
     )  # what fits was guessed rightly

@@ -19,8 +19,9 @@ from shviewer.coefficients.stamp import Value, stamp_of
 from shviewer.coefficients.suns import sun_keys
 from shviewer.coefficients.writing import encode
 from shviewer.errors import UsageError
-from shviewer.files import write_atomically
+from shviewer.files import Replacing, write_atomically
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.lights.find import file_of
 from shviewer.lights.suns.sun import Sun
 from shviewer.version import __version__
 from shviewer.words import counted
@@ -45,6 +46,8 @@ class Projected:
     """The relative L2 errors of "radiance" and of "irradiance", whichever the coefficients hold."""
     suns: tuple[Sun, ...] = ()
     """The suns left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
+    inputs: tuple[Path, ...] = ()
+    """The files that the light, and coefficients compared with it, were read from."""
 
     @property
     def n_bands(self) -> int:
@@ -60,9 +63,10 @@ class Projected:
         except ValueError as error:
             raise UsageError(str(error)) from error
 
-    def save(self, path: str | os.PathLike[str], convention: str = "shviewer") -> None:
+    def save(self, path: str | os.PathLike[str], convention: str = "shviewer", *, force: bool = False) -> None:
         """Write a .json, .csv, .npz, .h or .glsl file, with everything stamped on it, whole or not at all.
 
+        A file that the light was read from is never replaced, and one that shviewer did not write only by `force`.
         UsageError for another suffix or a convention that does not fit, OutputError if it cannot be written.
         """
         try:
@@ -70,7 +74,9 @@ class Projected:
         except ValueError as error:
             raise UsageError(str(error)) from error
         out = Path(path)
-        write_atomically(out, self.encode(chosen, out.suffix.lower()[1:]))
+        data = self.encode(chosen, out.suffix.lower()[1:])
+        Replacing(self.inputs, force).check(out)
+        write_atomically(out, data)
 
     def encode(self, convention: Convention, kind: str) -> bytes:
         """The bytes of a coefficient file; kind: one of `coefficients.writing.FORMATS`.
@@ -112,7 +118,9 @@ def project_recipe(recipe: Recipe) -> Projected:
         **_errors(figures),
     }
     about = {key: value for key, value in about.items() if value is not None and value != ""}
-    return Projected(found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns)
+    given = [recipe.light, *([recipe.compare] if recipe.compare else [])]
+    inputs = tuple(path for path in map(file_of, given) if path)
+    return Projected(found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns, inputs)
 
 
 def _light(recipe: Recipe, shown: Subject) -> dict[str, Value]:

@@ -9,7 +9,6 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -20,6 +19,8 @@ from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.recipe import Recipe
 from shviewer.benchmark.row import Row, not_measured
 from shviewer.benchmark.timing import Timing, Work, summarise, time_interleaved
+from shviewer.children import leash
+from shviewer.ending import temporary_folder
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composition import compose
 from shviewer.viewer.desktop.session import Session
@@ -58,12 +59,14 @@ PATIENCE = 60.0
 
 WATCHED_WINDOW = """
 import _thread, signal, sys, threading, time
+from shviewer.children import follow_parent
 from shviewer.errors import GraphicsError
 from shviewer.viewer.desktop import window
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import State
 
+follow_parent()
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job is started without it
 
 def watch():
@@ -99,10 +102,10 @@ def process_rows(
     drawing: a renderer, or why nothing can be drawn, and then the screenshot is absent. budget: seconds. at_most: seconds
     beyond which nothing is measured.
     """
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         works = {VERSION: partial(_shviewer, "--version")}
         if not isinstance(drawing, str):
-            works[SCREENSHOT] = partial(_shviewer, "screenshot", str(Path(folder) / "out.png"), text)
+            works[SCREENSHOT] = partial(_shviewer, "screenshot", str(folder / "out.png"), text)
         times = time_interleaved(works, budget=budget, at_most=at_most, at_least=at_least)
     places = {VERSION: ("", None), SCREENSHOT: (name, Recipe.n_bands)}
     return [_row(method, *places[method], times.get(method)) for method in works]
@@ -127,10 +130,10 @@ def session_rows(
         return []
     start = state_of(text)
     works: dict[tuple[str, int], Work] = {}
-    with offscreen(drawing, FRAME) as target, tempfile.TemporaryDirectory() as folder:
+    with offscreen(drawing, FRAME) as target, temporary_folder() as folder:
         frames = _Frames(drawing, target)
         works[PICTURE, start.recipe.n_bands] = lambda: frames.first(start)
-        works[SAVED, start.recipe.n_bands] = lambda: frames.save(start, Path(folder) / "out.png")
+        works[SAVED, start.recipe.n_bands] = lambda: frames.save(start, folder / "out.png")
         for n_bands in key_bands:
             works[NEW_KEY, n_bands + 1] = works[KNOWN_KEY, n_bands + 1] = frames.press_up
 
@@ -211,7 +214,10 @@ def _run(*arguments: str, patience: float = PATIENCE) -> subprocess.CompletedPro
     """Run a new Python, which may cache bytecode: a program is not compiled at every start."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     command = [sys.executable, *arguments]
-    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=patience, check=False)
+    with leash(environment) as (stdin, environment):
+        return subprocess.run(
+            command, stdin=stdin, env=environment, capture_output=True, text=True, timeout=patience, check=False
+        )
 
 
 def _row(method: str, light: str, n_bands: int | None, timing: Timing | None) -> Row:

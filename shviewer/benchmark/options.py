@@ -43,6 +43,8 @@ class Options:
     """How images are read; the peers read them as they are."""
     shader: bool = True
     """Whether anything is drawn."""
+    force: bool = False
+    """Whether files in the folder are replaced even if this program did not write them."""
     command: str = ""
     """The command line; if empty, made from the arguments of the process."""
 

@@ -14,7 +14,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
@@ -28,6 +27,8 @@ from numpy.typing import NDArray
 from shviewer.benchmark.experiments import lat_long_texels
 from shviewer.benchmark.row import Row, not_measured
 from shviewer.benchmark.timing import Work, time_interleaved, wall_milliseconds
+from shviewer.children import follow_parent, leash
+from shviewer.ending import temporary_folder
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import project_image
@@ -152,10 +153,10 @@ def peer_rows(lights: Sequence[str], bands: Sequence[int], budget: float, seed: 
     """
     request = {"lights": list(lights), "bands": list(bands), "budget": budget, "seed": seed}
     environment = {name: value for name, value in os.environ.items() if name not in SLOWING} | ONE_THREAD
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "rows.json"  # some peers print on stdout
+    with temporary_folder() as folder, leash(environment) as (stdin, environment):
+        out = folder / "rows.json"  # some peers print on stdout
         command = [sys.executable, "-m", "shviewer.benchmark.peers", json.dumps(request), str(out)]
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run(command, stdin=stdin, env=environment, capture_output=True, text=True, check=False)
         if done.returncode:
             last = (done.stderr.strip().splitlines() or ["no message"])[-1]
             raise UsageError(f"--peers: measuring them failed: {last}; leave --peers out, or reinstall them: {INSTALL}")
@@ -227,4 +228,5 @@ def _on_image(light: Light, n_bands: int, peers: dict[str, Callable[..., object]
 
 
 if __name__ == "__main__":
+    follow_parent()
     Path(sys.argv[2]).write_text(json.dumps(measure(**json.loads(sys.argv[1]))), encoding="utf-8")

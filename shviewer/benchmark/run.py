@@ -6,7 +6,6 @@ import json
 import shlex
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,7 +24,10 @@ from shviewer.benchmark.peers import INSTALL, peer_rows
 from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
 from shviewer.benchmark.row import Row
 from shviewer.benchmark.timing import summarise
-from shviewer.errors import OutputError, UsageError
+from shviewer.ending import at_the_end
+from shviewer.errors import UsageError
+from shviewer.files import Replacing
+from shviewer.lights.find import file_of
 from shviewer.lights.light import Light
 from shviewer.viewer.gl.renderer import Renderer
 
@@ -93,14 +95,18 @@ def write_report(
 ) -> Summary:
     """Measure `lights`, or experiments.LIGHTS if there are none, and write report.md, .json and .csv and plots into `folder`.
 
-    OutputError, LightError or UsageError, before anything is measured, if that is impossible. An interrupt is raised again
-    after the rows measured have been written as a partial report.
+    OutputError, LightError or UsageError, before anything is measured, if that is impossible or would destroy a file. An
+    interrupt is raised again after the rows measured have been written as a partial report.
     """
     options = options or Options()
     before = None if options.against is None else read_report(options.against)
     writing.make_folder(folder)
     chosen = list(lights) or list(experiments.QUICK_LIGHTS if options.quick else experiments.LIGHTS)
     found = find_measured_lights(chosen, QUICK_TOLERANCES if options.quick else TOLERANCES, options.reading)
+    inputs = [*map(file_of, chosen), options.against]
+    replacing = Replacing(tuple(path for path in inputs if path), options.force)
+    for name in (*writing.FILES, *plots.names_of([measured.name for measured in found])):
+        replacing.check(folder / name)
     seconds = options.seconds()
     report = Report(
         seed=options.seed,
@@ -112,16 +118,11 @@ def write_report(
     texts = [text for text in chosen if isinstance(text, str)]
     run = Run(options, folder, report, writing.Page(found), texts, seconds, Clock(seconds, progress), before)
     run.write()
-    try:
+    with at_the_end(run.write):
         _measure_sections(run)
         report.complete = True
         paths, run.page.plot_message = plots.make_plots(report.rows, folder)
         run.page.plots += [path.name for path in paths]
-    except BaseException:
-        with suppress(OutputError):
-            run.write()
-        raise
-    run.write()
     run.clock.finish()
     count = sum(row.measured for row in report.rows)
     return Summary(folder, (*writing.FILES, *run.page.plots), count, _summary(run), run.stability_failed)

@@ -17,7 +17,6 @@ from shviewer.analysis.information import (
     describe,
 )
 from shviewer.cli.from_options import reading_from
-from shviewer.cli.status_line import speaking
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError, ShviewerError
 from shviewer.words import counted, one_line
@@ -34,8 +33,7 @@ def run(options: argparse.Namespace) -> int:
     for number, text in enumerate(options.lights):
         refused: str | None = None
         try:
-            with speaking():
-                found = describe(text, reading)
+            found = describe(text, reading)
         except ShviewerError as error:
             refused, code = str(error), error.exit_code
             objects.append({"light_argument": text, "error": refused})

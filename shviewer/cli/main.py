@@ -9,13 +9,12 @@ from __future__ import annotations
 import difflib
 import errno
 import os
-import signal
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
+from shviewer.children import follow_parent
 from shviewer.cli.options import (
     info_parser,
     project_parser,
@@ -31,14 +30,10 @@ THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command line and return its exit code. argparse itself exits with 2 on arguments it cannot read."""
+    follow_parent()
     for name in THREADS:
         os.environ.setdefault(name, "1")
     arguments = list(sys.argv[1:] if argv is None else argv)
-    with _ended_by_signals():
-        return _run(arguments)
-
-
-def _run(arguments: list[str]) -> int:
     try:
         arguments = _meant(arguments)
         mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
@@ -50,8 +45,6 @@ def _run(arguments: list[str]) -> int:
     except ShviewerError as error:
         print(f"shviewer: {error}", file=sys.stderr)
         return error.exit_code
-    except Ended as ended:
-        return 128 + ended.signal
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # the reader has stopped, as in `shviewer --list-lights | head -1`
@@ -67,35 +60,6 @@ def _run(arguments: list[str]) -> int:
 
 STDOUT_FAILS = (errno.ENOSPC, errno.EIO, errno.EFBIG)
 """What a full or broken place behind stdout says; any other OSError without a file name is a fault of this program."""
-
-
-class Ended(BaseException):
-    """A signal that asks this program to end: what is half written is taken away on the way out."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.signal = number
-
-
-@contextmanager
-def _ended_by_signals() -> Iterator[None]:
-    """Let SIGTERM and SIGHUP raise Ended, unless they are ignored already, as under nohup, or this is no main thread."""
-    caught: list[int] = []
-
-    def end(number: int, frame: object) -> None:
-        raise Ended(number)
-
-    try:
-        for name in ("SIGTERM", "SIGHUP"):
-            number = getattr(signal, name, None)
-            if number is not None and signal.getsignal(number) is signal.SIG_DFL:
-                with suppress(ValueError):
-                    signal.signal(number, end)
-                    caught.append(number)
-        yield
-    finally:
-        for number in caught:
-            signal.signal(number, signal.SIG_DFL)
 
 
 def _silence_stdout() -> None:

@@ -202,5 +202,6 @@ def report_parser() -> OneLineParser:
     )
     parser.add_argument("--stability", action="store_true", help="also the hard cases; exit 1 if one fails")
     parser.add_argument("--no-shader", action="store_true", help="nothing is drawn; needs no OpenGL")
+    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
     add_reading_options(parser)
     return parser

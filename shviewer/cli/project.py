@@ -6,7 +6,6 @@ import argparse
 import sys
 import traceback
 from collections.abc import Callable, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.from_options import recipe_from, replacing_of
-from shviewer.cli.status_line import bar, speaking, status_line
+from shviewer.cli.status_line import bar, status_line
 from shviewer.coefficients.axes import Axes
 from shviewer.coefficients.convention import OVER_PI, Convention
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
@@ -26,7 +25,7 @@ from shviewer.coefficients.suns import sun_left_out
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, ShviewerError, UsageError
 from shviewer.files import ANYTHING, Replacing, file_stem, write_atomically
-from shviewer.lights.find import split_light
+from shviewer.lights.find import is_code, split_light
 from shviewer.words import counted, one_line
 
 STDOUT = "-"
@@ -193,11 +192,10 @@ def _one_of_many(
     replacing: Replacing,
 ) -> Row:
     """Project one light of a batch and write it under a name of its own; return its row of the summary."""
-    source, part = split_light(light)
-    if part and source.suffix.lower() == ".py":
-        print(one_line(f"shviewer: note: {light}: runs the code in {source}"), file=sys.stderr)
+    if is_code(light):
+        print(one_line(f"shviewer: note: {light}: runs the code in {split_light(light)[0]}"), file=sys.stderr)
     try:
-        projected = _noted(light, recipe_of, convention, alone=False)
+        projected = _noted(light, recipe_of, convention)
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)
@@ -212,12 +210,11 @@ def _one_of_many(
     return Row(light, str(path), projected)
 
 
-def _noted(light: str, recipe_of: RecipeOf, convention: Convention, *, alone: bool = True) -> Projected:
-    """Project a light; stderr says what was done to it and what became of its suns. alone: no batch says how far it is."""
-    with speaking() if alone else nullcontext():
-        recipe = recipe_of(light)
-        projected = project_recipe(recipe)
-        shown = subject(recipe)
+def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected:
+    """Project a light; stderr says what was done to it and what became of its suns."""
+    recipe = recipe_of(light)
+    projected = project_recipe(recipe)
+    shown = subject(recipe)
     suns = [sun_left_out(sun.directional_light, convention.axes) for sun in projected.suns]
     for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else []), *suns):
         print(one_line(f"shviewer: note: {shown.light.name}: {note}"), file=sys.stderr)

@@ -26,6 +26,7 @@ def run(options: argparse.Namespace) -> int:
         methods=tuple(options.methods.split(",")) if options.methods else (),
         reading=reading_from(options),
         shader=not options.no_shader,
+        force=options.force,
     )
     with status_line() as line:
         folder = options.output or Path("shviewer-report")

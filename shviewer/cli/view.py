@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer.cli.from_options import state_from
@@ -33,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.viewer.desktop import window
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
     from shviewer.viewer.desktop.task import Task
+    from shviewer.viewer.saving.picture_files import write_numbered
     from shviewer.viewer.screenshot import save_picture
 
     state = state_from(options, all_lights=True)
@@ -41,10 +40,9 @@ def run(options: argparse.Namespace) -> int:
         window.run(first, tuple(options.size), verbose=options.verbose, watch=options.watch)
     except NoDisplayError as error:
         stem = f"shviewer-{file_stem(subject(state.recipe).light.name)}"
-        names = (Path(f"{stem}{f'-{number:03d}' if number else ''}.png") for number in range(10_000))
-        out = next(name for name in names if not os.path.lexists(name))
         composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
-        save_picture(first.result(), composition, out)
+        picture = first.result()
+        out = write_numbered(stem, lambda out: save_picture(picture, composition, out, exclusive=True), first=0)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import difflib
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
+from weakref import WeakKeyDictionary
 
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.errors import LightError
@@ -16,6 +17,8 @@ from shviewer.resources import resource_folder
 
 if TYPE_CHECKING:  # each kind of light is imported when one is found
     from shviewer.lights.light import Light
+
+Found = TypeVar("Found", bound="Light")
 
 
 def built_in_lights() -> dict[str, Path]:
@@ -38,9 +41,29 @@ def split_light(text: str) -> tuple[Path, str]:
     return path, ""
 
 
+def is_code(text: str) -> bool:
+    """Whether LIGHT names a function in a Python file, which is run to find it."""
+    path, part = split_light(text)
+    return bool(part) and path.suffix.lower() == ".py"
+
+
 def file_version(text: str) -> FileVersion | None:
     """The present version of the file of the light that `text` names; None where there is no file."""
     return version_of(split_light(text)[0])
+
+
+_FILES: WeakKeyDictionary[Light, Path] = WeakKeyDictionary()
+
+
+def file_of(light: str | Light) -> Path | None:
+    """The file that a light is read from, or that the text of a command line names; None for a light that has none."""
+    return split_light(light)[0] if isinstance(light, str) else _FILES.get(light.source)
+
+
+def read_from(light: Found, path: Path) -> Found:
+    """The light, which from now on is known to come from that file."""
+    _FILES[light] = Path(os.path.abspath(path))
+    return light
 
 
 def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
@@ -50,6 +73,10 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
     LightError if there is no such light or its file is bad.
     """
     path, part = split_light(text)
+    return read_from(_read(text, path, part, reading), path)
+
+
+def _read(text: str, path: Path, part: str, reading: Reading) -> Light:
     if path.suffix.lower() == ".toml":
         from shviewer.lights.scene import read_scene
 

@@ -25,11 +25,18 @@ from shviewer.viewer.saving.stamp import metadata
 
 
 def save_picture(
-    picture: Picture, composition: Composition, out: Path, *, overlay: bool = True, timing: bool = False
+    picture: Picture,
+    composition: Composition,
+    out: Path,
+    *,
+    overlay: bool = True,
+    timing: bool = False,
+    exclusive: bool = False,
 ) -> NDArray[np.uint8] | None:
     """Draw without a window and write `out`: linear radiance as .exr (returns None), else a PNG (returns its pixels).
 
-    GraphicsError, ShaderError or OutputError if that is impossible; then `out` is what it was.
+    exclusive: FileExistsError if a PNG is there. GraphicsError, ShaderError or OutputError if that is impossible; then `out`
+    is what it was.
     """
     with headless_renderer() as renderer:
         text = metadata(picture, composition, renderer.version, overlay=overlay)
@@ -37,7 +44,7 @@ def save_picture(
             write_exr(out, render_linear(renderer, picture, composition), text)
             return None
         pixels = render_rgb(renderer, picture, composition, overlay=overlay, timing=timing)
-    write_png(out, pixels, text)
+    write_png(out, pixels, text, exclusive=exclusive)
     return pixels
 
 

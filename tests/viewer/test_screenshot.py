@@ -310,8 +310,13 @@ def test_numbered_pictures_take_the_next_free_name(tmp_path: Path, monkeypatch: 
     monkeypatch.chdir(tmp_path)
     (tmp_path / "view-002.png").write_bytes(b"mine")
     pixels = np.zeros((4, 4, 3), dtype=np.uint8)
-    names = [write_numbered("view", pixels, "{}").name for _ in range(3)]
-    assert names == ["view-001.png", "view-003.png", "view-004.png"]
+    (tmp_path / "view-004.png").symlink_to("nowhere.png")
+    names = [
+        write_numbered("view", lambda path: write_png(path, pixels, "{}", exclusive=True), first).name
+        for first in (1, 1, 1, 0, 0)
+    ]
+    assert names == ["view-001.png", "view-003.png", "view-005.png", "view.png", "view-006.png"]
+    assert not (tmp_path / "nowhere.png").exists()
     assert (tmp_path / "view-002.png").read_bytes() == b"mine"
 
 

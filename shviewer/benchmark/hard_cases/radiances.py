@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from shviewer.analysis.recipe import Shown
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.benchmark.hard_cases.projecting import ProjectImage
 from shviewer.benchmark.hard_cases.shader import SEED, SUN_AXIS
+from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import project_image
@@ -29,13 +29,13 @@ def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
     from shviewer.viewer.saving.picture_files import write_exr
 
     missed = 0
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         for bad in (np.nan, np.inf, -np.inf):
             texels = np.ones((64, 128, 3), dtype=np.float32)
             texels[37, 101, 1] = bad
-            write_exr(Path(folder) / "bad.exr", texels, "")
+            write_exr(folder / "bad.exr", texels, "")
             try:
-                read(Path(folder) / "bad.exr")
+                read(folder / "bad.exr")
                 missed += 1
             except LightError as error:
                 missed += "row 37, column 101" not in str(error)

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 MISSING = "no plots: matplotlib is not installed; python -m pip install 'shviewer[report]'"
 
+ERROR_BANDS, FRAME_TIME = "error-bands", "frame-time"
+"""Stems of the files of two plots."""
+
 PIXELS_PER_INCH = 240
 FLOOR = 1e-5
 """Errors below this share are drawn on the lower edge."""
@@ -63,7 +66,8 @@ def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str
             figure = Figure(figsize=INCHES)
             FigureCanvasAgg(figure)
             draw(figure)
-            for suffix, metadata in ((".svg", {"Date": None, "Creator": None}), (".png", {"Software": None})):
+            stamps = {".svg": {"Date": None, "Creator": "shviewer"}, ".png": {"Software": None, "shviewer": stem}}
+            for suffix, metadata in stamps.items():
                 buffer = io.BytesIO()
                 figure.savefig(buffer, format=suffix[1:], dpi=PIXELS_PER_INCH, metadata=metadata)
                 written.append(folder / f"{stem}{suffix}")
@@ -74,19 +78,34 @@ def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str
 def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
     """File stem -> the function that draws the plot."""
     plots: dict[str, Callable[[Figure], None]] = {}
-    for light in dict.fromkeys(row.light for row in rows if row.section == PROJECTION):
+    lights = list(dict.fromkeys(row.light for row in rows if row.section == PROJECTION))
+    for light, stem in zip(lights, time_error_stems(lights), strict=True):
         curves = time_error_curves(rows, light)
         if curves:
-            stem = f"time-error-{''.join(c if c.isalnum() or c in '-_' else '-' for c in light)}"
-            while stem in plots:
-                stem += "-"
             plots[stem] = lambda figure, light=light, curves=curves: draw_time_error(figure, light, curves)  # type: ignore[misc]
     errors, frames = error_curves(rows), frame_curves(rows)
     if errors:
-        plots["error-bands"] = lambda figure: draw_errors(figure, errors)
+        plots[ERROR_BANDS] = lambda figure: draw_errors(figure, errors)
     if frames:
-        plots["frame-time"] = lambda figure: draw_frames(figure, frames)
+        plots[FRAME_TIME] = lambda figure: draw_frames(figure, frames)
     return plots
+
+
+def names_of(lights: Sequence[str]) -> list[str]:
+    """The names of all files that the plots of a report on these lights may have."""
+    stems = (*time_error_stems(lights), ERROR_BANDS, FRAME_TIME)
+    return [f"{stem}{suffix}" for stem in stems for suffix in (".svg", ".png")]
+
+
+def time_error_stems(lights: Sequence[str]) -> list[str]:
+    """A file stem for each light's plot, all different."""
+    stems: list[str] = []
+    for light in lights:
+        stem = f"time-error-{''.join(c if c.isalnum() or c in '-_' else '-' for c in light)}"
+        while stem in stems:
+            stem += "-"
+        stems.append(stem)
+    return stems
 
 
 def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:

@@ -3,7 +3,8 @@
 The libraries, OpenEXR and OpenImageIO, are C++ and read files of unknown origin. A child that crashes, runs out of memory,
 hangs or answers rubbish becomes one LightError; the child's own errors come back word for word.
 
-    to the child, stdin:     {"limits": ..., "layer": ..., "kind": ..., "folder": ..., "bytes": n} newline, the file's n bytes
+    to the child, stdin:     {"limits": ..., "layer": ..., "kind": ..., "folder": ..., "bytes": n} newline, the file's n bytes;
+                             closed when the answer is there
     from the child, stdout:  {"height": ..., "width": ..., ...} or {"error": ...} newline, the pixels as float32
 
 Nothing that the child says is executed, and sizes are checked against the limits before memory is taken.
@@ -28,6 +29,8 @@ from typing import IO, Any
 
 import numpy as np
 
+from shviewer.children import watch_stdin
+from shviewer.ending import at_the_end, temporary_folder
 from shviewer.errors import LightError
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.openexr import decode_openexr
@@ -56,13 +59,13 @@ def decode_isolated(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "
     """
     if kind == OPENEXR:
         return _decode({"limits": asdict(limits), "layer": layer, "kind": kind, "bytes": len(data)}, data, limits)
-    with tempfile.TemporaryDirectory(prefix="shviewer-", ignore_cleanup_errors=True) as folder:
-        request = {"limits": asdict(limits), "kind": kind, "folder": folder, "bytes": len(data)}
+    with temporary_folder() as folder:
+        request = {"limits": asdict(limits), "kind": kind, "folder": str(folder), "bytes": len(data)}
         return _decode(request, data, limits)
 
 
 def _decode(request: dict[str, Any], data: bytes, limits: Limits) -> Decoded:
-    with _start() as child:
+    with _start() as child, at_the_end(child.kill):
         assert child.stdin is not None
         assert child.stdout is not None
         late = threading.Event()
@@ -81,6 +84,8 @@ def _decode(request: dict[str, Any], data: bytes, limits: Limits) -> Decoded:
             child.kill()  # a child that has answered has nothing left to do
             clock.join()
             feeder.join()
+            with contextlib.suppress(OSError):  # what it did not read
+                child.stdin.close()
     if decoded is None:
         how = f"took more than {TIME_LIMIT:g} s" if late.is_set() else _how_it_ended(status)
         raise LightError(f"decoding it {how}; {_NEXT_STEP}")
@@ -115,8 +120,7 @@ def _feed(stdin: IO[bytes], request: dict[str, Any], data: bytes) -> None:
     with contextlib.suppress(OSError):  # the child may end before it has read everything
         stdin.write(json.dumps(request).encode() + b"\n")
         stdin.write(data)
-    with contextlib.suppress(OSError):
-        stdin.close()
+        stdin.flush()  # and left open: a child whose stdin is closed ends itself, as when this process is killed
 
 
 def _read_answer(stdout: IO[bytes], limits: Limits) -> Decoded | None:
@@ -168,6 +172,7 @@ def answer() -> None:
         os.dup2(nowhere.fileno(), 1)
         request = json.loads(sys.stdin.buffer.readline())
         data = sys.stdin.buffer.read(request["bytes"])
+        watch_stdin()
         limits = Limits(**request["limits"])
         _bound_resources(limits, len(data))
         pixels = None

@@ -16,7 +16,7 @@ from time import perf_counter
 from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError
 from shviewer.files import file_stem
-from shviewer.lights.find import split_light
+from shviewer.lights.find import is_code
 from shviewer.lights.light import Light
 from shviewer.viewer.actions import Command, open_light, step_sweep, with_bands
 from shviewer.viewer.animation.metronome import Metronome
@@ -30,7 +30,7 @@ from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, prepare, still
-from shviewer.viewer.saving.picture_files import write_numbered
+from shviewer.viewer.saving.picture_files import write_numbered, write_png
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import State, changed
@@ -137,8 +137,7 @@ class Session:
 
     def drop(self, path: str) -> None:
         """Open a file, which may have been edited since it was last opened; never code, which is no file."""
-        file, part = split_light(path)
-        if part and file.suffix.lower() == ".py":
+        if is_code(path):
             message = one_line(f"{path}: code runs only when the command line names it")
             self.state = changed(self.state, message=message)
             return
@@ -242,7 +241,8 @@ class Session:
         try:
             pixels = render_rgb(renderer, picture, composition)
             text = metadata(picture, composition, renderer.version)
-            path = write_numbered(f"shviewer-{file_stem(picture.light.name)}", pixels, text)
+            stem = f"shviewer-{file_stem(picture.light.name)}"
+            path = write_numbered(stem, lambda path: write_png(path, pixels, text, exclusive=True))
         except ShviewerError as error:
             self.state = changed(self.state, message=str(error))
         else:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import io
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+import os
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from shviewer.errors import OutputError
-from shviewer.files import write_atomically, writing_folder
+from shviewer.files import write_atomically
 from shviewer.version import __version__
 
 
@@ -35,28 +35,20 @@ def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
     except ImportError as error:
         raise OutputError(f"{path}: writing EXR needs the package OpenEXR (pip install OpenEXR)") from error
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, "shviewer": text}
-    with _folder_beside(path) as folder:
-        file = Path(folder) / "picture.exr"
-        OpenEXR.File(header, {"RGB": pixels}).write(str(file))
-        write_atomically(path, file.read_bytes())
+    buffer = io.BytesIO()
+    OpenEXR.File(header, {"RGB": pixels}).write(buffer)
+    write_atomically(path, buffer.getvalue())
 
 
-@contextmanager
-def _folder_beside(path: Path) -> Iterator[str]:
-    """A folder for a moment, beside the file that is to be written: nothing else need be writable."""
-    try:
-        with tempfile.TemporaryDirectory(prefix=".shv-", suffix=".tmp", dir=writing_folder(path)) as folder:
-            yield folder
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; choose another place") from error
+def write_numbered(stem: str, write: Callable[[Path], object], first: int = 1) -> Path:
+    """Write under the next free name stem-001.png, stem-002.png, ... in the current folder; return its path.
 
-
-def write_numbered(stem: str, pixels: NDArray[np.uint8], text: str) -> Path:
-    """Write a PNG under the next free name stem-001.png, stem-002.png, ... in the current folder; return its path."""
-    for number in range(1, 10_000):
-        path = Path(f"{stem}-{number:03d}.png")
-        if not path.exists():
+    write: writes a path exclusively. first: the number to begin with; 0 is stem.png.
+    """
+    for number in range(first, 10_000):
+        path = Path(f"{stem}-{number:03d}.png" if number else f"{stem}.png")
+        if not os.path.lexists(path):
             with suppress(FileExistsError):  # somebody else was faster
-                write_png(path, pixels, text, exclusive=True)
+                write(path)
                 return path
     raise OutputError(f"{stem}-001.png to {stem}-9999.png all exist; move some away")

@@ -16,6 +16,7 @@ from shviewer.analysis.options import Flag, Kind, Number, Whole, options_of, who
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.find import is_code
 from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES, Reading
 from shviewer.lights.suns.sun import Sun
@@ -181,6 +182,8 @@ def state_of_stamp(text: str, light: str | Light | None = None, compare: Coeffic
     given = (said["state"]["recipe"] if "state" in said else said).get("compare")
     if light is None and name is None:
         raise UsageError("the picture is of a light that has no text to name it: give the light")
+    if light is None and is_code(name):
+        raise UsageError(f"the picture is of {name}, which is code, and no picture runs code: give the light")
     if given and compare is None:
         raise UsageError(f"the picture compares with {given['name']}: give those coefficients")
     if compare is not None and recipe.get("n_bands", 1) > compare.n_bands:

@@ -126,7 +126,8 @@ def test_saving_waits_for_the_picture_that_was_asked_for(gate: Gate, monkeypatch
     saved = []
     monkeypatch.setattr(sessions, "render_rgb", lambda renderer, picture, composition: None)
     monkeypatch.setattr(sessions, "metadata", lambda picture, *rest: picture.light.name)
-    monkeypatch.setattr(sessions, "write_numbered", lambda stem, pixels, text: saved.append((stem, text)) or "it")
+    monkeypatch.setattr(sessions, "write_png", lambda path, pixels, text, exclusive: saved.append((path, text)))
+    monkeypatch.setattr(sessions, "write_numbered", lambda stem, write: write(stem) or "it")
 
     class Anything:
         version = ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,17 @@ def test_a_light_without_a_name_is_given_again() -> None:
     with pytest.raises(UsageError, match="give the light"):
         state_of_stamp(json.dumps(said))
     assert state_of_stamp(json.dumps(said), light) == state
+
+
+def test_no_stamp_runs_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever reads the state of a picture and draws it would run what its stamp names, unless the caller names it, too."""
+    monkeypatch.chdir(tmp_path)
+    Path("evil.py").write_text("raise SystemExit('ran')\n")
+    _, said = stamped()
+    said["state"]["recipe"]["light"] = "evil.py:f"
+    with pytest.raises(UsageError, match="which is code, and no picture runs code: give the light"):
+        state_of_stamp(json.dumps(said))
+    assert state_of_stamp(json.dumps(said), "evil.py:f").recipe.light == "evil.py:f"
 
 
 def test_a_stamp_of_before_the_schemas_is_read_as_far_as_it_goes() -> None:

@@ -9,15 +9,13 @@ file to all others; orientation and full size are told, not applied; CMYK is con
 
 from __future__ import annotations
 
-import os
-import tempfile
 from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
 from shviewer.files import decoding
 from shviewer.lights.images.decoded import Decoded
@@ -44,14 +42,11 @@ def decode_openimageio(data: bytes, limits: Limits = DEFAULT_LIMITS, kind: str =
     import OpenImageIO as library
 
     library.attribute("threads", 1)
-    handle, name = tempfile.mkstemp(prefix="shviewer-", suffix=f".{kind.lower()}")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
+    with temporary_folder() as folder:
+        file = folder / f"image.{kind.lower()}"
+        file.write_bytes(data)
         with decoding(kind):  # of whatever its Python does not expect
-            return _decoded(library, name, limits, kind)
-    finally:
-        Path(name).unlink(missing_ok=True)
+            return _decoded(library, str(file), limits, kind)
 
 
 def check_installed(kind: str) -> None:
