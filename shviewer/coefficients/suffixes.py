@@ -4,6 +4,12 @@ from __future__ import annotations
 
 _TEXT, _ARRAYS = (".txt", ".h", ".glsl"), (".npz", ".npy")
 
-HOLDS = {".json": "json", ".csv": "csv", **dict.fromkeys(_TEXT, "text"), **dict.fromkeys(_ARRAYS, "arrays")}
+HOLDS = {
+    ".json": "json",
+    ".gltf": "json",
+    ".csv": "csv",
+    **dict.fromkeys(_TEXT, "text"),
+    **dict.fromkeys(_ARRAYS, "arrays"),
+}
 
 COEFFICIENT_SUFFIXES = tuple(HOLDS)

@@ -42,6 +42,10 @@ _COLUMNS = {"r": "red", "g": "green", "b": "blue", "degree": "l", "order": "m", 
 _MOST_WORDS = 4 * MAX_NUMBERS
 _LONGEST_HEADER = 1000
 
+_DASH = re.compile(r"^[ \t]*- (?=[A-Za-z_])", re.MULTILINE)  # of a YAML list of names
+_UNITY = [f"sh[{i:>2}]" for i in range(27)]
+"""The names in Unity's YAML of a SphericalHarmonicsL2: all of red, then of green, then of blue."""
+
 
 def read_list(text: str, *, table: bool = False, sort: bool = True) -> Listed:
     """The list in a text, and one line on each guess. table: its lines are rows, as in CSV.
@@ -92,7 +96,7 @@ class _Scan:
     """The numbers of a text, and of each its line, the innermost bracket around it, and the last name with = or : before it."""
 
     def __init__(self, text: str) -> None:
-        self.text = _TEMPLATE.sub("", text)
+        self.text = _DASH.sub("", _TEMPLATE.sub("", text))
         self.breaks = [match.start() for match in re.finditer("\n", self.text)]
         self.values: list[float] = []
         self.starts: list[int] = []
@@ -237,6 +241,8 @@ def _by_name(scan: _Scan, named: list[int]) -> Listed:
     sizes = [size for _, size in _runs(scan.owners)]
     names = [scan.names[owner] if owner >= 0 else "" for owner in named]
     values, empty = np.array(scan.values), [scan.names[i] for i in sorted(set(range(len(scan.names))) - set(named))]
+    if names == _UNITY and set(sizes) == {1}:
+        return Listed(values.reshape(3, 9).T, implied="unity", implied_by="sh[ 0] to sh[26] of Unity: taken as unity")
     if set(sizes) == {1}:
         for channels in (3, 4):
             if (order := _channel_order(names, channels)) is not None:

@@ -194,7 +194,7 @@ def test_the_command_compares_and_says_what_is_wrong(
 )
 def test_only_coefficients_are_compared(text: str, kind: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["screenshot", "out.png", "green", "--compare", text]) == 3
-    assert f"{text} is {kind}; --compare takes coefficients (.json, .csv, .txt" in capsys.readouterr().err
+    assert f"{text} is {kind}; --compare takes coefficients (.json, .gltf, .csv, .txt" in capsys.readouterr().err
 
 
 def test_small_disagreement_is_a_figure() -> None:

@@ -153,7 +153,9 @@ CMGEN = "\n".join(
 )
 PROBE = {"uuid": "1", "type": "LightProbe", "matrix": [1, 0], "color": 16777215, "sh": ROWS.ravel().tolist()}
 BABYLON = "shviewer,irradiance,-y+z+x"
+UNITY = "m_AmbientProbe:\n" + "\n".join(f"  - sh[{i:>2}]: {x:g}" for i, x in enumerate(ROWS.T.ravel()))
 IMPLIED = {
+    "probe.txt": (UNITY, "unity", "sh[ 0] to sh[26] of Unity"),
     "sh.txt": (CMGEN, "filament", "its comments, irradiance and pre-scaled base, are those of Filament's cmgen"),
     "cesium.txt": (CMGEN.replace("(", "new Cartesian3("), "filament", "cmgen, without --no-mirror: taken as filament"),
     "probe.json": (json.dumps({"metadata": {}, "object": PROBE | {"intensity": 1}}), "three", "a LightProbe of three.js"),
@@ -162,7 +164,7 @@ IMPLIED = {
         "three",
         "a SphericalHarmonics3 of three.js",
     ),
-    "scene.json": (
+    "scene.gltf": (
         json.dumps({"extensions": {"EXT_lights_image_based": {"lights": [{"irradianceCoefficients": ROWS.tolist()}]}}}),
         BABYLON,
         f"glTF does not say what irradianceCoefficients are: taken as Babylon.js reads them, {BABYLON}",
@@ -197,11 +199,12 @@ FOUND = (
         "`three`, with a note",
         "harmonics.json",
     ),
+    Found("Unity, text of an asset", "`sh[ 0]: ...` to `sh[26]: ...`, red first", "`unity`, with a note", "probe.txt"),
     Found(
         "glTF",
         "`irradianceCoefficients`, whose convention it does not state",
         f"`{BABYLON}`, as Babylon.js reads it, with a note",
-        "scene.json",
+        "scene.gltf",
     ),
     Found(
         "Babylon.js, `JSON.stringify` of `SphericalHarmonics`",

@@ -275,6 +275,7 @@ BARE = {
     "rgba.txt": b"1 2 3 1\n4 5 6 1\n7 8 9 1\n1 2 3 1\n",
     "probe.json": b'{"object": {"type": "LightProbe", "intensity": 2, "sh": [' + b"1, " * 26 + b"2]}}",
     "scene.json": b'{"lights": [{"intensity": 2, "irradianceCoefficients": [' + b"[1, 2, 3], " * 8 + b"[4, 5, 6]]}]}",
+    "unity.txt": b"probe:\n" + b"".join(b"  sh[%2d]: %d\n" % (i, i) for i in range(27)),
     "babylon.json": b'{"l00": {"_x": 1, "_y": 2, "_z": 3}, "l1_1": [4, 5, 6], "l10": [7, 8, 9], "l11": [1, 2, 3]}',
 }
 

@@ -32,7 +32,8 @@ from seeds import seeds
 
 FOUND = Path(__file__).parent / "found"
 COUNT = 20_000
-_SHARES = {".hdr": 40, ".exr": 27, ".png": 13, ".jpg": 9, ".pfm": 2, ".dds": 3, ".npy": 2, ".tif": 3, ".psd": 1}
+_SHARES = {".hdr": 39, ".exr": 26, ".png": 13, ".jpg": 9} | {".tif": 3, ".dds": 3, ".pfm": 2, ".npy": 2}
+_SHARES |= dict.fromkeys((".psd", ".bmp", ".webp"), 1)
 """Percent of the mutations; the reader of .hdr is the one written here. Kinds without a seed have none."""
 
 _LARGE = 2048  # bytes; of seeds up to this size every truncation is tried

@@ -129,6 +129,11 @@ def declared_sizes(data: bytes) -> set[tuple[int, int]]:
         return {(int(shape[1]), int(shape[2]))} if shape else set()
     if data.startswith(b"8BPS"):
         return {struct.unpack_from(">II", data, 14)}
+    if data.startswith(b"BM"):
+        width, height = struct.unpack_from("<ii", data, 18)
+        return {(abs(height), width), struct.unpack_from("<HH", data, 18)[::-1]}  # OS/2's header has 16 bits
+    if data.startswith(b"RIFF"):
+        return _webp_sizes(data)
     if data.startswith((b"II*\0", b"MM\0*")):
         return _tiff_sizes(data, "<" if data.startswith(b"II") else ">")
     windows = re.finditer(rb"(?s)displayWindow\0box2i\0....(.{16})", data)
@@ -147,6 +152,20 @@ def _tiff_sizes(data: bytes, order: str) -> set[tuple[int, int]]:
         found.setdefault(tag, set()).add(value)
     widths, heights = (found.get(tag, set()) | found.get(full, set()) for tag, full in ((256, 33300), (257, 33301)))
     return {size for width in widths for height in heights for size in ((height, width), (width, height))}
+
+
+def _webp_sizes(data: bytes) -> set[tuple[int, int]]:
+    """Those of a canvas, of lossy and of lossless data, turned or not."""
+    found = set()
+    for chunk in re.finditer(rb"(?s)VP8[X L]....(.{10})", data):
+        bits = int.from_bytes(chunk[1], "little")
+        width, height = {
+            b"X": (1 + (bits >> 32 & 0xFFFFFF), 1 + (bits >> 56)),
+            b" ": (bits >> 48 & 0x3FFF, bits >> 64 & 0x3FFF),
+            b"L": (1 + (bits >> 8 & 0x3FFF), 1 + (bits >> 22 & 0x3FFF)),
+        }[chunk[0][3:4]]
+        found |= {(height, width), (width, height)}
+    return found
 
 
 def _forget_peak() -> None:

@@ -161,13 +161,21 @@ def _other_seeds() -> dict[str, bytes]:
     if find_spec("OpenImageIO") is None:
         return ours
     codes = (single * 15000).astype(np.uint16)
+    small = (codes >> 8).astype(np.uint8)
     return ours | {
         "codes.tif": tiff_file(codes),
         "float.tif": tiff_file(single),
-        "turned.tif": tiff_file((codes >> 8).astype(np.uint8), orientation=6),
+        "turned.tif": tiff_file(small, orientation=6),
         "codes.psd": psd_file(codes),
         "float.psd": psd_file(single),
-        "bytes.psd": psd_file((codes >> 8).astype(np.uint8)),
+        "bytes.psd": psd_file(small),
+        "codes.bmp": saved_by_pillow(small, "BMP"),
+        "grey.bmp": saved_by_pillow(small[..., 0].copy(), "BMP"),
+        "palette.bmp": saved_by_pillow(small[..., 0].copy() >> 7 > 0, "BMP"),
+        "lossless.webp": saved_by_pillow(small, "WEBP", lossless=True),
+        "lossy.webp": saved_by_pillow(small, "WEBP"),
+        "alpha.webp": saved_by_pillow(np.dstack([small, small[..., :1]]), "WEBP", exif=exif(6)),
+        "blocks.dds": saved_by_pillow(np.dstack([small, small[..., :1]]), "DDS", pixel_format="DXT5"),
     }
 
 

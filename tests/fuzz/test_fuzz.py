@@ -79,7 +79,7 @@ def test_every_seed_is_a_sound_file_of_the_size_it_declares():
 def test_the_seeds_are_of_every_kind_and_layout_and_small():
     kinds = [Path(name).suffix for name in seeds()]
     ours = {".hdr", ".exr", ".png", ".jpg", ".pfm", ".dds", ".npy"}
-    assert ours <= set(kinds) <= {*ours, ".tif", ".psd"}
+    assert ours <= set(kinds) <= {*ours, ".tif", ".psd", ".bmp", ".webp"}
     assert all(kinds.count(kind) >= 3 for kind in kinds)
     layouts = {
         "lat-long",

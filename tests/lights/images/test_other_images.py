@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 from lights.images.hdr_files import exr_file
+from lights.images.ldr_files import saved_by_pillow
 from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
+from PIL import Image, ImageOps
 
 import shviewer
 from shviewer.errors import LightError
@@ -274,6 +276,25 @@ def test_integers_are_srgb_codes_and_said_to_be(suffix, attributes, tmp_path):
     assert light.notes == (LDR.replace("16", str(codes.itemsize * 8)),)
 
 
+def test_a_webp_is_upright_and_srgb(tmp_path):
+    pytest.importorskip("OpenImageIO")
+    codes = (CODES >> 8).astype(np.uint8)
+    light = read(tmp_path / "a.webp", saved_by_pillow(codes, "WEBP", lossless=True))
+    np.testing.assert_allclose(light.pixels, linear(codes), rtol=1e-6)
+    assert light.encoding == "WebP, 8 bit sRGB (LDR)"
+
+
+def test_a_dds_of_blocks_is_that_of_another_reader(tmp_path):
+    """Pillow's, of Pillow's file; two decoders of S3TC may round differently."""
+    pytest.importorskip("OpenImageIO")
+    smooth = np.zeros((8, 16, 4), np.uint8)
+    smooth[..., 0], smooth[..., 1], smooth[..., 3] = np.arange(16) * 16, np.arange(8)[:, None] * 32, 255
+    data = saved_by_pillow(smooth, "DDS", pixel_format="DXT5")
+    with Image.open(io.BytesIO(data)) as picture:
+        theirs = linear(np.asarray(picture)[..., :3])
+    np.testing.assert_allclose(read(tmp_path / "a.dds", data).pixels, theirs, atol=0.01)
+
+
 def test_a_psd_of_32_bits_is_linear_light(tmp_path):
     light = read(tmp_path / "a.psd", psd_file(IMAGE))
     np.testing.assert_array_equal(light.pixels, IMAGE)
@@ -293,8 +314,6 @@ def test_alpha_is_dropped_and_changes_no_colour(tmp_path):
 @pytest.mark.parametrize("orientation", range(1, 9))
 def test_an_orientation_is_applied(orientation, tmp_path):
     """As Pillow applies it to the same codes."""
-    from PIL import Image, ImageOps
-
     codes = (CODES >> 8).astype(np.uint8)
     light = read(
         tmp_path / "a.tif", written("a.tif", codes, Orientation=orientation), Reading(isolated=False, layout="lat-long")

@@ -32,7 +32,7 @@ def decode_array(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
         raise LightError(f"an image of type {dtype}; radiance is linear and floating-point: linearise and convert it")
     with decoding("NPY"), warnings.catch_warnings(action="ignore"):
         values = np.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
-    with np.errstate(over="ignore"):  # what is infinite in float32 is refused later
+    with np.errstate(over="ignore", invalid="ignore"):  # what is infinite in float32 is refused later
         pixels = np.ascontiguousarray(values, dtype=np.float32)
     return Decoded(pixels, f"NumPy, {dtype}", layout="lat-long")
 
