@@ -111,13 +111,13 @@ def declared_sizes(data: bytes) -> set[tuple[int, int]]:
     """Every (height, width) that somewhere in the file is stated as the reader understands it; few, mostly one."""
     if data.startswith(b"\x89PNG"):
         width, height = struct.unpack_from(">II", data, 16)
-        return {(height, width), (width, height)}  # turned by its EXIF orientation
+        return _with_spheres(data, {(height, width), (width, height)})  # turned by its EXIF orientation
     if data.startswith(b"\xff\xd8"):
         stated = {struct.unpack(">HH", found[1]) for found in re.finditer(rb"(?s)\xff[\xc0-\xcf]..\x08(....)", data)}
-        return {size for height, width in stated for size in ((height, width), (width, height))}
-    if data.startswith(b"#?"):
-        sizes = re.finditer(rb"\n\s*[+-]([XY])\s+\+?(\d+)\s+[+-][XY]\s+\+?(\d+)", data)
-        return {(int(m[2]), int(m[3])) if m[1] == b"Y" else (int(m[3]), int(m[2])) for m in sizes}
+        return _with_spheres(data, {size for h, w in stated for size in ((h, w), (w, h))})
+    if data.startswith((b"#?", b"\xef\xbb\xbf#?")):
+        sizes = re.finditer(rb"[\r\n]\s*[+-]([XYxy])\s+\+?(\d+)\s+[+-][XYxy]\s+\+?(\d+)", data)
+        return {(int(m[2]), int(m[3])) if m[1] in b"Yy" else (int(m[3]), int(m[2])) for m in sizes}
     if data.startswith((b"PF", b"Pf")):
         stated = re.match(rb"P.\s(?:\s|#[^\n]*\n)*(\d+)\s+(\d+)\s", data)
         return {(int(stated[2]), int(stated[1]))} if stated else set()
@@ -139,6 +139,22 @@ def declared_sizes(data: bytes) -> set[tuple[int, int]]:
     windows = re.finditer(rb"(?s)displayWindow\0box2i\0....(.{16})", data)
     corners = [struct.unpack("<4i", found[1]) for found in windows]
     return {(bottom - top + 1, right - left + 1) for left, top, right, bottom in corners}
+
+
+def _with_spheres(data: bytes, sizes: set[tuple[int, int]]) -> set[tuple[int, int]]:
+    """The sizes, and those of the whole sphere of which its XMP says that it shows a part."""
+    full_width, full_height, width, height = (
+        {float(value) for value in re.findall(rb"GPano:%bPixels\s*=\s*'\s*\+?([\d.eE]+)\s*'" % name, data)}
+        for name in (b"FullPanoWidth", b"FullPanoHeight", b"CroppedAreaImageWidth", b"CroppedAreaImageHeight")
+    )
+    return sizes | {
+        (round(h * rows / of), round(w * columns / within))
+        for rows, columns in sizes
+        for h in full_height
+        for of in height - {0}
+        for w in full_width
+        for within in width - {0}
+    }
 
 
 def _tiff_sizes(data: bytes, order: str) -> set[tuple[int, int]]:

@@ -13,7 +13,27 @@ from typing import Any
 import numpy as np
 import OpenEXR
 from lights.images.hdr_files import exr_file, exr_part, exr_parts, hdr_file, random_texels, window
-from lights.images.ldr_files import GREY, GREY_ALPHA, PALETTE, RGB, RGBA, exif, png_file, saved_by_pillow
+from lights.images.ldr_files import (
+    GREY,
+    GREY_ALPHA,
+    P3_COLUMNS,
+    PALETTE,
+    RGB,
+    RGBA,
+    SRGB_CURVE,
+    exif,
+    gain_map_iso,
+    gain_map_xmp,
+    gamma_curve,
+    gpano,
+    icc_profile,
+    png_file,
+    saved_by_pillow,
+    table_curve,
+    ultra_hdr,
+    with_segments,
+    xmp,
+)
 from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
 from numpy.typing import NDArray
 from PIL import Image
@@ -69,6 +89,9 @@ def _hdr_seeds() -> dict[str, bytes]:
         "columns.hdr": hdr_file(random_texels(9, 10), "old", "-X +Y"),
         "xyze.hdr": hdr_file(texels, "new", settings=xyze),
         "exposed.hdr": hdr_file(texels, "flat", settings=exposed, magic=b"#?RGBE", newline=b"\r\n"),
+        "as-found.hdr": b"\xef\xbb\xbf" + hdr_file(texels, "new", settings=(b"EXPOSURE=1,5", b"COLORCORR=0 0 0")),
+        "small-letters.hdr": hdr_file(texels, "old", settings=(b"FORMAT=", b"\n")).replace(b"-Y", b"-y"),
+        "carriage-returns.hdr": hdr_file(texels, "flat", newline=b"\r"),
         "one-texel.hdr": hdr_file(random_texels(1, 1), "flat"),
         "lat-long.hdr": hdr_file(random_texels(8, 16), "new"),
         "vertical-cross.hdr": hdr_file(random_texels(16, 12), "new"),
@@ -120,7 +143,15 @@ def _png_seeds() -> dict[str, bytes]:
     deep = rng.integers(0, 65536, (6, 12, 4))
     palette = [(b"PLTE", rng.bytes(48)), (b"tRNS", b"\0\x80")]
     frames = [(_picture(4, 8, np.float32) * 60 * k).astype(np.uint8) for k in (1, 2)]
-    colour = [(b"gAMA", struct.pack(">I", 50000)), (b"cHRM", bytes(32)), (b"tEXt", b"Title\0light")]
+    ramp = table_curve(np.linspace(0, 1, 9) ** 2)
+    profile = icc_profile("P3", P3_COLUMNS, (gamma_curve(2.2), SRGB_CURVE, ramp))
+    corners = struct.pack(">8I", 31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000)  # of Display P3
+    part = gpano((24, 12), (12, 6), 6, 3)
+    colour = [
+        (b"gAMA", struct.pack(">I", 50000)),
+        (b"cHRM", corners),
+        (b"tEXt", b"Title\0light"),
+    ]
     return {
         "colour.png": png_file(rng.integers(0, 256, (6, 12, 3)), RGB, extra=colour),
         "deep.png": png_file(deep[..., :3], RGB, 16, extra=[(b"sRGB", b"\0"), (b"cICP", bytes((1, 13, 0, 1)))]),
@@ -130,15 +161,28 @@ def _png_seeds() -> dict[str, bytes]:
         "palette.png": png_file(
             rng.integers(0, 16, (12, 16)), PALETTE, 4, extra=palette, after=[(b"eXIf", exif(6)[6:])]
         ),
+        "profile.png": saved_by_pillow(frames[0], icc_profile=profile),
+        "sphere.png": png_file(
+            rng.integers(0, 256, (6, 12, 3)), RGB, extra=[(b"iTXt", b"XML:com.adobe.xmp\0\0\0\0\0" + part)]
+        ),
         "animated.png": saved_by_pillow(frames[0], save_all=True, append_images=[Image.fromarray(frames[1])]),
     }
 
 
 def _jpeg_seeds() -> dict[str, bytes]:
     codes = (_picture(16, 32, np.float32) * 60).astype(np.uint8)
+    gain = saved_by_pillow(codes[::2, ::2, 0].copy(), "JPEG")
+    wide = saved_by_pillow(codes, "JPEG", icc_profile=icc_profile("P3", P3_COLUMNS))
+    numbers = gain_map_xmp(GainMapMax=[2, 3, 4], HDRCapacityMax=4, Gamma=0.5)
     return {
         "baseline.jpg": saved_by_pillow(codes, "JPEG"),
         "progressive.jpg": saved_by_pillow(codes, "JPEG", progressive=True, exif=exif(6)),
+        "trailer.jpg": saved_by_pillow(codes, "JPEG", optimize=True) + b"\xff\xda\0\0\0\x18ftypmp42",
+        "sphere.jpg": with_segments(saved_by_pillow(codes, "JPEG"), xmp(gpano((64, 32), (32, 16), 16, 8))),
+        "ultra-hdr-xmp.jpg": ultra_hdr(wide, gain, numbers),
+        "ultra-hdr-iso.jpg": ultra_hdr(
+            saved_by_pillow(codes, "JPEG"), gain, gain_map_iso([(0, 3, 1, 0.1, 0.1)] * 3, 3)
+        ),
         "grey.jpg": saved_by_pillow(codes[..., 0].copy(), "JPEG", restart_marker_rows=1),
     }
 

@@ -9,6 +9,20 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from lights.images.ldr_files import (
+    LINEAR_CURVE,
+    P3_COLUMNS,
+    SRGB_COLUMNS,
+    gain_map_iso,
+    gain_map_xmp,
+    gpano,
+    icc_profile,
+    saved_by_pillow,
+    segment,
+    ultra_hdr,
+    with_segments,
+    xmp,
+)
 from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
 
 GREY = ((128 / 255 + 0.055) / 1.055) ** 2.4
@@ -28,7 +42,7 @@ class Found(NamedTuple):
 
 
 def found_images() -> tuple[Found, ...]:
-    return (*_hdr(), *_others())
+    return (*_hdr(), *_jpeg(), *_profiles(), *_others())
 
 
 def table() -> str:
@@ -60,6 +74,57 @@ def _hdr() -> tuple[Found, ...]:
                    b"FORMAT=32-bit_rle_rgbe\n#?RADIANCE\n\n"), base, "as Photoshop writes them"),
         Found("writers of their own", "`.hdr` without the empty line, with two, with CR, with a byte order mark",
               "as if it had one", "a.hdr", file(b"\xef\xbb\xbf#?RGBE\r\nFORMAT=32-bit_rle_rgbe\r\n"), base),
+    )  # fmt: skip
+
+
+def _jpeg() -> tuple[Found, ...]:
+    grey = saved_by_pillow(np.full((64, 128, 3), 128, np.uint8), "JPEG")
+    gain_map = saved_by_pillow(np.full((32, 64), 255, np.uint8), "JPEG")
+    part = with_segments(grey, xmp(gpano((256, 128), (128, 64), 64, 32)))
+    numbers = {"GainMapMax": 3, "HDRCapacityMax": 3, "OffsetSDR": 0, "OffsetHDR": 0}
+    by_xmp = ultra_hdr(grey, gain_map, gain_map_xmp(**numbers))
+    by_iso = ultra_hdr(grey, gain_map, gain_map_iso([(0, 3, 1, 0, 0)], 3))
+    apple = ultra_hdr(grey, gain_map, xmp(b"<x xmlns:HDRGainMap='http://ns.apple.com/HDRGainMap/1.0/'/>"))
+    lit = np.sqrt(0.5) / 2 * GREY  # half the azimuths, between 45 and 135 degrees from the pole
+    return (
+        Found("phones", "`.jpg` with a video or a preview behind the picture", "the picture alone",
+              "a.jpg", lambda: grey + b"\xff\xda\0\0\0\x18ftypmp42", (GREY,) * 3),
+        Found("panorama apps", "`.jpg` without its end marker", "the picture, as all of its scanlines are there",
+              "a.jpg", lambda: grey[:-2], (GREY,) * 3),
+        Found("a broken download", "`.jpg` cut short, with an end marker or without", "refused",
+              "a.jpg", lambda: grey[:-40] + b"\xff\xd9", None, "cut short"),
+        Found("photo sphere apps, exiftool", "`.jpg` or `.png` with a part of a sphere in its XMP (GPano)",
+              "placed where it says, the rest black", "a.jpg", lambda: part, (lit,) * 3, "the rest is black"),
+        Found("Android, Lightroom, gainmap-js", "Ultra HDR `.jpg`: a gain map described in XMP",
+              "HDR, at the map's full headroom", "a.jpg", lambda: by_xmp, (8 * GREY,) * 3, "8 times white"),
+        Found("libultrahdr 1.2 and later", "Ultra HDR `.jpg`: a gain map described by ISO 21496-1",
+              "HDR, at the map's full headroom", "a.jpg", lambda: by_iso, (8 * GREY,) * 3, "8 times white"),
+        Found("iPhones", "`.jpg` with Apple's own gain map", "its SDR half; the note says that the map is not read",
+              "a.jpg", lambda: apple, (GREY,) * 3, "its gain map is not read (Apple's own kind)"),
+        Found("stereo cameras, previews", "`.jpg` with several pictures (MPF)", "the first", "a.jpg",
+              lambda: with_segments(grey, segment(0xE2, b"MPF\0" + bytes(80))) + gain_map, (GREY,) * 3),
+    )  # fmt: skip
+
+
+def _profiles() -> tuple[Found, ...]:
+    codes = np.full((8, 16, 3), 128, np.uint8)
+    red = codes * np.uint8((1, 0, 0))
+    linear = icc_profile("GIMP built-in Linear sRGB", SRGB_COLUMNS, (LINEAR_CURVE,))
+    wide = icc_profile("Display P3", P3_COLUMNS)
+    tables = icc_profile("Printer", (), (), more=((b"A2B0", b"mft2" + bytes(60)),))
+    # Red of Display P3 in Rec. 709, from the chromaticities of both.
+    p3_red = (1.2249 * GREY, -0.0420 * GREY, -0.0196 * GREY)
+
+    def png(pixels: np.ndarray, profile: bytes) -> Callable[[], bytes]:
+        return lambda: saved_by_pillow(pixels, icc_profile=profile)
+
+    return (
+        Found("GIMP", "`.png` or `.jpg` with the profile \"GIMP built-in Linear sRGB\"", "linear, whatever its name says",
+              "a.png", png(codes, linear), (128 / 255,) * 3, "is honoured: linear"),
+        Found("phones, macOS", "`.png` or `.jpg` with the profile \"Display P3\"", "converted to Rec. 709",
+              "a.png", png(red, wide), p3_red, "converted to Rec. 709"),
+        Found("printer drivers, scanners", "`.png` or `.jpg` with a profile of tables",
+              "taken for sRGB, and said to be", "a.png", png(codes, tables), (GREY,) * 3, "is ignored"),
     )  # fmt: skip
 
 

@@ -269,7 +269,7 @@ def test_finding_a_scene_loads_no_decoder_no_pillow_and_nothing_of_coefficients_
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "shviewer.lights.lobes" in loaded
     unwanted = ("PIL", "OpenEXR", "subprocess", "shviewer.coefficients.reading", "shviewer.lights.suns")
-    unwanted += tuple(f"shviewer.lights.images.{name}" for name in ("display_referred", "isolated", "openexr", "rgbe"))
+    unwanted += tuple(f"shviewer.lights.images.{name}" for name in ("display", "isolated", "openexr", "rgbe"))
     assert [name for name in loaded if name in unwanted] == []
 
 

@@ -43,6 +43,24 @@ def rec709_from(chromaticities: ArrayLike) -> NDArray[np.float64]:
     return rec709_from_xyz @ _adaptation(checked[3], REC709[3]) @ _xyz_from_rgb(checked)
 
 
+def rec709_from_columns(columns: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3): linear RGB whose red, green and blue are these columns of XYZ, to linear Rec. 709, white to white.
+
+    Raises LightError for columns that make no RGB space.
+    """
+    x, y, z = columns.sum(axis=1)
+    if not (
+        np.all(np.abs(columns) <= _FARTHEST) and abs(np.linalg.det(columns)) > _FLATTEST and min(y, x + y + z) > 0.0
+    ):
+        raise LightError("its matrix makes no RGB space")
+    white = np.array([x, y]) / (x + y + z)
+    if not np.all(_BRADFORD @ _three_coordinates(white) > 0.0):
+        raise LightError("its white is no colour")
+    adapted = _adaptation(white, REC709[3]) @ columns / y
+    matrix: NDArray[np.float64] = np.linalg.inv(_xyz_from_rgb(REC709)) @ adapted
+    return matrix
+
+
 def xyz_from_rgb(chromaticities: ArrayLike) -> NDArray[np.float64]:
     """(3, 3): linear RGB with these primaries and white, a column vector, to CIE XYZ; the white has Y = 1.
 

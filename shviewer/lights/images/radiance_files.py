@@ -91,10 +91,14 @@ def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: boo
         from shviewer.lights.images.openexr import decode_openexr
 
         return (decode_isolated if isolated else decode_openexr)(data, limits, layer)
-    if kind in (_PNG, _JPEG):
-        from shviewer.lights.images.display_referred import decode_jpeg, decode_png
+    if kind is _PNG:
+        from shviewer.lights.images.display.png import decode_png
 
-        return (decode_png if kind is _PNG else decode_jpeg)(data, limits)
+        return decode_png(data, limits)
+    if kind is _JPEG:
+        from shviewer.lights.images.display.jpeg import decode_jpeg
+
+        return decode_jpeg(data, limits)
     return _of_another_kind(kind, data, limits, isolated)
 
 

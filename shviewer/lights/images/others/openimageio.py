@@ -19,7 +19,9 @@ from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
 from shviewer.files import decoding
 from shviewer.lights.images.decoded import Decoded
-from shviewer.lights.images.display_referred import TURNS, Codes, linearised, profile_notes
+from shviewer.lights.images.display.codes import TURNS, Codes, converted, linearised
+from shviewer.lights.images.display.colour import Colour
+from shviewer.lights.images.display.icc import colour_of_profile
 from shviewer.lights.images.openexr import on_display_window
 from shviewer.lights.images.openexr_headers import Window
 from shviewer.limits import DEFAULT_LIMITS, Limits
@@ -90,10 +92,9 @@ def _read(library: Any, file: Any, limits: Limits, kind: str) -> Decoded:
     orientation, profile = spec.get_int_attribute("Orientation", 1), _bytes(spec.getattribute("ICCProfile"))
     if stored in _BITS:
         codes = Codes(values, _BITS[stored], alpha, orientation, profile)
-        decoded = linearised(kind, codes, None, [*profile_notes(profile), *notes])
+        decoded = linearised(kind, codes, colour_of_profile(profile), notes)
     else:
-        ignored = ["its colour profile (ICC) is ignored, Rec. 709 assumed"] if profile else []
-        decoded = _floats(kind, stored, values, orientation, [*ignored, *notes])
+        decoded = _floats(kind, stored, values, orientation, profile, notes)
     return _placed(decoded, spec, orientation)
 
 
@@ -108,14 +109,23 @@ def _check(spec: Any, limits: Limits) -> None:
         )
 
 
-def _floats(kind: str, stored: str, values: NDArray[np.float32], orientation: int, notes: list[str]) -> Decoded:
+def _floats(
+    kind: str, stored: str, values: NDArray[np.float32], orientation: int, profile: bytes, notes: list[str]
+) -> Decoded:
     turn = TURNS.get(orientation)
     if turn:
         values, notes = turn(values), [*notes, f"turned upright: its EXIF orientation is {orientation}"]
     if values.shape[2] in (2, 4):
         notes = [*notes, "alpha dropped"]
+    colour = colour_of_profile(profile)
+    if colour.curve_name == "linear":
+        notes = [*colour.notes, *notes]
+    elif profile:
+        colour, notes = Colour(), ["its colour profile (ICC) is ignored, Rec. 709 assumed", *notes]
     colours = values[..., :3] if values.shape[2] > 2 else np.repeat(values[..., :1], 3, axis=2)
-    return Decoded(np.ascontiguousarray(colours), f"{kind}, {stored}, taken as linear", tuple(notes))
+    return Decoded(
+        converted(np.ascontiguousarray(colours), colour.rec709_from), f"{kind}, {stored}, taken as linear", tuple(notes)
+    )
 
 
 def _placed(decoded: Decoded, spec: Any, orientation: int) -> Decoded:

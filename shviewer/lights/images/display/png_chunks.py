@@ -13,11 +13,14 @@ import struct
 import zlib
 
 from shviewer.errors import LightError
+from shviewer.lights.images.display.codes import damaged
 from shviewer.limits import Limits
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _MOST_CHUNKS = 2**18  # encoders write one for each 8 KiB or more
 _PLAIN = (b"IHDR", b"iCCP", b"PLTE", b"tRNS", b"eXIf")
+_XMP = b"XML:com.adobe.xmp\0"
+_LONGEST_XMP = 2**20  # bytes
 _AT_ONCE = 2**14  # bytes, which inflate to 16 MiB at most
 
 _SAMPLES = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # of a texel, by colour type
@@ -25,13 +28,8 @@ _ADAM7 = ((0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), 
 """The first row and column and the steps of rows and columns, for each pass of an interlaced image."""
 
 
-def damaged(reason: str) -> LightError:
-    """The error for a file that is not what it should be."""
-    return LightError(f"damaged or cut short, {reason}; fetch or export the file again")
-
-
 def read_chunks(data: bytes) -> tuple[dict[bytes, bytes], list[memoryview]]:
-    """Type -> content of the first chunk of that type, and the pieces of the image.
+    """Type -> content of the first chunk of that type, of text only XMP, and the pieces of the image.
 
     Raises LightError if a checksum is wrong or the end is missing.
     """
@@ -53,7 +51,7 @@ def read_chunks(data: bytes) -> tuple[dict[bytes, bytes], list[memoryview]]:
             raise damaged("it does not begin with an IHDR chunk")
         if kind == b"IDAT":
             compressed.append(view[position + 8 : end])
-        else:
+        elif kind != b"iTXt" or data.startswith(_XMP, position + 8):
             chunks.setdefault(kind, data[position + 8 : end])
         if kind == b"IEND":
             return chunks, compressed
@@ -82,6 +80,18 @@ def check_texels(header: bytes, compressed: list[memoryview], limits: Limits) ->
         raise damaged(str(error)) from None
     if missing > 0:
         raise damaged(f"the last {missing} bytes of its texels are missing")
+
+
+def xmp_in(chunks: dict[bytes, bytes]) -> bytes:
+    """The XMP packet of a PNG [PNG, 11.3.3.4]; empty if there is none that can be read."""
+    content = chunks.get(b"iTXt", b"")[len(_XMP) :]  # whether compressed, how, language, translated keyword, text
+    text = content[2:].split(b"\0", 2)[-1]
+    if content[:1] != b"\1":
+        return text[:_LONGEST_XMP]
+    try:
+        return zlib.decompressobj().decompress(text, _LONGEST_XMP)
+    except zlib.error:
+        return b""
 
 
 def plain_png(chunks: dict[bytes, bytes], compressed: list[memoryview]) -> bytes:
