@@ -91,7 +91,9 @@ class CoefficientInformation:
     axes: str
     normalisation: str
     stamped: bool
-    """Whether the file itself names its convention; if not, the user named it."""
+    """Whether the file itself names its convention."""
+    implied: bool
+    """Whether the kind of file implies it; if neither, the user named it."""
     stamp: dict[str, str | int | float | None]
     """Everything the file says; empty for a bare list."""
 
@@ -221,6 +223,7 @@ def _coefficients(about: About) -> CoefficientInformation | None:
         bands=file.n_bands,
         convention=about.convention or "",
         stamped=bool(file.stamp),
+        implied=file.implied,
         stamp=dict(file.stamp),
         **{key: str(stamp[key]) for key in keys},
     )

@@ -138,7 +138,9 @@ def _numbers(values: Triple) -> str:
 
 def _coefficients(found: CoefficientInformation) -> list[tuple[str, str]]:
     """The lines to print: label and text."""
-    said = "as the file says" if found.stamped else "as named on the command line; the file does not say"
+    said = "as named on the command line; the file does not say"
+    if found.stamped or found.implied:
+        said = "as the file says" if found.stamped else "as this kind of file implies"
     rows = [
         (
             "coefficients",

@@ -51,6 +51,8 @@ class CoefficientFile:
     """The file's stamp; empty for a bare list."""
     notes: tuple[str, ...] = ()
     """One line on each thing that was assumed."""
+    implied: bool = False
+    """Whether the convention is the one that the kind of file implies."""
 
     @property
     def n_bands(self) -> int:
@@ -125,7 +127,7 @@ def interpreted(listed: Listed, named: str) -> CoefficientFile:
     if np.abs(table).max() > LARGEST:
         raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")
     try:
-        return CoefficientFile(table, convention, convention.to_ours(table), stamp, notes)
+        return CoefficientFile(table, convention, convention.to_ours(table), stamp, notes, not (stamp or named))
     except ValueError as error:
         raise LightError(str(error)) from error
 

@@ -264,3 +264,6 @@ def test_a_bare_list_is_described_as_what_it_was_said_to_be(tmp_path: Path) -> N
     assert "  coefficients      2 bands, 4 rows, irradiance over pi" in text
     assert "origin" not in text
     assert describe("cosine", Reading()).coefficients is None
+    (tmp_path / "probe.json").write_text(json.dumps({"type": "LightProbe", "sh": [1] * 27}))
+    text = as_text(describe(str(tmp_path / "probe.json"), Reading()))
+    assert "  convention        three (three.js, SphericalHarmonics3.fromArray), as this kind of file implies" in text

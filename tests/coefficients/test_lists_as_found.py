@@ -92,6 +92,8 @@ def test_a_convention_that_the_file_implies_is_taken_and_said_unless_another_is_
     implied = read(tmp_path / name, text, "")
     np.testing.assert_allclose(implied.given, read(tmp_path / name, text, convention).given, rtol=1e-15)
     assert any(note in said for said in implied.notes)
+    assert implied.file is not None
+    assert implied.file.implied
     np.testing.assert_array_equal(read(tmp_path / name, text).given, ROWS)
     assert not any(note in said for said in read(tmp_path / name, text).notes)
 
