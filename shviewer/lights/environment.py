@@ -143,6 +143,10 @@ class EnvironmentLight(RadianceLight):
 
     def irradiance_up(self) -> Array:
         """As in Light: Y(1, 0), which is z, times the texels of the upper half, by the layout's exact integrals."""
+        height, width = self.pixels.shape[:2]
+        if self.layout.solid_angles().shape[1] == 1:  # rows of constant theta: the integral of cos(theta) over each
+            sines = np.sin(np.minimum(np.linspace(0, np.pi, height + 1), np.pi / 2))
+            return np.asarray(np.diff(sines**2) * (np.pi / width) @ self.pixels.sum(axis=1, dtype=np.float64))
         places = np.indices(self.pixels.shape[:2]).reshape(2, -1)
         above = (self.layout.centres(*places)[:, 2] > 0).reshape(*self.pixels.shape[:2], 1)
         return np.asarray(self.layout.project(self.pixels * above, 2)[2] * np.sqrt(4 * np.pi / 3))
