@@ -51,7 +51,7 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     kinds = "/".join(dict.fromkeys(_KINDS.get(str(plane.dtype), str(plane.dtype)) for plane in planes))
     pixels = _radiance(planes, part, source)
     if matrix is not None:
-        _convert(pixels, matrix)
+        convert(pixels, matrix)
     pixels, cut = on_display_window(pixels, part.window, part.display)
 
     words = ["OpenEXR", kinds, *part.storage]
@@ -131,7 +131,7 @@ def _every_half() -> NDArray[np.float32]:
         return np.arange(2**16, dtype=np.uint16).view(np.float16).astype(np.float32)
 
 
-def _convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64]) -> None:
+def convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64]) -> None:
     """Convert in place. A texel with an Inf or NaN is left alone: it would spread to all its channels unreported."""
     transposed = matrix.T.astype(np.float32)
     for top in range(0, len(pixels), _ROWS):

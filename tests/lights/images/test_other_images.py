@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 from lights.images.hdr_files import exr_file
-from lights.images.ldr_files import saved_by_pillow
+from lights.images.ldr_files import LINEAR_CURVE, P3_COLUMNS, SRGB_COLUMNS, icc_profile, saved_by_pillow
 from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
 from PIL import Image, ImageOps
 
@@ -356,6 +356,34 @@ def test_only_the_first_image_is_read_and_said_to_be(tmp_path):
     light = read(tmp_path / "a.tif", Path("two.tif").read_bytes())
     np.testing.assert_array_equal(light.pixels, IMAGE)
     assert light.notes == ("only the first of its images is read",)
+
+
+def with_profile(pixels: np.ndarray, *profile: Any) -> bytes:
+    return tiff_file(pixels, extra=[(34675, 7, icc_profile("test", *profile))])
+
+
+def test_16_bits_are_linear_if_the_profile_of_the_file_says_so(tmp_path):
+    pytest.importorskip("OpenImageIO")
+    light = read(tmp_path / "a.tif", with_profile(CODES, SRGB_COLUMNS, (LINEAR_CURVE,)))
+    np.testing.assert_allclose(light.pixels, CODES / 65535, rtol=1e-6)
+    assert light.encoding == "TIFF, 16 bit linear (LDR)"
+
+
+def test_floats_are_linear_whatever_their_profile_says_and_converted_from_its_primaries_if_it_is_linear(tmp_path):
+    pytest.importorskip("OpenImageIO")
+    wide = IMAGE.copy()
+    wide[0, 0] = np.inf, 1, 1
+    of_p3 = decode_radiance_image(
+        with_profile(wide, P3_COLUMNS, (LINEAR_CURVE,)), "a.tif", Reading(True, isolated=False)
+    )
+    grey = np.broadcast_to(IMAGE[..., :1], IMAGE.shape)
+    of_grey = read(tmp_path / "a.tif", with_profile(grey, P3_COLUMNS, (LINEAR_CURVE,)))
+    np.testing.assert_allclose(of_grey.pixels, grey, rtol=1e-3)  # to the digits of a profile
+    assert np.abs(of_p3.pixels[1:] - IMAGE[1:]).max() > 0.1
+    assert any(note.startswith("sanitised: 1 +Inf ->") for note in of_p3.notes)  # it does not spread
+    curved = read(tmp_path / "b.tif", with_profile(IMAGE, P3_COLUMNS))
+    np.testing.assert_array_equal(curved.pixels, IMAGE)
+    assert curved.notes == ("its colour profile (ICC) is ignored, Rec. 709 assumed",)
 
 
 def test_a_text_of_no_known_encoding_in_a_tiff_harms_nothing(tmp_path):

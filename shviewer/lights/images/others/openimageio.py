@@ -19,10 +19,10 @@ from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
 from shviewer.files import decoding
 from shviewer.lights.images.decoded import Decoded
-from shviewer.lights.images.display.codes import TURNS, Codes, converted, linearised
+from shviewer.lights.images.display.codes import TURNS, Codes, linearised
 from shviewer.lights.images.display.colour import Colour
 from shviewer.lights.images.display.icc import colour_of_profile
-from shviewer.lights.images.openexr import on_display_window
+from shviewer.lights.images.openexr import convert, on_display_window
 from shviewer.lights.images.openexr_headers import Window
 from shviewer.limits import DEFAULT_LIMITS, Limits
 from shviewer.words import one_line
@@ -123,9 +123,10 @@ def _floats(
     elif profile:
         colour, notes = Colour(), ["its colour profile (ICC) is ignored, Rec. 709 assumed", *notes]
     colours = values[..., :3] if values.shape[2] > 2 else np.repeat(values[..., :1], 3, axis=2)
-    return Decoded(
-        converted(np.ascontiguousarray(colours), colour.rec709_from), f"{kind}, {stored}, taken as linear", tuple(notes)
-    )
+    pixels = np.ascontiguousarray(colours)
+    if colour.rec709_from is not None:
+        convert(pixels, colour.rec709_from)
+    return Decoded(pixels, f"{kind}, {stored}, taken as linear", tuple(notes))
 
 
 def _placed(decoded: Decoded, spec: Any, orientation: int) -> Decoded:
