@@ -157,7 +157,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("P / Ctrl+S", "save this picture", {"P": Command.SAVE, "Ctrl+S": Command.SAVE}),
         Binding("F11", "full screen", {"F11": Command.FULL_SCREEN}),
         Binding("H / ?", "this help", _each(do.toggle, dict.fromkeys("H?", "help_visible"))),
-        Binding("Esc", "close what is open, then quit", {"Esc": do.escape}),
+        Binding("Esc", "stop work, close what is open, quit", {"Esc": do.escape}),
     ),
 }
 """The rows of each group."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
 from time import perf_counter
 
 import moderngl
@@ -51,10 +50,10 @@ class Canvas:
         """
         if not self.renderer.show(picture, None if self.renderer.picture is None else UPLOAD_SECONDS):
             return False
-        written = replace(picture, state=changed(picture.state, message=status)) if status else picture
-        key = _overlay_key(written, composition)
+        key = status, _overlay_key(picture, composition)
         if key != self._overlay_key:
-            self.overlay = draw_overlay(written, composition, timing=True, opengl=self.renderer.version)
+            opengl = self.renderer.version
+            self.overlay = draw_overlay(picture, composition, timing=True, opengl=opengl, status=status)
             self._overlay_key = key
         return True
 

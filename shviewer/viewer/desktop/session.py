@@ -93,6 +93,9 @@ class Session:
 
     def press(self, key: str) -> Command | None:
         """Do what a key asks for; a command that only a window can carry out is returned."""
+        if key == "Esc" and self.working:
+            self.stop()
+            return None
         done = press(self.state, key)
         if isinstance(done, Command):
             return self.do(done)
@@ -108,8 +111,6 @@ class Session:
             self._when_ready(self._fit)
         elif command is Command.FACE_MARK:
             self._when_ready(self._face_mark)
-        elif command is Command.CLOSE and self._task is not None:
-            self.stop()
         else:
             return command
         return None

@@ -62,10 +62,13 @@ class Overlay:
         return (*self.boxes.values(), *((self.sheet,) if self.sheet else ()))
 
 
-def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "") -> Overlay:
+def draw_overlay(
+    picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "", status: str = ""
+) -> Overlay:
     """Draw all text and sheets that go over the spheres.
 
     timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
+    status: what is being done meanwhile, in place of messages.
     """
     sheet = Image.new("RGBA", (composition.width, composition.height))
     painter = Painter(ImageDraw.Draw(sheet), composition)
@@ -79,7 +82,7 @@ def draw_overlay(picture: Picture, composition: Composition, *, timing: bool = F
     shown = plane or convergence
     painter.boxes.update(shown.boxes if shown else {})
     timed = wanted != "plane" or measured(picture)
-    _write_hint(painter, picture, (NO_ROOM[wanted] if timed else NOT_TIMED) if wanted and not shown else "")
+    _write_hint(painter, picture, (NO_ROOM[wanted] if timed else NOT_TIMED) if wanted and not shown else "", status)
     if picture.state.view.help_visible:
         draw_help(sheet, picture.state, composition, opengl)
     image = np.asarray(sheet)
@@ -100,17 +103,17 @@ def foresee(picture: Picture) -> None:
         band_series(picture)
 
 
-def _write_hint(painter: Painter, picture: Picture, remark: str = "") -> None:
-    """Write a message, a remark, the suns that were split off, or else the most useful keys; at the right the exposure."""
+def _write_hint(painter: Painter, picture: Picture, remark: str = "", status: str = "") -> None:
+    """Write what is being done, a message, a remark, the suns that were split off, or else the most useful keys; at the right the exposure."""
     at, state = painter.at, picture.state
     y = _hint_y(at)
-    message = state.view.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
+    message = status or state.view.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
     if message:
         face = painter.face(13)
         text = message
         while text and face.getlength(text) > at.width - 2 * at.margin:
             text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
-        good = message == picture.verdict and agrees(message)
+        good = message == status or (message == picture.verdict and agrees(message))
         painter.text("message", at.margin, y, text, 13, GREY if good else WARNING, "lm")
     curve = "" if state.view.tone == "none" else f", {state.view.tone} curve"
     stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state.view)}){curve}"

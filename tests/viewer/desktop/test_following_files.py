@@ -259,4 +259,4 @@ def test_the_file_that_is_shown_can_be_dropped_again_and_is_decoded_apart_from_t
     second, third, isolated = printed.splitlines()
     assert second.split("|")[0] == third.split("|")[0] == "reloaded mine"
     assert second != third
-    assert isolated == "[False, True, True, False]"  # the first is trusted, as is what is built in
+    assert isolated == "[None, True, True, False]"  # the first is decoded as its kind is, as is what is built in
