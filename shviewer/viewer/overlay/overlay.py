@@ -104,7 +104,7 @@ def foresee(picture: Picture) -> None:
 
 
 def _write_hint(painter: Painter, picture: Picture, remark: str = "", status: str = "") -> None:
-    """Write what is being done, a message, a remark, the suns that were split off, or else the most useful keys; at the right the exposure."""
+    """Write what is being done, a message, a remark, the suns split off, or the most useful keys; at the right the exposure."""
     at, state = painter.at, picture.state
     y = _hint_y(at)
     message = status or state.view.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
