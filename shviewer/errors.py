@@ -4,6 +4,9 @@ A `ShviewerError` becomes one line on stderr and the exit code of its class; eve
 programming error and keeps its traceback. The codes are part of the interface (assets/guide/command-line.md).
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from shviewer.words import one_line
 
 
@@ -26,6 +29,17 @@ class LightError(ShviewerError):
     """A LIGHT that is unknown, unreadable, damaged or not what its name says."""
 
     exit_code = 3
+
+
+@contextmanager
+def within_memory(what: str = "") -> Iterator[None]:
+    """Let running out of memory be a LightError of what was being made."""
+    try:
+        yield
+    except MemoryError:
+        raise LightError(
+            f"{what}{': ' if what else ''}not enough memory for it; close something or make it smaller"
+        ) from None
 
 
 class OutputError(ShviewerError):

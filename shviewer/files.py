@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import math
 import os
 import re
+import select
 import stat
+import time
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import IO, NamedTuple
 
 from shviewer.ending import at_the_end
-from shviewer.errors import LightError, OutputError
+from shviewer.errors import LightError, OutputError, within_memory
 from shviewer.limits import Limits
 from shviewer.words import one_line
 
@@ -25,11 +28,10 @@ def naming(name: str) -> Iterator[None]:
     """Let the errors raised inside begin with `name`, quoted and escaped if it holds a line break or bytes that are no text."""
     shown = name if name.isprintable() else ascii(name)
     try:
-        yield
+        with within_memory():
+            yield
     except LightError as error:
         raise LightError(f"{shown}: {error}") from None
-    except MemoryError:
-        raise LightError(f"{shown}: not enough memory to decode it; close something or make it smaller") from None
 
 
 DEBUG = "SHVIEWER_DEBUG"
@@ -50,12 +52,19 @@ def decoding(what: str) -> Iterator[None]:
         raise LightError(f"no {what} ({type(error).__name__}: {said}); save it again") from error
 
 
-def read_bytes(path: Path, limits: Limits) -> bytes:
-    """The whole file, read once. Looks before it opens, so that no pipe or device can block or be disturbed."""
+def read_bytes(path: Path, limits: Limits, most: float = math.inf, rule: str = "") -> bytes:
+    """The whole file, read once: the one way into the program. Looks before it opens, so that no device is disturbed.
+
+    A pipe is read to its end within `limits.pipe_seconds`. most: bytes of a file of this kind, which `rule` tells.
+    LightError for whatever cannot be read, or is too large.
+    """
     try:
-        _check_is_small_file(os.stat(path), limits)
+        pipe = _size_of(os.stat(path), limits, most, rule) is None
         with _opened(path) as file:
-            size = _check_is_small_file(os.fstat(file.fileno()), limits)
+            here = limits if pipe else replace(limits, pipe_seconds=0)  # a pipe put in the place of a file is not meant
+            size = _size_of(os.fstat(file.fileno()), here, most, rule)
+            if size is None:
+                return _from_pipe(file.fileno(), limits, most, rule)
             data = file.read(size + 1)
     except (OSError, ValueError) as error:
         raise LightError(_reason(error)) from None
@@ -69,16 +78,45 @@ def _opened(path: Path) -> IO[bytes]:
     return open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)), "rb")
 
 
-def _check_is_small_file(status: os.stat_result, limits: Limits) -> int:
-    """Return the size in bytes. LightError unless it is a regular file, not empty, and within the limits."""
+def _from_pipe(descriptor: int, limits: Limits, most: float, rule: str) -> bytes:
+    """All bytes that come through a pipe that does not block, from the first until no writer is left."""
+    until, data = time.monotonic() + limits.pipe_seconds, bytearray()
+    while (left := until - time.monotonic()) > 0:
+        try:
+            piece = os.read(descriptor, 2**20)
+        except BlockingIOError:  # a writer that writes nothing just now
+            select.select([descriptor], [], [], left)
+            continue
+        if not piece and data:
+            return bytes(data)
+        if not piece:  # no writer yet
+            time.sleep(min(left, 0.02))
+        data += piece
+        _check_bytes(len(data), limits, most, rule)
+    raise LightError(
+        f"a pipe from which {len(data)} bytes came in {limits.pipe_seconds:g} s, and no end: write all of it, or save it as"
+        " a file first"
+    )
+
+
+def _size_of(status: os.stat_result, limits: Limits, most: float, rule: str) -> int | None:
+    """Return the size in bytes; None for a pipe. LightError unless it is one of them, not empty, and within the limits."""
     if stat.S_ISDIR(status.st_mode):
-        raise LightError("a directory; name one image in it")
+        raise LightError("a directory; name one file in it")
+    if stat.S_ISFIFO(status.st_mode) and limits.pipe_seconds and hasattr(os, "O_NONBLOCK"):
+        return None
     if not stat.S_ISREG(status.st_mode):
         raise LightError("a pipe, socket or device; only a regular file is read: save it as one first")
     if status.st_size == 0:
         raise LightError("an empty file (0 bytes); fetch or export it again")
-    limits.check_file(status.st_size)
+    _check_bytes(status.st_size, limits, most, rule)
     return status.st_size
+
+
+def _check_bytes(size: int, limits: Limits, most: float, rule: str) -> None:
+    if size > most:
+        raise LightError(f"{size} bytes; {rule}")
+    limits.check_file(size)
 
 
 def _reason(error: OSError | ValueError) -> str:

@@ -1,8 +1,8 @@
-"""Limits of size: of files and images, checked before memory is taken, of bands, and of radiance that float32 can show."""
+"""Limits of size: of files, images and memory, checked before it is taken, of bands, and of radiance that float32 can show."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from shviewer.errors import LightError
 
@@ -37,6 +37,22 @@ def check_brightness(radiance: float, name: str) -> None:
         check_radiance(radiance, name)
 
 
+MEMORY_SHARE = 0.5
+"""The share of the available memory that one file may take."""
+
+UNASKED = 2**24
+"""Fewer bytes are taken without asking how many there are, which takes 0.3 ms."""
+
+TEXEL_BYTES = 32
+"""The most that a texel takes at a time: 28 while RGBA of float32 is decoded, and 28 as it is drawn, pixels and texture."""
+
+SPLIT_BYTES = 28
+"""What a texel takes on top of that where a sun is taken out: another image, its mean and one sun, or its texture."""
+
+RASTER_BYTES = 28
+"""What a texel of the raster takes that stands for an image of another layout: raster and texture."""
+
+
 @dataclass(frozen=True)
 class Limits:
     """The largest image. side: texels along a side; texels: in the whole image; file_bytes: size of the file.
@@ -47,6 +63,10 @@ class Limits:
     side: int = 32768
     texels: int = 2**27
     file_bytes: int = 512 * 2**20
+    memory_bytes: int | None = field(default=None, compare=False)
+    """The memory that one file may take; None: MEMORY_SHARE of what is available. It changes no value."""
+    pipe_seconds: float = field(default=30.0, compare=False)
+    """The time to wait for everything that comes through a pipe; 0: pipes are refused."""
 
     def check_file(self, size: int) -> None:
         """Raises LightError for a file of more than `file_bytes` bytes."""
@@ -54,6 +74,7 @@ class Limits:
             raise LightError(
                 f"{size} bytes; the limit is {self.file_bytes}: make the image smaller, or raise it (--max-file-mib)"
             )
+        self.check_memory(size, f"a file of {size} bytes")
 
     def check_size(self, width: int, height: int, what: str = "image") -> None:
         """Raises LightError unless both sides (texels) and their product are within the limits."""
@@ -67,6 +88,40 @@ class Limits:
                 f"{what} of {width} x {height} = {width * height} texels; the limit is {self.texels}: make it smaller,"
                 " or raise it (--max-megatexels)"
             )
+
+    def check_image(self, width: int, height: int, decoding: int, what: str = "image") -> None:
+        """`check_size`, and LightError unless there is memory for the image until it is drawn.
+
+        decoding: the bytes that the decoder takes at a time, its result and its copies of the file included.
+        """
+        self.check_size(width, height, what)
+        self.check_memory(max(TEXEL_BYTES * width * height, decoding), f"{what} of {width} x {height} texels")
+
+    def check_memory(self, needed: int, what: str) -> None:
+        """LightError if `what` takes more bytes than there may be: the check before any large piece of memory is taken."""
+        if self.memory_bytes is None and needed <= UNASKED:
+            return
+        most = self.most_memory
+        if most is not None and needed > most:
+            share = ", half of what is available" if self.memory_bytes is None else ""
+            raise LightError(
+                f"{what} takes up to {_mebibytes(needed)} of memory; the limit is {_mebibytes(most)}{share}: make it"
+                " smaller, or raise the limit (--max-memory-mib)"
+            )
+
+    @property
+    def most_memory(self) -> int | None:
+        """The bytes that one file may take now; None where neither a user nor the system says."""
+        if self.memory_bytes is not None:
+            return self.memory_bytes
+        from shviewer.memory import available_bytes  # here, since ctypes takes its time
+
+        free = available_bytes()
+        return None if free is None else int(MEMORY_SHARE * free)
+
+
+def _mebibytes(count: float) -> str:
+    return f"{count / 2**20:.0f} MiB"
 
 
 DEFAULT_LIMITS = Limits()

@@ -148,6 +148,7 @@ def reading_from(options: argparse.Namespace) -> Reading:
         "side": options.max_side,
         "texels": options.max_megatexels and int(options.max_megatexels * 2**20),
         "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
+        "memory_bytes": options.max_memory_mib and int(options.max_memory_mib * 2**20),
     }
     limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
     if options.input_convention:

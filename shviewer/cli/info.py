@@ -18,7 +18,7 @@ from shviewer.analysis.information import (
 )
 from shviewer.cli.from_options import reading_from
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
-from shviewer.errors import LightError, ShviewerError
+from shviewer.errors import LightError, ShviewerError, within_memory
 from shviewer.words import counted, one_line
 
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
@@ -33,7 +33,8 @@ def run(options: argparse.Namespace) -> int:
     for number, text in enumerate(options.lights):
         refused: str | None = None
         try:
-            found = describe(text, reading)
+            with within_memory(text):
+                found = describe(text, reading)
         except ShviewerError as error:
             refused, code = str(error), error.exit_code
             objects.append({"light_argument": text, "error": refused})

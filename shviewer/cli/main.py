@@ -23,7 +23,7 @@ from shviewer.cli.options import (
     sweep_parser,
     view_parser,
 )
-from shviewer.errors import OutputError, ShviewerError, UsageError
+from shviewer.errors import OutputError, ShviewerError, UsageError, within_memory
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
@@ -38,7 +38,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = _meant(arguments)
         mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
         options = PARSERS[mode]().parse_intermixed_args(rest)
-        code: int = import_module(f"shviewer.cli.{mode}").run(options)
+        with within_memory():
+            code: int = import_module(f"shviewer.cli.{mode}").run(options)
         if sys.stdout is not None:
             sys.stdout.flush()  # here, where a full disk can still be said
         return code

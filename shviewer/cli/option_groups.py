@@ -117,6 +117,12 @@ def add_reading_options(parser: OneLineParser, convention: str = "--convention")
     parser.add_argument(
         "--max-file-mib", metavar="M", type=_positive, help="size that an image's file may have, in MiB (default 512)"
     )
+    parser.add_argument(
+        "--max-memory-mib",
+        metavar="M",
+        type=_positive,
+        help="memory that an image may take until it is drawn, in MiB (default half of what is available)",
+    )
 
 
 def _band_list(text: str) -> frozenset[int]:

@@ -23,7 +23,7 @@ from shviewer.coefficients.convention import OVER_PI, Convention
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.coefficients.writing import FORMATS
-from shviewer.errors import OutputError, ShviewerError, UsageError
+from shviewer.errors import OutputError, ShviewerError, UsageError, within_memory
 from shviewer.files import ANYTHING, Replacing, file_stem, write_atomically
 from shviewer.lights.find import is_code, split_light
 from shviewer.words import counted, one_line
@@ -195,7 +195,8 @@ def _one_of_many(
     if is_code(light):
         print(one_line(f"shviewer: note: {light}: runs the code in {split_light(light)[0]}"), file=sys.stderr)
     try:
-        projected = _noted(light, recipe_of, convention)
+        with within_memory(light):
+            projected = _noted(light, recipe_of, convention)
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)

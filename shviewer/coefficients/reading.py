@@ -9,7 +9,6 @@ import json
 import re
 from collections import Counter
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -76,18 +75,8 @@ def read_coefficients(path: Path, named: str = "", limits: Limits = DEFAULT_LIMI
 
 def read_numbers(path: Path, limits: Limits = DEFAULT_LIMITS) -> Listed:
     """Read the numbers in a file, of whichever shape. LightError if it is bad."""
-    limits = Limits(file_bytes=min(MAX_FILE_BYTES, limits.file_bytes))
-    _check_size(path)
-    return _READERS[HOLDS[path.suffix.lower()]](read_bytes(path, limits))
-
-
-def _check_size(path: Path) -> None:
-    """LightError if the file is too large, before a byte is read. Whether there is a file is checked later."""
-    with suppress(OSError, ValueError):
-        if (size := path.stat().st_size) > MAX_FILE_BYTES:
-            raise LightError(
-                f"{size} bytes; 128 bands, the most there can be, take less than {MAX_FILE_BYTES}: keep only those"
-            )
+    rule = f"128 bands, the most there can be, take less than {MAX_FILE_BYTES}: keep only those"
+    return _READERS[HOLDS[path.suffix.lower()]](read_bytes(path, limits, MAX_FILE_BYTES, rule))
 
 
 def interpreted(listed: Listed, named: str) -> CoefficientFile:

@@ -17,9 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.coefficients.numbers import Listed, arranged
+from shviewer.coefficients.numbers import MAX_NUMBERS, Listed, arranged
 from shviewer.coefficients.text_lists import places_of
 from shviewer.errors import LightError
+from shviewer.limits import MAX_BANDS
 
 THREE, GLTF = "three", "shviewer,irradiance,-y+z+x"
 
@@ -52,6 +53,8 @@ def read_structure(found: object) -> Listed:
 
 def rows_of_numbers(found: object) -> NDArray[np.float64]:
     """A JSON list of numbers (k,), or of rows of numbers or objects of channels (k, j). LightError for anything else."""
+    if isinstance(found, list) and len(found) > MAX_NUMBERS:
+        raise LightError(f"{len(found)} rows or numbers: at most {MAX_BANDS} bands, {MAX_NUMBERS} numbers, are read")
     rows = (
         [_by_channel(row) or row if isinstance(row, dict) else row for row in found] if isinstance(found, list) else []
     )

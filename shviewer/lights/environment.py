@@ -22,7 +22,7 @@ from shviewer.lights.layouts.layout import Indices, Layout
 from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.light import About, Split
 from shviewer.lights.reading import DEFAULT_READING, Reading
-from shviewer.limits import check_brightness
+from shviewer.limits import DEFAULT_LIMITS, RASTER_BYTES, SPLIT_BYTES, Limits, check_brightness
 
 MAX_RASTER_WIDTH = 8192
 """The most columns of the lat-long raster that stands for an image in another layout when it is drawn."""
@@ -45,6 +45,8 @@ class EnvironmentLight(RadianceLight):
     notes: tuple[str, ...]
     encoding: str | None
     """The file's format in words; None for an image that was not read."""
+    limits: Limits
+    """The limit of memory counts for what is made of the image, too."""
 
     best_method = "exact texel integrals"
     lobes = ()
@@ -56,6 +58,7 @@ class EnvironmentLight(RadianceLight):
         name: str = "image",
         notes: tuple[str, ...] = (),
         encoding: str | None = None,
+        limits: Limits = DEFAULT_LIMITS,
     ) -> None:
         """Without a layout the image is lat-long. LightError for more radiance than can be shown."""
         texels = pixels.texels if isinstance(pixels, LatLongMap) else pixels
@@ -64,6 +67,7 @@ class EnvironmentLight(RadianceLight):
         for field, value in (("pixels", texels), ("layout", layout), ("name", name), ("notes", notes)):
             object.__setattr__(self, field, value)
         object.__setattr__(self, "encoding", encoding)
+        object.__setattr__(self, "limits", limits)
 
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> EnvironmentLight:
@@ -74,7 +78,7 @@ class EnvironmentLight(RadianceLight):
         except LightError as error:
             raise LightError(f"{path}: {error}") from None
         name = f"{path.stem}:{layer}" if layer else path.stem
-        return cls(image.pixels, layout, name, image.notes + notes, image.encoding)
+        return cls(image.pixels, layout, name, image.notes + notes, image.encoding, reading.limits)
 
     @property
     def description(self) -> str:
@@ -92,11 +96,15 @@ class EnvironmentLight(RadianceLight):
 
     @cached_property
     def map(self) -> LatLongMap:
-        """The texels themselves if they are lat-long and fit a texture; else a raster sampled from them, about as fine."""
+        """The texels themselves if they are lat-long and fit a texture; else a raster sampled from them, about as fine.
+
+        LightError if a raster takes more memory than it may.
+        """
         if self._is_lat_long and max(self.pixels.shape) <= MAX_TEXTURE_SIDE:
             return LatLongMap(self.pixels)
         width = max(4, min(self.layout.raster_width, MAX_RASTER_WIDTH))
         height = min(len(self.pixels), MAX_RASTER_WIDTH // 2) if self._is_lat_long else width // 2
+        self.limits.check_memory(RASTER_BYTES * width * height, f"{self.name}: a raster of {width} x {height} texels")
         texels = np.empty((height, width, 3), dtype=np.float32)
         theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
         block = max(1, BLOCK_VALUES // (64 * width))
@@ -173,6 +181,10 @@ class EnvironmentLight(RadianceLight):
     def split_suns(self) -> Split:
         from shviewer.lights.suns.compact_sources import CompactSources, suns_or_refusal
 
+        height, width = self.pixels.shape[:2]
+        self.limits.check_memory(
+            SPLIT_BYTES * width * height, f"{self.name}: taking suns out of {width} x {height} texels"
+        )
         sources = CompactSources(self.pixels, self.layout)
         suns = suns_or_refusal(self.name, *sources.take_all())
         return Split(replace(self, pixels=sources.pixels), suns)

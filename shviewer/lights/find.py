@@ -80,7 +80,7 @@ def _read(text: str, path: Path, part: str, reading: Reading) -> Light:
     if path.suffix.lower() == ".toml":
         from shviewer.lights.scene import read_scene
 
-        return read_scene(path)
+        return read_scene(path, reading.limits)
     if path.suffix.lower() in IMAGE_SUFFIXES or (path.suffix.lower() == ".npy" and _holds_image(path, reading)):
         from shviewer.lights.environment import EnvironmentLight
 
@@ -92,7 +92,7 @@ def _read(text: str, path: Path, part: str, reading: Reading) -> Light:
     if part:
         from shviewer.lights.function import load_function
 
-        return load_function(path, part)
+        return load_function(path, part, reading.limits)
     raise LightError(_unknown(text))
 
 

@@ -14,13 +14,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shviewer.errors import LightError
+from shviewer.files import naming, read_bytes
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.lights.irradiance import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.limits import check_brightness
+from shviewer.limits import DEFAULT_LIMITS, Limits, check_brightness
+
+MAX_CODE_BYTES = 2**22
 
 SAMPLED_BANDS = 128
 """The bands that decide how many points the quadrature needs; more are projected on request."""
@@ -134,25 +137,21 @@ class FunctionLight(RadianceLight):
         return LatLongMap.pole_to_pole(self.rows)
 
 
-def load_function(path: Path, function: str) -> FunctionLight:
+def load_function(path: Path, function: str, limits: Limits = DEFAULT_LIMITS) -> FunctionLight:
     """The light `function` of the Python file `path`. LightError if the file or the function is missing or fails.
 
     The file is compiled here and not through Python's cache, which takes two versions for one if they have the same size
     and were written in the same second.
     """
-    try:
-        missing = not path.is_file()
-    except (OSError, ValueError):
-        missing = True
-    if missing:
-        raise LightError(f"{path}: no such file; name a light function as file.py:function")
+    with naming(str(path)):
+        code = read_bytes(path, limits, MAX_CODE_BYTES, f"code of a light has at most {MAX_CODE_BYTES}")
     module = ModuleType(f"_light_function_{path.stem}")
     module.__file__ = str(path)
     sys.modules[module.__name__] = module  # dataclasses look their module up
     folder = str(path.parent.resolve())
     sys.path.insert(0, folder)  # as for a script: its neighbours can be imported
     try:
-        exec(compile(path.read_bytes(), path, "exec"), vars(module))
+        exec(compile(code, path, "exec"), vars(module))
     except (Exception, SystemExit) as error:
         raise LightError(f"{path}: importing it raised {type(error).__name__}: {error}") from error
     finally:

@@ -21,12 +21,13 @@ from typing import Any
 import numpy as np
 
 from shviewer.errors import LightError
+from shviewer.files import naming, read_bytes
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
-from shviewer.limits import BRIGHTEST
+from shviewer.limits import BRIGHTEST, DEFAULT_LIMITS, Limits
 
 PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
     "clamped-linear": (("slope", "offset"), ClampedLinear),
@@ -35,19 +36,16 @@ PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
     "constant": ((), Constant),
 }
 
-MAX_FILE_BYTES = 2**20
+MAX_FILE_BYTES = 2**16
+"""A KiB for each of the most lobes. What Python's reader of TOML takes grows with the square of a key's dots: 1 s at most."""
 
 
-def read_scene(path: Path) -> LobeLight:
+def read_scene(path: Path, limits: Limits = DEFAULT_LIMITS) -> LobeLight:
     """The lobe light in a .toml file. LightError with file, key and rule for anything wrong with it."""
+    with naming(str(path)):
+        data = read_bytes(path, limits, MAX_FILE_BYTES, f"a scene file has at most {MAX_FILE_BYTES}")
     try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise LightError(f"{path}: {path.stat().st_size} bytes; a scene file has at most {MAX_FILE_BYTES}")
-        if not path.is_file():
-            raise LightError(f"{path}: not a regular file; name a .toml scene")
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise LightError(f"{path}: {error.strerror or error}; check the path") from error
+        document = tomllib.loads(data.decode())
     except UnicodeDecodeError as error:
         raise LightError(f"{path}: byte {error.start} is not UTF-8 text; a scene is a TOML file") from error
     except (ValueError, RecursionError) as error:  # tomllib lets errors of int() and of deep nesting through

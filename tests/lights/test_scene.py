@@ -37,7 +37,7 @@ def read(tmp_path):
 
 MISTAKES = {
     # text -> what the line says after the file's name
-    "": "no lobe; a scene has one or more [[lobe]] tables",
+    "": "an empty file (0 bytes); fetch or export it again",
     'description = "empty"': "no lobe; a scene has one or more [[lobe]] tables",
     "lobe = 3": "no lobe; a scene has one or more [[lobe]] tables",
     "lobe = []": "no lobe; a scene has one or more [[lobe]] tables",
@@ -155,9 +155,9 @@ def test_a_missing_file_a_folder_and_a_huge_file_are_one_line(tmp_path):
     (tmp_path / "folder.toml").mkdir()
     (tmp_path / "huge.toml").write_bytes(b"#" * (MAX_FILE_BYTES + 1))
     for name, rule in (
-        ("none.toml", "No such file or directory; check the path"),
-        ("folder.toml", "not a regular file; name a .toml scene"),
-        ("huge.toml", "1048577 bytes; a scene file has at most 1048576"),
+        ("none.toml", "no such file; check the path"),
+        ("folder.toml", "a directory; name one file in it"),
+        ("huge.toml", "65537 bytes; a scene file has at most 65536"),
     ):
         with pytest.raises(LightError, match=f"{re.escape(str(tmp_path / name))}: {rule}$"):
             read_scene(tmp_path / name)

@@ -16,6 +16,9 @@ SCHEMA = "shviewer-report/1"
 HEAD = ("complete", "command", "seed", "versions", "machine", "renderer", "yardstick_milliseconds", "left_out", "extra")
 """The fields of a Report in front of its lights and rows, in the order of the file."""
 
+MAX_FILE_BYTES = 2**24
+"""Thirty times as much as a whole report takes."""
+
 YARDSTICK = ("median", "low_quartile", "high_quartile")
 
 
@@ -59,7 +62,9 @@ def _line(value: object) -> str:
 def read_report(path: Path) -> Report:
     """A report.json that this program wrote. UsageError if it cannot be read, or is of another kind or schema."""
     try:
-        page = json.loads(read_bytes(path, DEFAULT_LIMITS).decode())
+        page = json.loads(
+            read_bytes(path, DEFAULT_LIMITS, MAX_FILE_BYTES, f"a report has at most {MAX_FILE_BYTES}").decode()
+        )
     except LightError as error:
         raise UsageError(f"{path}: cannot be read: {error}; name a report.json") from error
     except (ValueError, RecursionError) as error:

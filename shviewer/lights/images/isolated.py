@@ -72,18 +72,21 @@ def _decode(request: dict[str, Any], data: bytes, limits: Limits) -> Decoded:
         clock = threading.Timer(TIME_LIMIT, _stop, (child, late))
         feeder = threading.Thread(target=_feed, args=(child.stdin, request, data))
         status = None
-        clock.start()
-        feeder.start()
         try:
+            clock.start()
+            feeder.start()
             decoded = _read_answer(child.stdout, limits)
             if decoded is None:
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     status = child.wait(1.0)  # tells how it ended, if it ended by itself
+        except RuntimeError as error:  # of threads, where memory or their number is limited
+            raise LightError(f"{error}; close something, or convert it to .hdr") from None
         finally:
             clock.cancel()
             child.kill()  # a child that has answered has nothing left to do
-            clock.join()
-            feeder.join()
+            for thread in (clock, feeder):
+                if thread.ident is not None:
+                    thread.join()
             with contextlib.suppress(OSError):  # what it did not read
                 child.stdin.close()
     if decoded is None:
@@ -211,7 +214,9 @@ def _bound_resources(limits: Limits, file_bytes: int) -> None:
     except ImportError:  # Windows
         return
     threads = os.cpu_count() or 1
-    needed = limits.texels * _BYTES_PER_TEXEL + _COPIES_OF_FILE * file_bytes + _HEADROOM + threads * _PER_THREAD
+    image = limits.texels * _BYTES_PER_TEXEL + _COPIES_OF_FILE * file_bytes
+    most_memory = limits.most_memory
+    needed = (image if most_memory is None else min(image, most_memory)) + _HEADROOM + threads * _PER_THREAD
     for kind, most in (
         (resource.RLIMIT_AS, _address_space() + needed),
         (resource.RLIMIT_CPU, int(TIME_LIMIT) * threads),

@@ -42,7 +42,7 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     parts = read_headers(openexr, data)
     source, notes = find_source(parts, layer)
     part = parts[source.part]
-    _check_size(part, limits)
+    _check_size(part, limits, len(data), source)
     matrix, converted = _to_rec709(part, source)
 
     if len(parts) > 1:
@@ -62,9 +62,13 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     return Decoded(pixels, ", ".join(words), (*notes, *converted, *cut), part.layout)
 
 
-def _check_size(part: Part, limits: Limits) -> None:
+def _check_size(part: Part, limits: Limits, file_bytes: int, source: Source) -> None:
+    """LightError for a part that is too large, or would take too much memory."""
+    window, display = (frame.width * frame.height for frame in (part.window, part.display))
+    decoding = 4 * part.samples + (28 if source.luminance_chroma else 12) * window
+    decoding += (12 * display if part.window != part.display else 0) + 4 * file_bytes
     limits.check_size(part.window.width, part.window.height, "data window")
-    limits.check_size(part.display.width, part.display.height, "display window")
+    limits.check_image(part.display.width, part.display.height, decoding, "display window")
     most = _SAMPLES_PER_TEXEL * limits.texels
     if part.samples > most:
         raise LightError(f"{part.samples} values in all channels; the limit is {most}: export only R, G and B")

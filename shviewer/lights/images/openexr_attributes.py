@@ -16,7 +16,10 @@ from shviewer.errors import LightError
 _FIRST_HEADER = 8  # bytes; before it a magic number and the version field
 _SEVERAL_PARTS = 0x1000  # a flag of the version field
 _LONGEST_NAME = 255
-_MOST_ATTRIBUTES = 2**15  # of all parts; files of hundreds of passes have thousands, and the library takes its time
+_MOST_ATTRIBUTES = 2**15  # of all parts; files of hundreds of passes have thousands
+_MOST_OF_A_PART = 2**12  # the library takes a time that grows with their square: 0.1 s
+_LONGEST_CHANNELS = 2**17  # bytes of the list of channels, which is as slow: 4000 channels of 15 letters
+_LONGEST_HEADERS = 2**24  # bytes; previews of a thousand texels a side are within
 
 
 class Attribute(NamedTuple):
@@ -77,7 +80,7 @@ def _header(data: bytes, start: int, most: int) -> RawHeader:
     """The header at `start`, of at most `most` attributes."""
     attributes: dict[bytes, Attribute] = {}
     at = start
-    for _ in range(most + 1):
+    for _ in range(min(most, _MOST_OF_A_PART) + 1):
         name, at = _text(data, at)
         if not name:
             return RawHeader(start, at, attributes)
@@ -86,9 +89,14 @@ def _header(data: bytes, start: int, most: int) -> RawHeader:
         at += 4
         if at + size > len(data):
             raise broken("an attribute ends behind the end of the file")
+        if at + size > _LONGEST_HEADERS or (kind == b"chlist" and size > _LONGEST_CHANNELS):
+            what = "channels" if kind == b"chlist" else "metadata"
+            raise LightError(f"headers with {size} bytes of {what} at byte {at}; export it with less of them")
         attributes[name] = Attribute(kind, data[at : at + size])  # the last counts, for the library's windows too
         at += size
-    raise LightError(f"more than {_MOST_ATTRIBUTES} attributes in its headers; export it without metadata")
+    raise LightError(
+        f"more than {_MOST_OF_A_PART} attributes in a header, or {_MOST_ATTRIBUTES} in all; export it without metadata"
+    )
 
 
 def _text(data: bytes, at: int) -> tuple[bytes, int]:

@@ -208,7 +208,8 @@ def _read_header(data: bytes, limits: Limits) -> _Header:
         line, position = _next_line(data, position)
     scanlines, length = int(size[3]), int(size[6])
     columns = size[2] == b"X"
-    limits.check_size(*((scanlines, length) if columns else (length, scanlines)))
+    decoding = 12 * scanlines * length + 3 * len(data)
+    limits.check_image(*((scanlines, length) if columns else (length, scanlines)), decoding)
     reversal = {b"Y": b"+", b"X": b"-"}  # +Y counts upwards, and rows are stored here from the top
     return _Header(
         first_texel=position,

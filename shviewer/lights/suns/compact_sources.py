@@ -115,7 +115,7 @@ class CompactSources:
     """An image while its compact sources are being taken out; `pixels` (height, width, 3) are what is left."""
 
     def __init__(self, pixels: NDArray[np.float32], layout: Layout) -> None:
-        self.pixels = pixels.copy()
+        self.pixels = self._given = pixels
         self._layout = layout
         self._solid_angles = layout.solid_angles().astype(np.float32)
         self._mean: NDArray[np.float32] = self.pixels @ np.full(3, 1 / 3, dtype=np.float32)
@@ -215,6 +215,8 @@ class CompactSources:
 
     def _remove(self, excess: _Excess) -> None:
         rows, columns = excess.texels.rows, excess.texels.columns
+        if self.pixels is self._given:
+            self.pixels = self._given.copy()
         self.pixels[rows, columns] = excess.after
         self._mean[rows, columns] = excess.after.mean(axis=1)
 

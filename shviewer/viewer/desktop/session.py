@@ -13,8 +13,9 @@ from dataclasses import replace
 from threading import Event
 from time import perf_counter
 
+from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import keep_light, read_again, version_read
-from shviewer.errors import ShviewerError
+from shviewer.errors import ShviewerError, within_memory
 from shviewer.files import file_stem
 from shviewer.lights.find import is_code
 from shviewer.lights.light import Light
@@ -66,7 +67,8 @@ class Session:
         wake: called from another thread when a task has ended.
         """
         first = first or prepare(state)
-        isolated = replace(state.recipe.reading, isolated=True)
+        reading = state.recipe.reading  # from now on no pipe is waited for: it was read where the command line named it
+        isolated = replace(reading, isolated=True, limits=replace(reading.limits, pipe_seconds=0))
         self.state = changed(state, reading=isolated, message=state.view.message or notes_of(first.light))
         self.picture: Picture = replace(first, state=self.state)
         self.by_map = False
@@ -191,7 +193,8 @@ class Session:
             return False
         task, self._task, self._reading = self._task, None, None
         try:
-            picture, made_by_map = task.result()
+            with within_memory(light_name(state.recipe.light)):
+                picture, made_by_map = task.result()
         except ShviewerError as error:
             self.keep(error)
             return True

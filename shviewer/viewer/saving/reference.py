@@ -35,13 +35,12 @@ def compare_with_reference(pixels: NDArray[np.uint8], reference: Path, differenc
         data = io.BytesIO(read_bytes(reference, DEFAULT_LIMITS))
         formats = FORMATS.get(reference.suffix.lower(), ("PNG",))
         with warnings.catch_warnings(action="error"), Image.open(data, formats=formats) as image:
+            height, width = pixels.shape[:2]
+            if image.size != (width, height):  # looked at before the other one is decoded, however large it is
+                return f"{reference} is {image.width} x {image.height}, the picture {width} x {height}"
             wanted = np.asarray(image.convert("RGB"))
     except Exception as error:  # Pillow raises what it likes: OSError, SyntaxError, struct.error, ...
         raise UsageError(f"{reference}: not a readable picture; {remedy}") from error
-    if wanted.shape != pixels.shape:
-        return (
-            f"{reference} is {wanted.shape[1]} x {wanted.shape[0]}, the picture {pixels.shape[1]} x {pixels.shape[0]}"
-        )
     distance = np.abs(wanted.astype(np.int16) - pixels)
     share = float((distance.max(axis=2) > PIXEL_STEP).mean())
     if share <= threshold:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from dataclasses import asdict, astuple, fields
+from dataclasses import asdict, fields
 from typing import Any
 
 from shviewer.analysis.options import Flag, Kind, Number, Whole, options_of, whole
@@ -46,6 +46,9 @@ BESIDE: dict[str, Kind] = {
     "sweep_to": Whole(1, MAX_BANDS, "a sweep to {} bands", f"the viewer shows 1 to {MAX_BANDS}"),
 }
 """Fields of the view that are no options, and their kinds."""
+
+LIMITS = ("side", "texels", "file_bytes")
+"""The limits that a stamp tells: that of memory is for the machine to say."""
 
 BEFORE_SCHEMAS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "bands": ("n_bands", int),
@@ -207,7 +210,7 @@ def _recorded(state: State) -> dict[str, Any]:
             "sanitize": reading.sanitize,
             "layout": reading.layout,
             "convention": reading.convention,
-            "limits": asdict(reading.limits),
+            "limits": {name: getattr(reading.limits, name) for name in LIMITS},
         },
     }
     return {"recipe": recipe, "view": view}
@@ -230,8 +233,12 @@ def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _told_reading(said: dict[str, Any]) -> Reading:
-    limits = Limits(**{name: whole(value, name) for name, value in said["limits"].items()})
-    if said["layout"] not in LAYOUT_CHOICES or not isinstance(said["convention"], str) or min(astuple(limits)) < 1:
+    limits = Limits(**{name: whole(said["limits"][name], name) for name in LIMITS})
+    if (
+        said["layout"] not in LAYOUT_CHOICES
+        or not isinstance(said["convention"], str)
+        or min(getattr(limits, name) for name in LIMITS) < 1
+    ):
         raise ValueError("a reading that there is not")
     return Reading(Flag().taken("sanitize", said["sanitize"]), said["layout"], limits, said["convention"])
 

@@ -179,7 +179,7 @@ def refused_within_five_seconds(path):
 
     def attempt():
         with pytest.raises(LightError) as info:
-            read_radiance_image(path)
+            read_radiance_image(path, Reading(limits=Limits(pipe_seconds=0)))
         caught.append(info.value)
 
     thread = threading.Thread(target=attempt, daemon=True)

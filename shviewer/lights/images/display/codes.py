@@ -115,7 +115,7 @@ def decode(
         with warnings.catch_warnings(action="ignore"):
             image = image_class(io.BytesIO(data))
             width, height = image.size
-            limits.check_size(width, height)
+            limits.check_image(width, height, 28 * width * height + 2 * len(data))
             if most_texels is not None and width * height > most_texels:
                 raise damaged(f"{len(data)} bytes cannot hold {width} x {height} texels")
             return _read_codes(image, lambda: image_class(io.BytesIO(data)))

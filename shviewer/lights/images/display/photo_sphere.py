@@ -48,7 +48,7 @@ def place(
     height, width = pixels.shape[:2]
     if (full_width, full_height) == (width, height):
         return pixels, "lat-long", _pose(gpano)
-    limits.check_size(full_width, full_height, "photo sphere")
+    limits.check_image(full_width, full_height, 12 * (full_width * full_height + pixels.size // 3), "photo sphere")
     sphere = np.zeros((full_height, full_width, 3), np.float32)
     sphere[top : top + height, left : left + width] = pixels
     note = (

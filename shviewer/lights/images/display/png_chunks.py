@@ -64,7 +64,7 @@ def check_texels(header: bytes, compressed: list[memoryview], limits: Limits) ->
     if len(header) != 13 or header[9] not in _SAMPLES:
         raise damaged("its IHDR chunk is not that of an image")
     width, height, bits, colour_type, _, _, interlaced = struct.unpack(">IIBBBBB", header)
-    limits.check_size(width, height)
+    limits.check_image(width, height, 28 * width * height + 4 * sum(map(len, compressed)))  # 16 bit RGBA: 28
     passes = _ADAM7 if interlaced else ((0, 0, 1, 1),)
     sizes = [(-(-(height - top) // down), -(-(width - left) // right)) for top, left, down, right in passes]
     missing = sum(

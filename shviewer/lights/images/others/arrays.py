@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import warnings
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,8 @@ from shviewer.limits import DEFAULT_LIMITS, Limits
 
 def holds_image(path: Path, limits: Limits = DEFAULT_LIMITS) -> bool:
     """Whether the array in a file has the three dimensions of an image. What cannot be read is none."""
-    with suppress(LightError):
-        return len(_header(read_bytes(path, limits))[0]) == 3
+    with suppress(LightError):  # a pipe, which can be read once, has no image
+        return len(_header(read_bytes(path, replace(limits, pipe_seconds=0)))[0]) == 3
     return False
 
 
@@ -27,7 +28,7 @@ def decode_array(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     shape, dtype = _header(data)
     if len(shape) != 3 or shape[2] != 3:
         raise LightError(f"an array of shape {shape}; an image is (height, width, 3)")
-    limits.check_size(shape[1], shape[0])
+    limits.check_image(shape[1], shape[0], (12 + 6 * dtype.itemsize) * shape[0] * shape[1])
     if dtype.kind != "f":
         raise LightError(f"an image of type {dtype}; radiance is linear and floating-point: linearise and convert it")
     with decoding("NPY"), warnings.catch_warnings(action="ignore"):

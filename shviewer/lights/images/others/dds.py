@@ -39,7 +39,7 @@ def decode_float_dds(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded | 
         raise LightError("a volume, or several textures; one image or one cube is read: export that alone")
     if faces == 6 and caps & _CUBE and (caps & _ALL_FACES) != _ALL_FACES:
         raise LightError("a cube of which faces are missing; export all six")
-    limits.check_size(faces * width, height)
+    limits.check_image(faces * width, height, 12 * faces * width * height)
     if faces == 6 and width != height:
         raise LightError(f"a cube with faces of {width} x {height} texels; they are square: export it again")
     if found is None:

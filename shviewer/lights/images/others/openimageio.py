@@ -100,7 +100,8 @@ def _read(library: Any, file: Any, limits: Limits, kind: str) -> Decoded:
 
 def _check(spec: Any, limits: Limits) -> None:
     limits.check_size(spec.width, spec.height)
-    limits.check_size(spec.full_width, spec.full_height, "full image")
+    decoding = (12 + 12 * spec.nchannels) * spec.width * spec.height + 12 * spec.full_width * spec.full_height
+    limits.check_image(spec.full_width, spec.full_height, decoding, "full image")
     names = tuple(spec.channelnames)
     known = spec.nchannels in (1, 2) or (spec.nchannels in (3, 4) and names[:3] == ("R", "G", "B"))
     if spec.depth != 1 or spec.deep or not known:

@@ -32,7 +32,7 @@ def decode_pfm(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
             "a PFM begins with PF or Pf, its width, height and scale; this header does not: export it again"
         )
     width, height, channels = int(header[2]), int(header[3]), 3 if header[1] == b"F" else 1
-    limits.check_size(width, height)
+    limits.check_image(width, height, 12 * width * height)
     count = width * height * channels
     if len(data) - header.end() < 4 * count:
         raise LightError(f"cut short: {len(data) - header.end()} bytes of {4 * count}; fetch or export it again")
