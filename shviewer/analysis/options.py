@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from operator import index
 from typing import Any, NamedTuple, Protocol, TypeVar
 
@@ -65,8 +65,7 @@ def check_options(held: object) -> None:
         row.kind.check(name, getattr(held, name))
 
 
-@dataclass(frozen=True)
-class Choice:
+class Choice(NamedTuple):
     """One of a few words."""
 
     choices: tuple[str, ...]
@@ -84,8 +83,7 @@ class Choice:
             )
 
 
-@dataclass(frozen=True)
-class Whole:
+class Whole(NamedTuple):
     """A whole number within bounds; in messages `says` puts the number into words, `rule` the bounds."""
 
     least: int
@@ -101,8 +99,7 @@ class Whole:
             raise UsageError(f"{self.says.format(value)}: {self.rule}")
 
 
-@dataclass(frozen=True)
-class Number:
+class Number(NamedTuple):
     """A finite number within bounds. closed: the bounds are allowed, too. optional: so is None."""
 
     least: float
@@ -128,12 +125,10 @@ class Number:
             raise UsageError(f"{self.called or _said(name)} {value:g}: {self.rule}")
 
 
-@dataclass(frozen=True)
 class Share(Number):
     """A number that may be given in percent."""
 
 
-@dataclass(frozen=True)
 class Flag:
     """True or False."""
 
@@ -146,8 +141,7 @@ class Flag:
         """Accept both values."""
 
 
-@dataclass(frozen=True)
-class Bands:
+class Bands(NamedTuple):
     """Several bands, each counted from 0."""
 
     most: int
@@ -163,8 +157,7 @@ class Bands:
                 raise UsageError(f"{name} band {band}: bands are counted from 0 to {self.most - 1}")
 
 
-@dataclass(frozen=True)
-class Pair:
+class Pair(NamedTuple):
     """Two numbers, whole ones if `whole`; `what` names them in messages, with an example."""
 
     what: str

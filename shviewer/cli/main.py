@@ -6,7 +6,6 @@ that wait for each other on a busy machine take ten times as long.
 
 from __future__ import annotations
 
-import difflib
 import errno
 import os
 import sys
@@ -86,7 +85,9 @@ def _meant(arguments: list[str]) -> list[str]:
     first = arguments[0] if arguments else ""
     if first == "help":
         return ["--help", *arguments[1:]]
-    near = difflib.get_close_matches(first, MODES, n=1, cutoff=0.75)
-    if near and first not in MODES and not Path(first).exists():
-        raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {near[0]}?")
+    if first and not first.startswith("-") and first not in MODES and not Path(first).exists():
+        import difflib
+
+        if near := difflib.get_close_matches(first, MODES, n=1, cutoff=0.75):
+            raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {near[0]}?")
     return arguments
