@@ -134,6 +134,8 @@ def _exr_seeds() -> dict[str, bytes]:
         "cube.exr": exr_file({"RGB": _picture(24, 4, np.float16)}, envmap=OpenEXR.ENVMAP_CUBE),
         "lat-long.exr": exr_file({"RGB": half}, envmap=OpenEXR.ENVMAP_LATLONG),
         "angular.exr": exr_file({"RGB": _picture(10, 10, np.float16)}),
+        "words.exr": exr_file({f"[{name}]": half[..., i].copy() for i, name in enumerate(("red", "green", "blue"))}),
+        "latin-1.exr": exr_file({".R": luminance}, owner="QQ M", comments="QQ").replace(b"QQ", b"\xff\xfc"),
         "cross.exr": exr_file({"RGB": _picture(16, 12, np.float16)}),
     }
 

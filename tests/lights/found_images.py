@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from lights.images.hdr_files import exr_file
 from lights.images.ldr_files import (
     LINEAR_CURVE,
     P3_COLUMNS,
@@ -42,7 +43,7 @@ class Found(NamedTuple):
 
 
 def found_images() -> tuple[Found, ...]:
-    return (*_hdr(), *_jpeg(), *_profiles(), *_others())
+    return (*_hdr(), *_exr(), *_jpeg(), *_profiles(), *_others())
 
 
 def table() -> str:
@@ -65,7 +66,7 @@ def _hdr() -> tuple[Found, ...]:
         Found("FreeImage up to 3.17", "`.hdr` with `EXPOSURE=0`", "the line is ignored, with a note",
               "a.hdr", set_to(b"EXPOSURE=0"), base, "'EXPOSURE=0' ignored"),
         Found("programs in a language with decimal commas", "`.hdr` with `EXPOSURE=2,000000`", "a decimal comma",
-              "a.hdr", set_to(b"EXPOSURE=2,000000"), (0.5, 0.25, 0.125), "EXPOSURE 2 divided out"),
+              "a.hdr", set_to(b"EXPOSURE=2,000000"), (0.5, 0.25, 0.125), "decimal comma"),
         Found("Radiance and its libraries", "`.hdr` with Radiance's own `PRIMARIES`",
               "the light of a file that states none: taken for Rec. 709", "a.hdr", set_to(own), base, "Radiance's own"),
         Found("Photoshop", "`.hdr` with the magic twice and `PRIMARIES=0 0 0 0 0 0 0 0`",
@@ -74,6 +75,31 @@ def _hdr() -> tuple[Found, ...]:
                    b"FORMAT=32-bit_rle_rgbe\n#?RADIANCE\n\n"), base, "as Photoshop writes them"),
         Found("writers of their own", "`.hdr` without the empty line, with two, with CR, with a byte order mark",
               "as if it had one", "a.hdr", file(b"\xef\xbb\xbf#?RGBE\r\nFORMAT=32-bit_rle_rgbe\r\n"), base),
+    )  # fmt: skip
+
+
+def _exr() -> tuple[Found, ...]:
+    plane = np.full((8, 16), 0.5, np.float32)
+
+    def named(*names: str, **header: object) -> Callable[[], bytes]:
+        return lambda: exr_file({name: plane * 2.0**-i for i, name in enumerate(names)}, **header)
+
+    def latin1() -> bytes:
+        data: bytes = named("R", "G", "B", owner="QQ M")()
+        return data.replace(b"QQ M", b"\xa9 M\xfc")
+
+    colours, grey = (0.5, 0.25, 0.125), (0.5, 0.5, 0.5)
+    return (
+        Found("renderers and compositors", "`.exr` with channels `r g b`, `red green blue`, `[red]`, `rgba.red`",
+              "red, green and blue, with a note", "a.exr", named("red", "green", "blue"), colours, "taken for red"),
+        Found("programs with a layer of no name", "`.exr` with channels `.R .G .B`", "red, green and blue",
+              "a.exr", named(".R", ".G", ".B"), colours),
+        Found("masks and single passes", "`.exr` with one channel: `L`, `gray`, `luminance`, `R`",
+              "grey, with a note", "a.exr", named("L"), grey, "channel L taken for grey"),
+        Found("geometry passes", "`.exr` with `X Y Z`, `Z` or `u v` alone", "refused: no light",
+              "a.exr", named("X", "Y", "Z"), None, "no R, G and B among its channels"),
+        Found("older Windows programs", "`.exr` with strings in Latin-1", "its texels; layers can be named as they are shown",
+              "a.exr", latin1, colours),
     )  # fmt: skip
 
 

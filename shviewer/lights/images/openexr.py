@@ -19,6 +19,7 @@ from shviewer.lights.images.openexr_headers import Part, Window, read_headers
 from shviewer.lights.images.openexr_layers import Source, find_source
 from shviewer.lights.images.openexr_library import damaged, import_openexr, open_openexr
 from shviewer.lights.images.openexr_parts import part_alone
+from shviewer.lights.images.openexr_strings import with_readable_strings
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
 _SAMPLES_PER_TEXEL = 4  # of all channels together, times the limit of texels: RGBA of the largest image
@@ -39,6 +40,7 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     channels are the radiance. Raises MemoryError.
     """
     openexr = import_openexr()
+    data = with_readable_strings(data)
     parts = read_headers(openexr, data)
     source, notes = find_source(parts, layer)
     part = parts[source.part]

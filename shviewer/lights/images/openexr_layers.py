@@ -2,6 +2,9 @@
 
 A channel "diffuse.R" is R of the layer "diffuse"; layers nest ("key.diffuse.R"). In a file of several parts each part has
 a name too, and a layer is named "part:layer", or "part" for the channels of that part that are in no layer.
+
+Programs call channels other names as well: r, Red, [red], a layer without a name (".R"), one channel alone. Those are read,
+with a note, where nothing has the names of the format.
 """
 
 from __future__ import annotations
@@ -12,6 +15,9 @@ from shviewer.errors import LightError
 from shviewer.lights.images.openexr_headers import Part
 
 _RGB, _LUMINANCE_CHROMA, _LUMINANCE = ("R", "G", "B"), ("Y", "RY", "BY"), ("Y",)
+_COLOURS = {"r": "R", "red": "R", "g": "G", "green": "G", "b": "B", "blue": "B"}
+_GREYS = {"y", "l", "gray", "grey", "luminance", "luma", "intensity", *_COLOURS}  # if there is no other channel
+_ALPHA = {"a", "alpha"}
 _SHOWN = 12  # names in an error
 
 
@@ -22,12 +28,11 @@ class Source(NamedTuple):
     layer: str
     """"" for channels without a layer."""
     kind: tuple[str, ...]
-    """The names of the channels within the layer: R, G, B; Y, RY, BY; or Y alone."""
-
-    @property
-    def channels(self) -> tuple[str, ...]:
-        """Their names in the file."""
-        return tuple(f"{self.layer}.{name}" if self.layer else name for name in self.kind)
+    """What the channels are: R, G, B; Y, RY, BY; or Y alone."""
+    channels: tuple[str, ...]
+    """Their names in the file."""
+    usual: bool = True
+    """Whether they have the names of the format."""
 
     @property
     def grey(self) -> bool:
@@ -68,36 +73,64 @@ def find_source(parts: tuple[Part, ...], layer: str = "") -> tuple[Source, tuple
     if source.layer and not layer:
         what = "luminance" if source.grey else "colours"
         notes = (f"layer {_plain(_label(source, parts))} read, the only one with {what}",)
+    if not source.usual:
+        taken = "channel {} taken for grey" if source.grey else "channels {} taken for red, green and blue"
+        notes += (taken.format(_listed(list(source.channels))),)
     return source, notes
 
 
 def _sources(i: int, part: Part) -> list[Source]:
     """A source for each layer of a part that has colours or a luminance."""
-    layers: dict[str, set[str]] = {}
+    layers: dict[str, dict[str, str]] = {}
     for channel in part.channels:
-        layer, _, name = channel.name.rpartition(".")
-        layers.setdefault(layer, set()).add(name)
-    sources = []
-    for layer, names in layers.items():
-        for kind in (_RGB, _LUMINANCE_CHROMA, _LUMINANCE):
-            if names.issuperset(kind) and not (kind == _LUMINANCE and "X" in names):  # X, Y, Z: a vector
-                sources.append(Source(i, layer, kind))
-                break
-    return sources
+        layer, name = _layer_and_name(channel.name)
+        names = layers.setdefault(layer, {})
+        if name not in names or name == channel.name:  # "R" comes before ".R"
+            names[name] = channel.name
+    found = (_source(i, layer, names) for layer, names in layers.items())
+    return [source for source in found if source]
+
+
+def _layer_and_name(channel: str) -> tuple[str, str]:
+    """ "key.diffuse.R" -> "key.diffuse", "R"; "diffuse[red]" -> "diffuse", "red"; ".R" -> "", "R"."""
+    if channel.endswith("]") and "[" in channel:
+        layer, _, name = channel[:-1].rpartition("[")
+        return layer.removesuffix("."), name
+    layer, _, name = channel.rpartition(".")
+    return layer, name
+
+
+def _source(i: int, layer: str, names: dict[str, str]) -> Source | None:
+    """The source in a layer; names: of each channel within the layer, and in the file."""
+    for kind in (_RGB, _LUMINANCE_CHROMA, _LUMINANCE):
+        if names.keys() >= set(kind) and not (kind == _LUMINANCE and "X" in names):  # X, Y, Z: a vector
+            return Source(i, layer, kind, tuple(names[name] for name in kind))
+    colours = {_COLOURS[name.lower()]: channel for name, channel in names.items() if name.lower() in _COLOURS}
+    if colours.keys() == set(_RGB):
+        return Source(i, layer, _RGB, tuple(colours[name] for name in _RGB), usual=False)
+    others = [name for name in names if name.lower() not in _ALPHA]
+    if len(others) == 1 and others[0].lower() in _GREYS:
+        return Source(i, layer, _LUMINANCE, (names[others[0]],), usual=False)
+    return None
 
 
 def _unnamed(sources: list[Source]) -> list[Source]:
-    """The best sources if no layer is named: colours before grey, then channels without a layer before layers."""
-    ranked = [(source.grey, source.layer != "") for source in sources]
+    """The best sources if no layer is named: usual names, then colours before grey, then no layer before layers."""
+    ranked = [(not source.usual, source.grey, source.layer != "") for source in sources]
     return [source for source, rank in zip(sources, ranked, strict=True) if rank == min(ranked)]
 
 
 def _named(sources: list[Source], parts: tuple[Part, ...], layer: str) -> list[Source]:
     """The sources with this full name; else with this name of the layer; else with this name of the part."""
-    by_label = [source for source in sources if _label(source, parts) == layer]
-    by_layer = [source for source in sources if source.layer == layer]
-    by_part = [source for source in sources if len(parts) > 1 and parts[source.part].name == layer]
+    by_label = [source for source in sources if layer in _spellings(_label(source, parts))]
+    by_layer = [source for source in sources if layer in _spellings(source.layer)]
+    by_part = [source for source in sources if len(parts) > 1 and layer in _spellings(parts[source.part].name)]
     return by_label or by_layer or by_part
+
+
+def _spellings(name: str) -> tuple[str, str]:
+    """A name as it is, and as it is shown, if the one cannot be typed."""
+    return name, _plain(name)
 
 
 def _label(source: Source, parts: tuple[Part, ...]) -> str:
@@ -141,4 +174,4 @@ def _listed(names: list[str]) -> str:
 
 def _plain(name: str) -> str:
     """A name as one line of bounded length, whatever the file holds."""
-    return ascii(name[:60])[1:-1]
+    return name[:60] if name[:60].isprintable() else ascii(name[:60])[1:-1]

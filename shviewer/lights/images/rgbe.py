@@ -67,7 +67,7 @@ class _Settings:
         self.exposure = np.ones(1)  # stored = radiance * exposure * colour_correction
         self.colour_correction = np.ones(3)
         self.primaries: NDArray[np.float64] | None = None  # (4, 2), stated and sensible; the last ones count [X]
-        self.ignored: list[str] = []
+        self.said: list[str] = []
 
     def read(self, line: bytes) -> None:
         """Read one header line. A setting counts only at the start of its line: indented ones are history."""
@@ -75,7 +75,7 @@ class _Settings:
         match key.rstrip():
             case b"FORMAT":
                 if not value.strip():
-                    self.ignored.append(f"{_shown(line)} ignored: RGBE assumed")
+                    self.said.append(f"{_shown(line)} ignored: RGBE assumed")
                 elif value.strip().lower() not in _FORMATS:
                     raise LightError(
                         f"{_shown(line)}: only 32-bit_rle_rgbe and 32-bit_rle_xyze are read; convert it, e.g. with"
@@ -92,38 +92,38 @@ class _Settings:
             case b"GAMMA":
                 numbers = _numbers(line, 1)
                 if len(numbers) != 1 or numbers[0] != 1.0:
-                    self.ignored.append(f"{_shown(line)} ignored: the texels are linear by definition")
+                    self.said.append(f"{_shown(line)} ignored: the texels are linear by definition")
 
     def _times(self, line: bytes, product: NDArray[np.float64], count: int) -> NDArray[np.float64]:
         """The product with the numbers of a line; without them, and with a note, if nothing can be divided by it."""
         numbers = _numbers(line, count)
         if len(numbers) == count and _can_divide(numbers):
             if _can_divide(product * numbers):
+                if b"," in line:
+                    self.said.append(f"{_shown(line)} read with a decimal comma")
                 return product * numbers
-            self.ignored.append(f"{_shown(line)} ignored: with the lines before it, it leaves the range of numbers")
+            self.said.append(f"{_shown(line)} ignored: with the lines before it, it leaves the range of numbers")
         else:
             number = "one finite number" if count == 1 else f"{count} finite numbers"
-            self.ignored.append(f"{_shown(line)} ignored: it is not {number} above 0")
+            self.said.append(f"{_shown(line)} ignored: it is not {number} above 0")
         return product
 
     def _read_primaries(self, line: bytes) -> None:
         numbers = _numbers(line, 8)
         if len(numbers) != 8:
-            self.ignored.append(f"{_shown(line)} ignored: it is not eight numbers")
+            self.said.append(f"{_shown(line)} ignored: it is not eight numbers")
         elif not np.any(numbers):
-            self.ignored.append("PRIMARIES ignored: all are 0, as Photoshop writes them")
+            self.said.append("PRIMARIES ignored: all are 0, as Photoshop writes them")
         else:
             try:
                 rec709_from(numbers.reshape(4, 2))
             except LightError as error:
-                self.ignored.append(f"PRIMARIES ignored: {str(error).rpartition(';')[0]}")
+                self.said.append(f"PRIMARIES ignored: {str(error).rpartition(';')[0]}")
             else:
                 own = are_same(numbers.reshape(4, 2), _RADIANCE)
                 self.primaries = None if own else numbers.reshape(4, 2)
                 if own:
-                    self.ignored.append(
-                        "PRIMARIES are Radiance's own: taken for Rec. 709, as in a file that states none"
-                    )
+                    self.said.append("PRIMARIES are Radiance's own: taken for Rec. 709, as in a file that states none")
 
     def rec709_from_stored(self) -> NDArray[np.float64] | None:
         """The matrix (3, 3) from stored values to linear Rec. 709; None for the identity."""
@@ -147,7 +147,7 @@ class _Settings:
             notes.append(f"XYZE converted to {target}, 179 lm/W")
         elif self.primaries is not None and not are_same(self.primaries, REC709):
             notes.append("PRIMARIES {} converted to Rec. 709".format(" ".join(f"{x:g}" for x in self.primaries.flat)))
-        return (*notes, *self.ignored)
+        return (*notes, *self.said)
 
 
 @np.errstate(

@@ -442,7 +442,7 @@ GREEN_IS_DARK = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1 / 3, 1 / 3)
         (bare_exr((0, 0, 59999, 59999), (0, 0, 7, 3)), "data window of 60000 x 60000"),
         (bare_exr((0, 0, 7, 3), (0, 0, 32768, 3)), "display window of 32769 x 4"),
         (bare_exr((0, 0, 32767, 4095), channels=[(name, 1) for name in "ABGRZ"]), "values in all channels"),
-        (exr_file({"RGB": halves()}).replace(b"B\0", b"\xff\0", 1), "header unreadable"),
+        (exr_file({"RGB": halves()}).replace(b"B\0", b"\xff\0", 1), "no R, G and B among its channels G, R, ÿ"),
         (exr_parts(exr_part("a", {"Z": PLANE}), exr_part("b", {"RGB": halves()}))[:-10], "chunks end behind the end"),
         (bare_exr((0, 0, -1, -1)), "dataWindow from (0, 0) to (-1, -1) ends before it begins;"),
         (bare_exr((-(2**31), 0, 2**31 - 1, 3)), "damaged"),

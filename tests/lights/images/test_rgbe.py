@@ -400,6 +400,7 @@ def test_a_comma_is_a_decimal_comma_where_one_number_is_due(read, line):
     image = read(hdr_file(TEXELS, settings=(FORMAT, line)))
     np.testing.assert_allclose(image.pixels, radiance_of(TEXELS) / 2.5, rtol=ONE_ROUNDING, atol=0)
     assert image.notes[0].endswith("divided out")
+    assert any("read with a decimal comma" in note for note in image.notes) == (b"," in line)
 
 
 # Sizes, behind the settings: as the format has them, and as programs write them.
