@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
@@ -15,34 +15,27 @@ from numpy.typing import ArrayLike
 
 from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
-from shviewer.harmonics.basis import Array
-from shviewer.harmonics.metrics import errors_by_band_count
-from shviewer.harmonics.projection import project_product
-from shviewer.harmonics.quadrature import gauss_legendre
+from shviewer.harmonics.basis import Array, check_bands
+from shviewer.harmonics.sampling.sampled import Sampled, sample
 from shviewer.lights.irradiance import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.limits import DEFAULT_LIMITS, Limits, check_brightness
+from shviewer.words import grouped, theta_phi_degrees
 
 MAX_CODE_BYTES = 2**22
 
 SAMPLED_BANDS = 128
-"""The bands that decide how many points the quadrature needs; more are projected on request."""
+"""The most bands there are of a function."""
 
-FIRST_ROWS, LAST_ROWS = 160, 640
-"""Gauss-Legendre rows to begin with (exact for products of two functions of 160 bands) and to stop at."""
+UNCERTAIN = 5e-4
+"""An uncertainty of the figures above this is said in a note."""
 
-MOVEMENT = 5e-4
-"""The rows are doubled until the relative L2 error moves by no more than this with any number of bands."""
+NEWS = 1.5
+"""A radiance that is this many times the largest one that the coefficients are made of is news."""
 
-
-@dataclass(frozen=True, eq=False)
-class _Sampling:
-    """Results of a Gauss-Legendre rule of `rows` rows; `movement`: how far the errors moved at the last doubling."""
-
-    rows: int
-    coefficients: Array
-    products: Array
-    movement: float
+MOST_LANDMARKS = 8
+NEAR = np.cos(np.radians(6))
+"""Within so much of a place that was refined nothing is news."""
 
 
 DirectionFunction = Callable[[Array], ArrayLike]
@@ -58,6 +51,8 @@ class FunctionLight(RadianceLight):
 
     function: DirectionFunction
     name: str = "function"
+    _news: list[tuple[float, tuple[float, ...]]] = field(default_factory=list, init=False, repr=False)
+    """The largest radiance that was met after the function had been sampled, and is not in the samples, and its direction."""
 
     lobes = ()
 
@@ -67,15 +62,26 @@ class FunctionLight(RadianceLight):
 
     @property
     def best_method(self) -> str:
-        points = f"{2 * self._sampling.rows**2:,}".replace(",", " ")
-        return f"Gauss-Legendre, {points} points"
+        sampled = self._sampled
+        rule = "cells divided" if sampled.rows is None else f"Gauss-Legendre, {grouped(2 * sampled.rows**2)} points"
+        return f"{rule}; {self._missed}"
+
+    @property
+    def _missed(self) -> str:
+        return f"features narrower than {self._sampled.seen_degrees:.2g} degrees may be missed"
 
     @property
     def notes(self) -> tuple[str, ...]:
-        sampling = self._sampling
-        if sampling.movement <= MOVEMENT:
-            return ()
-        return (f"not smooth: {2 * sampling.rows**2} points leave the figures uncertain by {sampling.movement:.2%}",)
+        sampled, notes = self._sampled, list[str]()
+        if sampled.accuracy > UNCERTAIN:
+            points = f"{sampled.evaluations} points leave the figures uncertain by {sampled.accuracy:.2%}"
+            notes.append(f"not smooth: {points}; {self._missed}")
+        if self._news:
+            radiance, direction = max(self._news)
+            theta, phi = theta_phi_degrees(np.array(direction))
+            where = f"theta {theta:.2f}, phi {phi:z.2f} degrees"
+            notes.append(f"radiance {radiance:.3g} at {where} is not in the coefficients: {self._missed}")
+        return tuple(notes)
 
     def radiance(self, directions: Array) -> Array:
         try:
@@ -95,46 +101,52 @@ class FunctionLight(RadianceLight):
                 f"{self.name}: for directions of shape {directions.shape} the function returned shape {values.shape}; "
                 f"it must be {(len(directions), 3)} or {(len(directions),)}"
             )
-        if not np.isfinite(values).all():
+        least, most = (float(values.min()), float(values.max())) if len(values) else (0.0, 0.0)
+        if not (np.isfinite(least) and np.isfinite(most)):
             bad = int(np.argmin(np.isfinite(values).all(axis=1)))
             raise LightError(
                 f"{self.name}: the function returned {values[bad].tolist()} for direction {directions[bad].tolist()}; "
                 "radiance must be finite"
             )
-        check_brightness(float(np.abs(values).max(initial=0.0)), self.name)
+        check_brightness(max(-least, most), self.name)
+        known: Sampled | None = vars(self).get("_sampled")
+        if known is not None and max(-least, most) > NEWS * known.peak:
+            self._note_news(directions, values, known)
         return values
 
+    def _note_news(self, directions: Array, values: Array, known: Sampled) -> None:
+        size = np.abs(values).max(axis=1)
+        news = np.flatnonzero(size > NEWS * known.peak)
+        if len(known.places):
+            news = news[(directions[news] @ known.places.T).max(axis=1) < NEAR]
+        if len(news):
+            best = news[size[news].argmax()]
+            self._news[:] = [max([*self._news, (float(size[best]), tuple(directions[best].tolist()))])]
+
     def coefficients(self, n_bands: int) -> Array:
-        sampling = self._sampling
-        if n_bands <= SAMPLED_BANDS:
-            return sampling.coefficients[: n_bands**2]
-        return project_product(self.radiance, gauss_legendre(2 * max(sampling.rows, n_bands + 1) ** 2), n_bands)[0]
+        check_bands(n_bands, SAMPLED_BANDS)
+        return self._sampled.coefficients[: n_bands**2]
 
     @property
     def kept_bands(self) -> int:
         return SAMPLED_BANDS if "_sampling" in vars(self) else 0
 
     def products(self) -> Array:
-        return self._sampling.products
+        return self._sampled.products
 
     def accuracy(self) -> float:
-        return self._sampling.movement
+        return max(self._sampled.accuracy, 1.0) if self._news else self._sampled.accuracy
 
-    @cached_property
-    def _sampling(self) -> _Sampling:
-        """Sample with as many points as the function's sharpness needs, up to a limit."""
-        rows, last = FIRST_ROWS, None
-        while True:
-            coefficients, products = project_product(self.radiance, gauss_legendre(2 * rows**2), SAMPLED_BANDS)
-            errors = errors_by_band_count(products, coefficients, coefficients)
-            movement = float("inf") if last is None else float(np.abs(errors - last).max())
-            if movement <= MOVEMENT or 2 * rows > LAST_ROWS:
-                return _Sampling(rows, coefficients, products, movement)
-            rows, last = 2 * rows, errors
+    def landmarks(self) -> Array:
+        return self._sampled.places[:MOST_LANDMARKS]
 
     @cached_property
     def map(self) -> LatLongMap:
-        return LatLongMap.pole_to_pole(self.rows)
+        return LatLongMap(self._sampled.texels, rows_on_poles=True)
+
+    @cached_property
+    def _sampled(self) -> Sampled:
+        return sample(self.radiance, SAMPLED_BANDS)
 
 
 def load_function(path: Path, function: str, limits: Limits = DEFAULT_LIMITS) -> FunctionLight:

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import angles_from_directions
+from shviewer.harmonics.sampling.look import LOOK_ROWS
 
-MAP_ROWS = 513
+MAP_ROWS = LOOK_ROWS
 """Rows of the map of a function, from pole to pole."""
 
 

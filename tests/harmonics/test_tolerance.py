@@ -17,7 +17,7 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.find import find_light
-from shviewer.lights.function import LAST_ROWS, MOVEMENT, FunctionLight
+from shviewer.lights.function import UNCERTAIN, FunctionLight
 from shviewer.lights.light import Light
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
@@ -158,5 +158,5 @@ def test_points_follow_from_the_sharpness_of_a_function() -> None:
     edge = FunctionLight(lambda d: (d @ np.array([0.48, 0.6, 0.64]) > 0.5) * 1.0)
     assert smooth.accuracy() < 1e-6
     assert smooth.notes == ()
-    assert f"{2 * LAST_ROWS**2}" in edge.notes[0] or edge.accuracy() <= MOVEMENT
-    assert edge.accuracy() > smooth.accuracy()
+    assert edge.notes == ()
+    assert smooth.accuracy() < edge.accuracy() < UNCERTAIN

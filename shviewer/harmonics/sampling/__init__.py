@@ -1,0 +1,1 @@
+"""Sampling functions of directions of which nothing is known beforehand."""
