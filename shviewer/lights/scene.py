@@ -37,13 +37,21 @@ PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
 }
 
 MAX_FILE_BYTES = 2**16
-"""A KiB for each of the most lobes. What Python's reader of TOML takes grows with the square of a key's dots: 1 s at most."""
+"""A KiB for each of the most lobes."""
+
+MAX_DOTS = 200
+"""The most dots in a line. The time and memory of Python's reader of TOML grow with the square of those in a key."""
 
 
 def read_scene(path: Path, limits: Limits = DEFAULT_LIMITS) -> LobeLight:
     """The lobe light in a .toml file. LightError with file, key and rule for anything wrong with it."""
     with naming(str(path)):
         data = read_bytes(path, limits, MAX_FILE_BYTES, f"a scene file has at most {MAX_FILE_BYTES}")
+    for number, line in enumerate(data.splitlines(), 1):
+        if line.count(b".") > MAX_DOTS:
+            raise LightError(
+                f"{path}: line {number} has {line.count(b'.')} dots; a line of a scene has at most {MAX_DOTS}"
+            )
     try:
         document = tomllib.loads(data.decode())
     except UnicodeDecodeError as error:
