@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -214,14 +214,26 @@ class Replacing:
 
     def check(self, path: Path) -> None:
         """OutputError if writing `path` would destroy what must stay: a check to make before it is written."""
-        for source in self.inputs:
-            with suppress(OSError, ValueError):  # what does not exist is not destroyed
-                if os.path.samefile(path, source):
-                    raise OutputError(f"{path}: the light or a comparison is read from this file; write another one")
+        if _identity(path) in self._read:
+            raise OutputError(f"{path}: the light or a comparison is read from this file; write another one")
         if not (self.force or _may_go(path)):
             raise OutputError(
                 f"{path}: exists, and shviewer did not write it; write another file, or --force (in Python force=True)"
             )
+
+    @cached_property
+    def _read(self) -> set[tuple[int, int]]:
+        """The inputs, looked at once: a batch has thousands, and as many outputs."""
+        return set(filter(None, map(_identity, self.inputs)))
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """What two names of one file have in common; None for no file."""
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    return status.st_dev, status.st_ino
 
 
 ANYTHING = Replacing(force=True)

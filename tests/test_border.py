@@ -80,6 +80,22 @@ def test_a_batch_does_not_write_into_a_light_that_comes_later(nine: Path) -> Non
     assert (nine.parent / "hemisphere.json").read_bytes() == before
 
 
+def test_the_inputs_of_a_batch_are_looked_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A thousand lights took half as long again when each output was compared with every input."""
+    looks, look = 0, os.stat
+
+    def counted(*arguments: Any, **options: Any) -> os.stat_result:
+        nonlocal looks
+        looks += 1
+        return look(*arguments, **options)
+
+    replacing = Replacing(tuple(tmp_path / f"{number}.toml" for number in range(200)))
+    monkeypatch.setattr(os, "stat", counted)
+    for number in range(200):
+        replacing.check(tmp_path / f"{number}.json")
+    assert looks < 200 * 5
+
+
 def test_a_picture_is_not_written_over_the_light_or_the_reference(nine: Path) -> None:
     (nine.parent / "sky.png").write_bytes(b"anything")
     (nine.parent / "r-difference.png").write_bytes(b"anything")
