@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.errors import LightError
+from shviewer.files import naming
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
@@ -73,12 +73,12 @@ class EnvironmentLight(RadianceLight):
     def read(cls, path: Path, reading: Reading = DEFAULT_READING, layer: str = "") -> EnvironmentLight:
         """The image in a file, or one layer of it. LightError if it cannot be read or does not fit the layout asked for."""
         image = read_radiance_image(path, reading, layer)
-        try:
-            layout, notes = recognise(image.pixels, image.layout, reading.layout, image.encoding.startswith("JPEG"))
-        except LightError as error:
-            raise LightError(f"{path}: {error}") from None
+        with naming(str(path)):
+            layout, notes, pixels = recognise(
+                image.pixels, image.layout, reading.layout, image.encoding.startswith("JPEG")
+            )
         name = f"{path.stem}:{layer}" if layer else path.stem
-        return cls(image.pixels, layout, name, image.notes + notes, image.encoding, reading.limits)
+        return cls(pixels, layout, name, image.notes + notes, image.encoding, reading.limits)
 
     @property
     def description(self) -> str:

@@ -95,7 +95,8 @@ def _check_image(image: Decoded, data: bytes) -> None:
 def _check_light(image: Decoded) -> None:
     """What is seen lies between the darkest and the brightest texel: it is interpolated."""
     try:
-        light = EnvironmentLight(image.pixels, *recognise(image.pixels, image.layout, "auto")[:1])
+        layout, _, pixels = recognise(image.pixels, image.layout, "auto")
+        light = EnvironmentLight(pixels, layout)
         seen, coefficients = light.radiance(DIRECTIONS), light.coefficients(3)
     except Exception as error:
         raise BrokenPromise(f"makes no light: {type(error).__name__}: {error}") from error

@@ -136,6 +136,8 @@ def _exr_seeds() -> dict[str, bytes]:
         "angular.exr": exr_file({"RGB": _picture(10, 10, np.float16)}),
         "words.exr": exr_file({f"[{name}]": half[..., i].copy() for i, name in enumerate(("red", "green", "blue"))}),
         "latin-1.exr": exr_file({".R": luminance}, owner="QQ M", comments="QQ").replace(b"QQ", b"\xff\xfc"),
+        "pack.exr": exr_file({"RGB": _picture(16, 24, np.float16)}),
+        "framed-cross.exr": exr_file({"RGB": np.pad(_picture(16, 12, np.float16), ((1, 1), (1, 1), (0, 0)))}),
         "cross.exr": exr_file({"RGB": _picture(16, 12, np.float16)}),
     }
 

@@ -6,7 +6,7 @@ Every file is made here, small, as the program writes it: the programs themselve
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from lights.images.hdr_files import exr_file
@@ -25,6 +25,9 @@ from lights.images.ldr_files import (
     xmp,
 )
 from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
+from numpy.typing import NDArray
+
+from shviewer.lights.layouts.cube import HORIZONTAL_CROSS, PACK, VERTICAL_CROSS, Arrangement, CubeLayout
 
 GREY = ((128 / 255 + 0.055) / 1.055) ** 2.4
 """The linear value of the sRGB code 128."""
@@ -43,7 +46,7 @@ class Found(NamedTuple):
 
 
 def found_images() -> tuple[Found, ...]:
-    return (*_hdr(), *_exr(), *_jpeg(), *_profiles(), *_others())
+    return (*_hdr(), *_exr(), *_jpeg(), *_profiles(), *_cubes(), *_others())
 
 
 def table() -> str:
@@ -129,6 +132,36 @@ def _jpeg() -> tuple[Found, ...]:
               "a.jpg", lambda: apple, (GREY,) * 3, "its gain map is not read (Apple's own kind)"),
         Found("stereo cameras, previews", "`.jpg` with several pictures (MPF)", "the first", "a.jpg",
               lambda: with_segments(grey, segment(0xE2, b"MPF\0" + bytes(80))) + gain_map, (GREY,) * 3),
+    )  # fmt: skip
+
+
+def _cubes() -> tuple[Found, ...]:
+    """The light 0.5 + 0.4 d + 0.3 d.z**2 of each axis, so that its mean tells the layout."""
+
+    def image(arrangement: Arrangement, checks: bool = False, border: int = 0) -> NDArray[np.float32]:
+        layout = CubeLayout(arrangement, 32)
+        shape = (32 * arrangement.rows, 32 * arrangement.columns)
+        rows, columns = np.indices(shape)
+        places = layout.centres(rows.ravel(), columns.ravel()).reshape(*shape, 3)
+        light = 0.5 + 0.4 * places + 0.3 * places[..., 2:] ** 2
+        empty = ((rows // 4 + columns // 4) % 2)[..., None] if checks else 0.0
+        light = np.where(layout.solid_angles()[..., None] > 0, light, empty)
+        return np.pad(light, ((border, border), (border, border), (0, 0))).astype(np.float32)
+
+    def file(*arguments: Any) -> Callable[[], bytes]:
+        return lambda: exr_file({"RGB": image(*arguments)})
+
+    mean = (0.6, 0.6, 0.6)
+    fit = "faces fit together"
+    return (
+        Found("HDRShop, ffmpeg, converters in the web", "a cross of 4:3 or 3:4, its empty cells of one colour", "a cube",
+              "a.exr", file(HORIZONTAL_CROSS), mean, "is taken as a cube, horizontal cross"),
+        Found("converters in the web", "a cross with a checkerboard or text in its empty cells",
+              "a cube, if its faces fit together", "a.exr", file(HORIZONTAL_CROSS, True), mean, fit),
+        Found("converters in the web", "a cross within a border", "a cube, the border cut off", "a.exr",
+              file(VERTICAL_CROSS, False, 5), mean, "within a border"),
+        Found("ffmpeg, `v360=e:c3x2`", "a pack of 3 x 2 faces", "a cube, if its faces fit together", "a.exr",
+              file(PACK), mean, fit),
     )  # fmt: skip
 
 

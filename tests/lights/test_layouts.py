@@ -500,7 +500,7 @@ HORIZONTAL_EMPTY = [(0, 0), (0, 2), (0, 3), (2, 0), (2, 2), (2, 3)]
     ],
 )
 def test_layouts_are_recognised(pixels, stated, wanted, expected, note):
-    layout, notes = recognise(pixels, stated, wanted)
+    layout, notes, _ = recognise(pixels, stated, wanted)
     assert layout == expected
     assert layout.name in LAYOUTS
     assert (note in " ".join(notes)) if note else notes == ()
@@ -544,7 +544,7 @@ def test_what_shows_nothing_may_be_blurred_at_its_border_and_a_little_noisy(pixe
     ],
 )
 def test_a_full_image_is_neither_disc_nor_cross_however_dark_and_noisy(pixels, lossy):
-    layout, (note,) = recognise(pixels, None, "auto", lossy)
+    layout, (note,), _ = recognise(pixels, None, "auto", lossy)
     assert layout == LatLongLayout(*pixels.shape[:2])
     if len(pixels) == pixels.shape[1]:
         assert "--layout angular or mirror-ball" in note

@@ -6,6 +6,7 @@ Every face is drawn as seen from inside, not mirrored. In the world of basis.py,
     vertical strip     1 x 6   right -y, left +y, up +z, down -z, front +x, back -x: the OpenGL and Direct3D order
     horizontal strip   6 x 1   the same. Both are left-handed there: their +X is our right, their +Y up, their +Z front;
                                the lower edge of their up face and the upper edge of their down face touch the front
+    packs              3 x 2   the order of the strips, row by row, as ffmpeg writes it; or in three rows of two
     OpenEXR            1 x 6   the `envmap` attribute, +X -X +Y -Y +Z -Z of a right-handed space with X left, Y up and Z
                                forward: left, right, up, down, front, back; up and down are turned so that the image's
                                right is left in the world, and the lower edge of up touches the back
@@ -66,6 +67,8 @@ VERTICAL_STRIP = Arrangement("vertical strip", 6, 1, tuple(Face(i, 0, *axes) for
 HORIZONTAL_STRIP = Arrangement("horizontal strip", 1, 6, tuple(Face(0, i, *axes) for i, axes in enumerate(_STRIP)))
 OPENEXR = Arrangement("OpenEXR order", 6, 1, tuple(Face(i, 0, *axes) for i, axes in enumerate(_OPENEXR)))
 VERTICAL_CROSS = Arrangement("vertical cross", 4, 3, (*_CROSS, Face(3, 1, "-x", "-y", "+z")))
+PACK = Arrangement("pack of 3 x 2", 2, 3, tuple(Face(i // 3, i % 3, *axes) for i, axes in enumerate(_STRIP)))
+TALL_PACK = Arrangement("pack of 2 x 3", 3, 2, tuple(Face(i // 2, i % 2, *axes) for i, axes in enumerate(_STRIP)))
 HORIZONTAL_CROSS = Arrangement("horizontal cross", 3, 4, (*_CROSS, Face(1, 3, *_BACK)))
 
 
@@ -133,19 +136,21 @@ class CubeLayout:
         absent = np.zeros((4, len(face)), dtype=bool)
         for i in range(4):
             at_column, at_row = left + i % 2, top + i // 2
-            beyond_column = (at_column < 0) | (at_column >= self.face)
-            beyond_row = (at_row < 0) | (at_row >= self.face)
-            absent[i] = beyond_column & beyond_row
-            rows, columns = at_row + self._corners[face, 0], at_column + self._corners[face, 1]
-            beyond = beyond_column | beyond_row
-            centre = self._directions(
-                face[beyond], (2 * at_column[beyond] + 1) / self.face - 1, (2 * at_row[beyond] + 1) / self.face - 1
-            )
-            rows[beyond], columns[beyond] = self.nearest(centre)
-            taps[i] = pixels[rows, columns]
+            absent[i] = ((at_column < 0) | (at_column >= self.face)) & ((at_row < 0) | (at_row >= self.face))
+            taps[i] = pixels[self.texels(face, at_row, at_column)]
         weights = weights + (weights * absent).sum(axis=0) / 3
         weights[absent] = 0.0
         return np.asarray(np.einsum("ik,ikc->kc", weights, taps))
+
+    def texels(self, face: Indices, rows: Indices, columns: Indices) -> tuple[Indices, Indices]:
+        """Row and column in the image of places on a face, (k,) each; beyond its border follows the next face."""
+        beyond = (np.minimum(rows, columns) < 0) | (np.maximum(rows, columns) >= self.face)
+        at_row, at_column = rows + self._corners[face, 0], columns + self._corners[face, 1]
+        centre = self._directions(
+            face[beyond], (2 * columns[beyond] + 1) / self.face - 1, (2 * rows[beyond] + 1) / self.face - 1
+        )
+        at_row[beyond], at_column[beyond] = self.nearest(centre)
+        return at_row, at_column
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         """As in Layout; from one quadrant of the front, left and upper face each, whose mirror images all others are."""

@@ -1,6 +1,13 @@
-"""The layout of an image: the one asked for, else the one that its file states, else the one its shape suggests."""
+"""The layout of an image: the one asked for, else the one that its file states, else the one its shape suggests.
+
+A cross shows itself by its empty cells, whatever their colour; where they hold something (a checkerboard, text), by its
+seams, and so do packs, which have none. A border of exactly one colour around a cross is cut off. What is not certain is
+lat-long, with a note.
+"""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +18,8 @@ from shviewer.lights.layouts.cube import (
     HORIZONTAL_CROSS,
     HORIZONTAL_STRIP,
     OPENEXR,
+    PACK,
+    TALL_PACK,
     VERTICAL_CROSS,
     VERTICAL_STRIP,
     Arrangement,
@@ -19,6 +28,7 @@ from shviewer.lights.layouts.cube import (
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
+from shviewer.lights.layouts.seams import fit_together
 from shviewer.lights.reading import LAYOUTS
 
 TOLERANCE = 0.02
@@ -32,12 +42,21 @@ SAMPLES = 2**18
 """About how many texels of an image are looked at."""
 
 _Notes = tuple[str, ...]
+_Pixels = NDArray[np.float32]
+_CROSSES = (VERTICAL_CROSS, HORIZONTAL_CROSS)
 
 
-def recognise(
-    pixels: NDArray[np.float32], stated: str | None, wanted: str, lossy: bool = False
-) -> tuple[Layout, _Notes]:
-    """The layout of an image (height, width, 3) and a line about each guess.
+class Recognised(NamedTuple):
+    """What an image is taken for. pixels: the image, without the border that is no part of its layout."""
+
+    layout: Layout
+    notes: _Notes
+    """A line about each guess."""
+    pixels: _Pixels
+
+
+def recognise(pixels: _Pixels, stated: str | None, wanted: str, lossy: bool = False) -> Recognised:
+    """The layout of an image (height, width, 3).
 
     stated: the one of LAYOUTS that its file states, or None. A file that states a cube means OpenEXR's arrangement.
     wanted: "auto", or one of LAYOUTS, which then overrules file and shape. LightError if the image's shape does not fit.
@@ -45,15 +64,17 @@ def recognise(
     """
     height, width = pixels.shape[:2]
     if wanted != "auto":
-        return _fitting(wanted, height, width, stated), ()
+        if wanted == "cube" and _arrangement(height, width) is None and (found := _framed_cross(pixels)):
+            return found
+        return Recognised(_fitting(wanted, height, width, stated), (), pixels)
     misfits: _Notes = ()
     if stated is not None:
         try:
-            return _fitting(stated, height, width, stated), ()
+            return Recognised(_fitting(stated, height, width, stated), (), pixels)
         except LightError as misfit:
             misfits = (f"the file states another layout, but {misfit}",)
-    layout, note = _by_shape(pixels, lossy)
-    return layout, (*misfits, f"{width} x {height} {note}") if note else misfits
+    layout, notes, pixels = _by_shape(pixels, lossy)
+    return Recognised(layout, (*misfits, *notes), pixels)
 
 
 def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
@@ -65,8 +86,8 @@ def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
         arrangement = OPENEXR if stated == "cube" and OPENEXR.face_size(height, width) else _arrangement(height, width)
         if arrangement is None:
             raise LightError(
-                f"{shown} is no cube: it must be a cross of 3 x 4 or 4 x 3 faces or a strip of 6 x 1 or 1 x 6;"
-                " choose another --layout"
+                f"{shown} is no cube: it must be a cross of 3 x 4 or 4 x 3 faces, a strip of 6 x 1 or 1 x 6, or a pack of"
+                " 3 x 2 or 2 x 3; choose another --layout"
             )
         return CubeLayout(arrangement, arrangement.face_size(height, width))
     if name in ("angular", "mirror-ball"):
@@ -78,27 +99,69 @@ def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
     raise LightError(f"unknown layout {name!r}; choose auto, {', '.join(LAYOUTS)}")
 
 
-def _by_shape(pixels: NDArray[np.float32], lossy: bool) -> tuple[Layout, str]:
-    """The layout, and what to say of the image's size: how the layout was guessed; "" where nothing was."""
+def _by_shape(pixels: _Pixels, lossy: bool) -> Recognised:
+    """The layout, and how it was guessed, if it was."""
     height, width = pixels.shape[:2]
+    shown = f"{width} x {height}"
     arrangement = _arrangement(height, width)
-    if arrangement is not None and _has_empty_cells(pixels, arrangement, lossy):
-        layout = CubeLayout(arrangement, arrangement.face_size(height, width))
-        return layout, f"is taken as a cube, {arrangement.name}: --layout lat-long if it is not"
-    if width == height and _is_disc(pixels, lossy):
-        return AngularLayout(height), "with a disc is taken as an angular map: --layout mirror-ball for a ball"
     if arrangement is not None:
-        note = "is not 2:1 and no cube cross, whose corners are empty; taken as lat-long: --layout cube if it is one"
+        cube = CubeLayout(arrangement, arrangement.face_size(height, width))
+        packed = arrangement in (PACK, TALL_PACK)
+        if not packed and _has_empty_cells(pixels, arrangement, lossy):
+            note = f"{shown} is taken as a cube, {arrangement.name}: --layout lat-long if it is not"
+            return Recognised(cube, (note,), pixels)
+        if fit_together(pixels, cube):
+            note = f"{shown} is taken as a cube, {arrangement.name}, since its faces fit together: --layout lat-long if not"
+            return Recognised(cube, (note,), pixels)
+    if width == height and _is_disc(pixels, lossy):
+        note = f"{shown} with a disc is taken as an angular map: --layout mirror-ball for a ball"
+        return Recognised(AngularLayout(height), (note,), pixels)
+    if found := _framed_cross(pixels):
+        return found
+    if arrangement is not None:
+        what = "pack of a cube" if arrangement in (PACK, TALL_PACK) else "cube cross, whose corners are empty"
+        guess = f"is not 2:1 and no {what}; taken as lat-long: --layout cube if it is one"
     elif width == height:
-        note = "is not 2:1 and no disc on one colour; taken as lat-long: --layout angular or mirror-ball if it is one"
+        guess = "is not 2:1 and no disc on one colour; taken as lat-long: --layout angular or mirror-ball if it is one"
     else:
-        note = "is not 2:1; taken as lat-long all the same: --layout to change it" if width != 2 * height else ""
-    return LatLongLayout(height, width), note
+        guess = "is not 2:1; taken as lat-long all the same: --layout to change it" if width != 2 * height else ""
+    return Recognised(LatLongLayout(height, width), (f"{shown} {guess}",) if guess else (), pixels)
+
+
+def _framed_cross(pixels: _Pixels) -> Recognised | None:
+    """A cross within a border of one colour; None if there is none."""
+    rows, columns = _inside_border(pixels)
+    inner = pixels[rows, columns]
+    height, width = inner.shape[:2]
+    for arrangement in _CROSSES if inner.shape != pixels.shape else ():
+        size = arrangement.face_size(height, width)
+        if size and (
+            _has_empty_cells(inner, arrangement, lossy=False) or fit_together(inner, CubeLayout(arrangement, size))
+        ):
+            note = (
+                f"{pixels.shape[1]} x {pixels.shape[0]} is taken as a cube, {arrangement.name} of {width} x {height} within a"
+                " border: --layout lat-long if it is not"
+            )
+            return Recognised(CubeLayout(arrangement, size), (note,), np.ascontiguousarray(inner))
+    return None
+
+
+def _inside_border(pixels: _Pixels) -> tuple[slice, slice]:
+    """The rows and columns that are not all of the colour of the first texel; all of them if none are."""
+    sides = (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1])
+    if not any(np.all(side == pixels[0, 0]) for side in sides):
+        return slice(None), slice(None)
+    other = np.any(pixels != pixels[0, 0], axis=2)
+    spans = []
+    for axis in (1, 0):
+        places = np.flatnonzero(other.any(axis=axis))
+        spans.append(slice(int(places[0]), int(places[-1]) + 1) if len(places) else slice(None))
+    return spans[0], spans[1]
 
 
 def _arrangement(height: int, width: int) -> Arrangement | None:
-    """The arrangement of six whole faces that fills the image, if any. A strip is taken to be OpenGL's and Direct3D's."""
-    for arrangement in (VERTICAL_CROSS, HORIZONTAL_CROSS, HORIZONTAL_STRIP, VERTICAL_STRIP):
+    """The arrangement of six whole faces that fills the image, if any. Strips are taken to be OpenGL's and Direct3D's."""
+    for arrangement in (*_CROSSES, HORIZONTAL_STRIP, VERTICAL_STRIP, PACK, TALL_PACK):
         if arrangement.face_size(height, width):
             return arrangement
     return None
