@@ -1,7 +1,8 @@
-"""Breaks the mathematics on purpose and shows which test notices: python tests/mutants.py [NAME ...]
+"""Breaks the mathematics on purpose and shows what notices: python tests/mutants.py [--stability] [NAME ...]
 
-The mutants are the misprints of the paper and the usual bugs of the field. Each is one replacement in a copy of the tree, on
-which the tests of the mathematics run until the first failure. Exit 1 if one survives.
+The mutants are the misprints of the paper and the usual bugs of the field. Each is one replacement in a copy of the tree. There
+the tests of the mathematics run until the first failure, and `shviewer report --stability` as a user runs it; --stability
+leaves the tests out. Exit 1 if one survives the tests, or if more than a tenth survive the report.
 """
 
 from __future__ import annotations
@@ -26,7 +27,10 @@ class Mutant(NamedTuple):
 
 
 BASIS, PROJECTION = "shviewer/harmonics/basis.py", "shviewer/harmonics/projection.py"
-SCATTERED = "shviewer/harmonics/scattered.py"
+SCATTERED, QUADRATURE = "shviewer/harmonics/scattered.py", "shviewer/harmonics/quadrature.py"
+METRICS, EXTREMES = "shviewer/harmonics/metrics.py", "shviewer/harmonics/extremes.py"
+FILTERS, ZONAL = "shviewer/harmonics/filters.py", "shviewer/harmonics/zonal.py"
+OVERLAP, CONVENTION = "shviewer/harmonics/overlap.py", "shviewer/coefficients/convention.py"
 
 MUTANTS = (
     Mutant(
@@ -159,6 +163,90 @@ MUTANTS = (
         "abs(ratio)",
     ),
     Mutant(
+        "samples in the middle of their cells", QUADRATURE, "[:, None] + jitter[0]) / side", "[:, None] + 0.5) / side"
+    ),
+    Mutant("one random number for both coordinates", QUADRATURE, "+ jitter[1]) / side", "+ jitter[0]) / side"),
+    Mutant(
+        "samples of another cell",
+        QUADRATURE,
+        "v = (np.arange(side) + jitter[1])",
+        "v = (np.arange(side) + 2 * jitter[1])",
+    ),
+    Mutant(
+        "negative area of rows that all count alike", EXTREMES, "axis=1) @ self.row_share)", "axis=1).mean() / 192)"
+    ),
+    Mutant("one round of search", EXTREMES, "DISPLAY_ROUNDS = 3", "DISPLAY_ROUNDS = 1"),
+    Mutant("energy below zero over 4 pi", EXTREMES, "4 * np.pi * float(squares) / whole", "float(squares) / whole"),
+    Mutant("luminance of Rec. 601", EXTREMES, "[0.2126, 0.7152, 0.0722]", "[0.299, 0.587, 0.114]"),
+    Mutant("PSNR of the peak", METRICS, "np.log10(peak**2 / mean)", "np.log10(peak / mean)"),
+    Mutant("PSNR without the channels", METRICS, "(4 * np.pi * mix.shape[1])", "(4 * np.pi)"),
+    Mutant(
+        "nothing added by windows and samples",
+        METRICS,
+        "(norm - kept).clip(min=0) + added) / norm",
+        "(norm - kept).clip(min=0)) / norm",
+    ),
+    Mutant("muted bands are the ones on", METRICS, "invert=True", "invert=False"),
+    Mutant(
+        "Hann over half a period",
+        FILTERS,
+        "(1 + np.cos(np.pi * np.minimum(x, 1))) / 2",
+        "np.cos(np.pi / 2 * np.minimum(x, 1))",
+    ),
+    Mutant("Lanczos squared", FILTERS, "np.sinc(x), 0.0", "np.sinc(x) ** 2, 0.0"),
+    Mutant("Gauss without its 2", FILTERS, "((np.pi * x) ** 2) / 2", "((np.pi * x) ** 2)"),
+    Mutant("edge of a clamped line", ZONAL, "np.pi / 3 * (2 + edge)", "np.pi / 3 * (2 - edge)"),
+    Mutant("Bessel ratio one degree off", ZONAL, "ratio = 1 / ((2 * l + 1) / k", "ratio = 1 / ((2 * l - 1) / k"),
+    Mutant("half a solid angle", ZONAL, "zonal[0] = 2 * np.pi * versine", "zonal[0] = np.pi * versine"),
+    Mutant("Gaussians of a wrong chord", OVERLAP, "4 * k1 * k2 * np.sin", "2 * k1 * k2 * np.sin"),
+    Mutant("ring of a cosine", OVERLAP, "rise * half_arc - swing", "rise * half_arc + swing"),
+    Mutant("another spiral", QUADRATURE, "(np.sqrt(5) - 1) / 2", "(np.sqrt(3) - 1) / 2"),
+    Mutant("Gauss-Legendre weights not squared", QUADRATURE, "weights = 2 / slope**2", "weights = 2 / np.abs(slope)"),
+    Mutant(
+        "SN3D the other way",
+        CONVENTION,
+        "np.sqrt(4 * np.pi / (2 * degrees(n_bands) + 1))",
+        "np.sqrt(4 * np.pi * (2 * degrees(n_bands) + 1))",
+    ),
+    Mutant("3z^2-1 without its half", CONVENTION, "2.0, 1.0, 0.5, 1.0, 1.0", "2.0, 1.0, 1.0, 1.0, 1.0"),
+    Mutant(
+        "handedness by order",
+        "shviewer/coefficients/axes.py",
+        "turned * alternating(degrees(n_bands))  #",
+        "turned * alternating(orders(n_bands))  #",
+    ),
+    Mutant(
+        "quarters the other way",
+        "shviewer/coefficients/axes.py",
+        "(1, 0), (0, 1), (-1, 0), (0, -1)]",
+        "(1, 0), (0, -1), (-1, 0), (0, 1)]",
+    ),
+    Mutant(
+        "front face mirrored",
+        "shviewer/lights/layouts/cube.py",
+        '("+x", "-y", "-z"), ("-y"',
+        '("+x", "+y", "-z"), ("-y"',
+    ),
+    Mutant(
+        "cube texels weighed at their centres",
+        "shviewer/lights/layouts/cube.py",
+        "leggauss(12 if self.face < 16 else 6)",
+        "leggauss(1)",
+    ),
+    Mutant(
+        "bilinear shares swapped",
+        "shviewer/lights/layouts/bilinear.py",
+        "up * right, down * (1 - right)",
+        "down * (1 - right), up * right",
+    ),
+    Mutant("map read half a column off", "shviewer/lights/lat_long.py", "* width - 0.5\n", "* width\n"),
+    Mutant(
+        "rows weighed at their centres",
+        "shviewer/lights/layouts/lat_long.py",
+        "2 * np.sin(theta) * np.sin(np.pi / (2 * self.height))",
+        "np.sin(theta) * np.pi / self.height",
+    ),
+    Mutant(
         "deringing on the grid alone",
         "shviewer/harmonics/deringing.py",
         "    factors[1:] *= 1 - lift",
@@ -175,32 +263,44 @@ def mutated(mutant: Mutant, tree: Path) -> None:
     path.write_text(text.replace(mutant.right, mutant.wrong), encoding="utf-8")
 
 
-def killer(mutant: Mutant, folder: Path) -> str:
-    """The first test that fails on the mutant; "" if none does."""
+def noticed_by(mutant: Mutant, folder: Path, tests: bool) -> tuple[str, str]:
+    """The first test and the first hard case that fail on the mutant; "" where none does, or "-" for tests not run."""
     tree = folder / "tree"
     shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".*", "__pycache__"))
     try:
         mutated(mutant, tree)
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *TESTS]
-        done = subprocess.run(
-            command, cwd=tree, env={"PYTHONPATH": str(tree), "PATH": ""}, capture_output=True, text=True, check=False
-        )
-        failed = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, flags=re.MULTILINE)
-        return failed[1].rpartition("::")[2] if failed else "" if done.returncode == 0 else done.stdout[-300:]
+        test = "-"
+        if tests:
+            done = run(tree, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *TESTS)
+            failed = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, flags=re.MULTILINE)
+            test = failed[1].rpartition("::")[2] if failed else "" if done.returncode == 0 else done.stdout[-300:]
+        done = run(tree, "-m", "shviewer", "report", "--stability")
+        first = re.search(r"^FAIL +(.+?)  ", done.stdout, flags=re.MULTILINE)
+        case = first[1] if first else done.stderr[-300:]
+        return test, case if done.returncode == 1 else ""
     finally:
         shutil.rmtree(tree)
 
 
-def main(names: list[str]) -> int:
-    survivors = 0
+def run(tree: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    environment = {"PYTHONPATH": str(tree), "PATH": ""}
+    return subprocess.run(
+        [sys.executable, *arguments], cwd=tree, env=environment, capture_output=True, text=True, check=False
+    )
+
+
+def main(arguments: list[str]) -> int:
+    names = [name for name in arguments if name != "--stability"]
+    chosen = [mutant for mutant in MUTANTS if not names or mutant.name in names]
+    missed = [0, 0]
     with tempfile.TemporaryDirectory() as folder:
-        for mutant in MUTANTS:
-            if names and mutant.name not in names:
-                continue
-            test = killer(mutant, Path(folder))
-            survivors += not test
-            print(f"{mutant.name:<48}{test or 'SURVIVED'}", flush=True)
-    return 1 if survivors else 0
+        for mutant in chosen:
+            found = noticed_by(mutant, Path(folder), "--stability" not in arguments)
+            missed = [count + (not name) for count, name in zip(missed, found, strict=True)]
+            test, case = (name or "SURVIVED" for name in found)
+            print(f"{mutant.name:<48}{test:<60}  {case}", flush=True)
+    print(f"{len(chosen)} mutants: the tests miss {missed[0]}, the hard cases {missed[1]}")
+    return 1 if missed[0] or missed[1] > len(chosen) / 10 else 0
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 """Hard cases of spherical-harmonic arithmetic, each with its right answer and the error of this program.
 
-evaluation, identities, projecting, radiances, rotating and ringing declare the cases; exact makes references to 60 digits;
-shader draws the cases that concern the fragment shader; table runs all of them and shows the results.
+Most files declare the cases of one subject; exact makes references to 60 digits; shader draws the cases that concern the
+fragment shader; table runs all of them and shows the results.
 """

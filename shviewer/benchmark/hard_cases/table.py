@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shviewer.benchmark.hard_cases import evaluation, identities, projecting, radiances, ringing, rotating
+from shviewer.benchmark.hard_cases import (
+    evaluation,
+    figures,
+    identities,
+    layouts,
+    programs,
+    projecting,
+    radiances,
+    ringing,
+    rotating,
+    sampling,
+)
 from shviewer.benchmark.hard_cases.outcome import Case, Outcome, largest
 from shviewer.benchmark.hard_cases.shader import SEED, bound, error_of, renderer_or_reason
 from shviewer.benchmark.machine import machine_line, versions
@@ -17,7 +28,7 @@ from shviewer.benchmark.row import finite
 if TYPE_CHECKING:
     from shviewer.viewer.gl.renderer import Renderer
 
-FILES = (evaluation, identities, projecting, radiances, rotating, ringing)
+FILES = (evaluation, identities, sampling, projecting, layouts, radiances, rotating, ringing, figures, programs)
 CASES: tuple[Case, ...] = tuple(case for file in FILES for case in file.CASES)
 
 HEADINGS = ("", "case", "reference", "error", "bound", "float32", "bound")
