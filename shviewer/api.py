@@ -9,6 +9,7 @@ They raise ShviewerError, with one line that says what to do, if an argument is 
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -142,6 +143,8 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
         count = found.about.n_bands or Recipe.n_bands
     recipe = Recipe(found, n_bands=count, **taken(options, Recipe))
     recipe.check()
+    if "suns" in options and not recipe.split_sun:
+        raise UsageError(f"suns {recipe.suns!r}: it says what split_sun takes; give split_sun=True, too")
     if (given := options.get("compare")) is not None:
         recipe = _comparing(recipe, given)
         recipe, _ = as_the_file_holds(recipe, quantity="quantity" not in options, bands=bands is None)
@@ -170,12 +173,18 @@ def project(light: LightLike, bands: int | None = None, **options: Any) -> Proje
     """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
 
     `Projected.coefficients` is (bands**2, 3) float64 in the convention of harmonics/basis.py, row l(l+1) + m; `save` writes a
-    file and `numbers` converts, both for other programs, too. ShviewerError for a mistake that a caller can put right.
+    file and `numbers` converts, both for other programs, too. ShviewerError for a mistake that a caller can put right;
+    a warning where `split_sun` finds no sun.
 
     """
     from shviewer.analysis.projected import project_recipe
+    from shviewer.analysis.subjects import subject
 
-    return project_recipe(recipe_of(light, bands, options))
+    recipe = recipe_of(light, bands, options)
+    found = project_recipe(recipe)
+    if refusal := subject(recipe).refusal:
+        warnings.warn(refusal, stacklevel=2)
+    return found
 
 
 def report(

@@ -228,3 +228,26 @@ def test_coefficients_from_elsewhere_take_the_place_of_the_lights_own(tmp_path: 
     assert compared.figures.channels["all"].added > 0.1
     found = shviewer.project("venice_sunset", compare=tmp_path / "three.json")
     np.testing.assert_allclose(found.coefficients, own.coefficients, rtol=0, atol=1e-13)
+
+
+def test_a_light_without_a_sun_says_so() -> None:
+    with pytest.warns(UserWarning, match="green has no sun: "):
+        found = shviewer.project("green", 3, split_sun=True)
+    assert found.suns == ()
+    assert "green has no sun: " in found.notes[-1]
+    with pytest.warns(UserWarning, match="film_studio has no sun: its strongest compact source is 4"):
+        shviewer.project("film_studio", 3, split_sun=True)
+
+
+def test_lamps_are_taken_where_they_are_asked_for() -> None:
+    assert len(shviewer.project("film_studio", 3, split_sun=True, suns="all").suns) == 1
+    assert len(shviewer.project("st_fagans_interior", 3, split_sun=True, suns=2).suns) == 2
+    for wrong, words in (
+        (0, "suns 0: it must be auto, all or 1 to 16"),
+        ("some", "suns some: it must be"),
+        (1.5, "whole number"),
+    ):
+        with pytest.raises(shviewer.ShviewerError, match=words):
+            shviewer.project("film_studio", 3, split_sun=True, suns=wrong)
+    with pytest.raises(shviewer.ShviewerError, match="give split_sun=True, too"):
+        shviewer.project("film_studio", 3, suns=1)

@@ -74,6 +74,8 @@ class SunInformation:
     """The irradiance of a surface that faces it."""
     share_of_flux: float
     """Its part of the light's flux, both as the mean of the channels."""
+    clipped: bool
+    """Whether the image is clipped there, so that it had more."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,8 @@ class Information:
     bands_needed: tuple[BandsNeeded, ...]
     suns: tuple[SunInformation, ...]
     """The suns that --split-sun takes out, the greatest flux first."""
+    no_sun: str
+    """Why it takes out none; "" if it does."""
     bands_needed_without_suns: tuple[BandsNeeded, ...]
     """The bands that the rest needs; empty if there are no suns."""
     coefficients: CoefficientInformation | None = None
@@ -191,6 +195,7 @@ def _describe(text: str, reading: Reading) -> Information:
         energy_share=found.figures.energy_share[:SHOWN_BANDS],
         bands_needed=_needed(recipe),
         suns=tuple(_sun(sun, total) for sun in split.suns),
+        no_sun=split.refusal,
         bands_needed_without_suns=_needed(replace(recipe, split_sun=True)) if split.suns else (),
         coefficients=_coefficients(about),
     )
@@ -210,6 +215,7 @@ def _sun(sun: Sun, total: float) -> SunInformation:
         radiance=_triple(sun.radiance),
         irradiance=_triple(sun.irradiance),
         share_of_flux=float(sun.flux.mean()) / total,
+        clipped=sun.clipped,
     )
 
 

@@ -99,6 +99,20 @@ class Whole(NamedTuple):
             raise UsageError(f"{self.says.format(value)}: {self.rule}")
 
 
+class WholeOr(NamedTuple):
+    """A whole number from 1 to `most`, or one of a few words."""
+
+    words: tuple[str, ...]
+    most: int
+
+    def taken(self, name: str, value: Any) -> Any:
+        return value if isinstance(value, str) else whole(value, name)
+
+    def check(self, name: str, value: Any) -> None:
+        if value not in self.words and not (isinstance(value, int) and 1 <= value <= self.most):
+            raise UsageError(f"{_said(name)} {value}: it must be {', '.join(self.words)} or 1 to {self.most}")
+
+
 class Number(NamedTuple):
     """A finite number within bounds. closed: the bounds are allowed, too. optional: so is None."""
 

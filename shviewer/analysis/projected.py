@@ -48,6 +48,8 @@ class Projected:
     """The suns left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
     inputs: tuple[Path, ...] = ()
     """The files that the light, and coefficients compared with it, were read from."""
+    notes: tuple[str, ...] = ()
+    """The notes on the light, such as negative texels, and why no sun was found where one was asked for."""
 
     @property
     def n_bands(self) -> int:
@@ -120,7 +122,8 @@ def project_recipe(recipe: Recipe) -> Projected:
     about = {key: value for key, value in about.items() if value is not None and value != ""}
     given = [recipe.light, *([recipe.compare] if recipe.compare else [])]
     inputs = tuple(path for path in map(file_of, given) if path)
-    return Projected(found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns, inputs)
+    notes = (*shown.light.notes, *([shown.refusal] if shown.refusal else []))
+    return Projected(found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns, inputs, notes)
 
 
 def _light(recipe: Recipe, shown: Subject) -> dict[str, Value]:

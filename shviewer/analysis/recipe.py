@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from shviewer.analysis.options import Bands, Choice, Flag, Number, Share, Whole, check_options, option
+from shviewer.analysis.options import Bands, Choice, Flag, Number, Share, Whole, WholeOr, check_options, option
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
 
@@ -61,6 +61,13 @@ class Recipe:
         "take suns out of the light as discs of their own and project the rest",
         "--split-sun",
         const=True,
+    )
+    suns: int | str = option(
+        "auto",
+        WholeOr(("auto", "all"), 16),
+        "what --split-sun takes: auto (default), one or two suns; or so many of the compact sources, lamps among them; or all",
+        "--suns",
+        "N",
     )
     window: str = option(
         "none",

@@ -35,7 +35,7 @@ def subject(recipe: Recipe) -> Subject:
         light = MEMORY.named(_name(recipe)) or read_again(recipe)
     found = Subject(light, light)
     if recipe.split_sun:
-        split = _split(light)
+        split = _split(light, recipe.suns)
         found = replace(found, refusal=split) if isinstance(split, str) else Subject(light, split.rest, split.suns)
     if recipe.quantity == "irradiance":
         return replace(found, whole=irradiance_of(found.whole), light=irradiance_of(found.light))
@@ -81,10 +81,10 @@ def _name(recipe: Recipe) -> Hashable:
 
 
 @remember(most=1, doing="looking for suns")
-def _split(light: Light) -> Split | str:
+def _split(light: Light, wanted: int | str) -> Split | str:
     """The light and its suns apart, or the reason why nothing can be split off."""
     try:
-        split = light.split_suns()
+        split = light.split_suns(wanted)
     except LightError as error:
         return str(error)
     MEMORY.belongs(split.rest, light)

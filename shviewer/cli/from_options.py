@@ -40,6 +40,8 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
     chosen |= {"window": window, "window_width": _finite(width, "window width") if separator else None}
     recipe = Recipe(light, reading_from(options), **chosen)
     recipe.check()
+    if "suns" in chosen and not recipe.split_sun:
+        raise UsageError(f"--suns {recipe.suns}: it says what --split-sun takes; give that, too")
     compared, said = vars(options).get("compare"), ""
     if compared:
         from shviewer.analysis.compared_files import compared_with

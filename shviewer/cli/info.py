@@ -105,8 +105,10 @@ def _suns(information: Information) -> list[tuple[str, str]]:
         share = f"{100 * sun.share_of_flux:.3g} % of the flux"
         place = f"at theta {theta:.2f}, phi {phi:z.2f}, {sun.width_degrees:.3g} deg wide"
         colour = " ".join(f"{value:.3g}" for value in sun.irradiance)
-        rows.append(("sun", f"{share} {place}; irradiance {colour}"))
-    return rows + (_bands("rest", information.bands_needed_without_suns) if rows else [])
+        clipped = "; the image is clipped there, it had more" if sun.clipped else ""
+        rows.append(("sun", f"{share} {place}; irradiance {colour}{clipped}"))
+    rows += _bands("rest", information.bands_needed_without_suns) if rows else []
+    return rows or [("sun", f"none: {information.no_sun.partition(': ')[2].partition(';')[0]}")]
 
 
 def _dynamic_range(values: Values) -> list[tuple[str, str]]:

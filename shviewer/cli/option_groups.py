@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Container
 from typing import Any, NoReturn
 
-from shviewer.analysis.options import Bands, Number, Option, Pair, Share, Whole, options_of
+from shviewer.analysis.options import Bands, Number, Option, Pair, Share, Whole, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
 
 LIGHT_HELP = (
@@ -52,7 +52,13 @@ def _values(row: Option) -> dict[str, Any]:
     """The arguments of `add_argument` about an option's values."""
     if row.name in TEXTS:
         return {"metavar": row.metavar}
-    readers: dict[type, Callable[[str], object]] = {Whole: int, Share: _tolerance, Number: finite, Bands: _band_list}
+    readers: dict[type, Callable[[str], object]] = {
+        Whole: int,
+        Share: _tolerance,
+        WholeOr: _whole_or_word,
+        Number: finite,
+        Bands: _band_list,
+    }
     reader = _count if row.name in LARGE else readers.get(type(row.kind), str)
     if isinstance(row.kind, Pair):
         return {"metavar": row.metavar, "nargs": 2, "type": int if row.kind.whole else finite}
@@ -139,6 +145,10 @@ def _count(text: str) -> int:
     if value != int(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
     return int(value)
+
+
+def _whole_or_word(text: str) -> int | str:
+    return int(text) if text.isdecimal() else text
 
 
 def _positive_count(text: str) -> int:

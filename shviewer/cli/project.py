@@ -215,10 +215,9 @@ def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected
     """Project a light; stderr says what was done to it and what became of its suns."""
     recipe = recipe_of(light)
     projected = project_recipe(recipe)
-    shown = subject(recipe)
     suns = [sun_left_out(sun.directional_light, convention.axes) for sun in projected.suns]
-    for note in (*shown.light.notes, *([shown.refusal] if shown.refusal else []), *suns):
-        print(one_line(f"shviewer: note: {shown.light.name}: {note}"), file=sys.stderr)
+    for note in (*projected.notes, *suns):
+        print(one_line(f"shviewer: note: {projected.name}: {note}"), file=sys.stderr)
     return projected
 
 

@@ -22,6 +22,8 @@ class DirectionalLight(NamedTuple):
     """The radiance of a uniform disc with this irradiance, (3,)."""
     width_degrees: float
     """The angle across this disc."""
+    clipped: bool = False
+    """Whether its image is clipped there, so that it had more than this."""
 
 
 def sun_keys(suns: Sequence[DirectionalLight], axes: Axes) -> dict[str, Value]:
@@ -33,6 +35,7 @@ def sun_keys(suns: Sequence[DirectionalLight], axes: Axes) -> dict[str, Value]:
             f"sun-{number}-irradiance": _exactly(sun.irradiance),
             f"sun-{number}-radiance": _exactly(sun.radiance),
             f"sun-{number}-width": sun.width_degrees,
+            **({f"sun-{number}-clipped": 1} if sun.clipped else {}),
         }
     return found
 
@@ -40,7 +43,8 @@ def sun_keys(suns: Sequence[DirectionalLight], axes: Axes) -> dict[str, Value]:
 def sun_left_out(sun: DirectionalLight, axes: Axes) -> str:
     """One line about a sun that was left out and the directional light in its place."""
     direction, irradiance = _briefly(axes.matrix @ sun.direction), _briefly(sun.irradiance)
-    return f"sun left out: a directional light from ({direction}), irradiance {irradiance}"
+    more = "; the image is clipped there: the sun had more" if sun.clipped else ""
+    return f"sun left out: a directional light from ({direction}), irradiance {irradiance}{more}"
 
 
 def _exactly(numbers: Iterable[float]) -> str:

@@ -178,16 +178,19 @@ class EnvironmentLight(RadianceLight):
             shown = areas[top : top + rows] > 0
             yield self.pixels[top : top + rows][shown].astype(np.float64), areas[top : top + rows][shown]
 
-    def split_suns(self) -> Split:
-        from shviewer.lights.suns.compact_sources import CompactSources, suns_or_refusal
+    def split_suns(self, wanted: int | str = "auto") -> Split:
+        from shviewer.lights.suns.compact_sources import CompactSources
+        from shviewer.lights.suns.rule import chosen
 
         height, width = self.pixels.shape[:2]
         self.limits.check_memory(
             SPLIT_BYTES * width * height, f"{self.name}: taking suns out of {width} x {height} texels"
         )
         sources = CompactSources(self.pixels, self.layout)
-        suns = suns_or_refusal(self.name, *sources.take_all())
-        return Split(replace(self, pixels=sources.pixels), suns)
+        found, why = sources.take_all()
+        taken = chosen(self.name, found, wanted, why)
+        suns = [found[i].sun for i in taken] if len(taken) == len(found) else sources.keep(self.pixels, taken)
+        return Split(replace(self, pixels=sources.pixels), tuple(suns))
 
 
 def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:

@@ -92,8 +92,11 @@ class Light(Protocol):
     def irradiance_up(self) -> Array:
         """The irradiance of a surface that faces +z, (3,)."""
 
-    def split_suns(self) -> Split:
-        """The light without its suns, and the suns. LightError, one line, if it has none."""
+    def split_suns(self, wanted: int | str = "auto") -> Split:
+        """The light without its suns, and the suns. LightError, one line, if it has none.
+
+        wanted: "auto" for suns alone, or how many compact sources, lamps among them, or "all".
+        """
 
     def __hash__(self) -> int:
         """A hash by identity, since results for a light are remembered."""
@@ -156,5 +159,5 @@ class LightBase(ABC):
     def landmarks(self) -> Array:
         return np.zeros((0, 3))
 
-    def split_suns(self: Light) -> Split:
+    def split_suns(self: Light, wanted: int | str = "auto") -> Split:
         raise LightError(f"{self.name}: only images and sums of lobes can be split; show it with its sun")

@@ -82,28 +82,35 @@ class LobeLight(RadianceLight):
     def irradiance_up(self) -> Array:
         return np.asarray(self.irradiance().radiance(UP[None])[0])
 
-    def split_suns(self) -> Split:
+    def split_suns(self, wanted: int | str = "auto") -> Split:
         """Split off the discs that are suns by the rule for images; no rest of them is left."""
-        from shviewer.lights.suns.compact_sources import MOST, suns_or_refusal
+        from shviewer.lights.suns.rule import MOST, Found, chosen
         from shviewer.lights.suns.sun import Sun
 
-        suns: list[Sun] = []
+        found: list[Found] = []
+        taken: list[Lobe] = []
         rest, why = self, ""
-        while len(suns) < MOST:
+        while len(found) < MOST:
             discs = [lobe for lobe in rest.lobes if isinstance(lobe.profile, Disc) and lobe.radiance.mean() > 0]
             discs.sort(key=lambda lobe: -lobe.radiance.mean())
             refusals = [rest._disc_refusal(disc) for disc in discs]
             if "" not in refusals:
                 why = next(iter(refusals), "it has no disc")
                 break
-            sun = discs[refusals.index("")]
-            suns.append(Sun(sun.axis, sun.profile.half_angle, sun.radiance))
-            rest = rest._without(sun)
-        return Split(rest, suns_or_refusal(self.name, suns, why))
+            disc = discs[refusals.index("")]
+            sun = Sun(disc.axis, disc.profile.half_angle, disc.radiance)
+            found.append(Found(sun, sun.half_angle, False, rest._energy_of(disc)))
+            taken.append(disc)
+            rest = rest._without(disc)
+        indices = chosen(self.name, found, wanted, why)
+        rest = self
+        for i in indices:
+            rest = rest._without(taken[i])
+        return Split(rest, tuple(found[i].sun for i in indices))
 
     def _disc_refusal(self, disc: Lobe) -> str:
         """Why one of the discs is no sun; "" if it is. As everywhere, the mean of the channels counts."""
-        from shviewer.lights.suns.compact_sources import refusal
+        from shviewer.lights.suns.rule import refusal
 
         radiance, solid_angle = float(disc.radiance.mean()), float(disc.profile.zonal(1)[0])
         behind = self._without(disc).radiance(disc.axis[None]).mean()
@@ -112,8 +119,15 @@ class LobeLight(RadianceLight):
             disc.profile.half_angle,
             1 + radiance / behind if behind > 0 else np.inf,
             radiance * solid_angle / sum(fluxes),
-            radiance**2 * solid_angle / (self.products().sum() / 9 or 1.0),  # squares of less than 1e-160 may be 0
+            self._energy_of(disc),
         )
+
+    def _energy_of(self, disc: Lobe) -> float:
+        """The share of ||f||^2 that one of the discs holds by itself, both in the mean of the channels."""
+        radiance, solid_angle = float(disc.radiance.mean()), float(disc.profile.zonal(1)[0])
+        return (
+            radiance**2 * solid_angle / (float(self.products().sum()) / 9 or 1.0)
+        )  # squares of less than 1e-160 may be 0
 
     def _without(self, lobe: Lobe) -> LobeLight:
         """The other lobes; a black constant if there are none."""

@@ -175,7 +175,7 @@ def step_sweep(state: State) -> State:
 def reset(state: State) -> State:
     """Go back to the start in everything but the light, how it is read and what is asked of its numbers."""
     last, view = state.recipe, state.view
-    recipe = Recipe(light=last.light, reading=last.reading, compare=last.compare, tolerance=last.tolerance)
+    recipe = Recipe(last.light, last.reading, compare=last.compare, tolerance=last.tolerance, suns=last.suns)
     return changed(state, recipe=recipe, view=View(evaluate=view.evaluate, layout_tried=view.layout_tried))
 
 

@@ -324,3 +324,13 @@ def test_a_convention_that_nothing_is_read_in_is_refused(capsys: Capture) -> Non
         "--convention three: it applies to a coefficient file, and green is none; name one as LIGHT or with --compare"
     )
     assert says in capsys.readouterr().err
+
+
+def test_suns_beside_split_sun_takes_lamps_and_never_a_light(tmp_path: Path, capsys: Capture) -> None:
+    out = str(tmp_path / "a.json")
+    assert main(["project", "--split-sun", "film_studio", "-o", out]) == 0
+    assert "film_studio has no sun: its strongest compact source is 4.6 degrees wide" in capsys.readouterr().err
+    assert main(["project", "--split-sun", "--suns", "all", "film_studio", "-o", out]) == 0
+    assert "sun left out" in capsys.readouterr().err
+    assert main(["project", "--suns", "2", "film_studio", "-o", out]) == 2
+    assert "it says what --split-sun takes; give that, too" in capsys.readouterr().err

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from shviewer.coefficients.axes import Axes
+from shviewer.coefficients.suns import sun_left_out
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import evaluate_basis, normalise
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
@@ -28,7 +30,8 @@ from shviewer.lights.light import Light
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.lights.suns.caps import Caps, chord, chord_of
-from shviewer.lights.suns.compact_sources import CAP, MOST
+from shviewer.lights.suns.compact_sources import CAP
+from shviewer.lights.suns.rule import MOST
 from shviewer.lights.suns.sun import Sun
 from shviewer.resources import resource_folder
 
@@ -101,8 +104,8 @@ class Parts(NamedTuple):
         return LobeLight(tuple(sun.lobe for sun in self.suns))
 
 
-def split_suns(a_light):
-    return Parts(a_light, *a_light.split_suns())
+def split_suns(a_light, wanted="all"):
+    return Parts(a_light, *a_light.split_suns(wanted))
 
 
 def flux_taken(split):
@@ -236,12 +239,12 @@ def test_a_sun_is_weighed_against_what_brighter_ones_leave():
     assert_allclose(dim.flux, bright.flux / 50, rtol=1e-2)  # of ||f||^2, 1/2500 at first
 
 
-def test_no_more_than_eight_suns_leave():
+def test_no_more_than_sixteen_sources_leave():
     pixels = grey(radiance=0.01)
-    pixels[64, ::25] = 100
+    pixels[64, ::14] = 100
     split = split_suns(light(pixels))
     assert len(split.suns) == MOST
-    assert (split.rest.pixels == 100).all(axis=2).sum() == len(range(0, WIDTH, 25)) - MOST
+    assert (split.rest.pixels == 100).all(axis=2).sum() == len(range(0, WIDTH, 14)) - MOST
 
 
 def test_what_is_left_has_no_sun():
@@ -344,17 +347,111 @@ def test_huge_and_tiny_radiances_are_split_alike():
 
 
 @pytest.mark.parametrize(
-    ("name", "suns"), [("venice_sunset.hdr", 1), ("film_studio.exr", 1), ("mud_road_puresky.hdr", 0)]
+    ("name", "suns", "sources"),
+    [
+        ("venice_sunset.hdr", 1, 1),
+        ("film_studio.exr", 0, 1),
+        ("st_fagans_interior.hdr", 0, 3),
+        ("mud_road_puresky.hdr", 0, 0),
+    ],
 )
-def test_the_maps_that_ship(name, suns):
-    """A sun on the horizon; of four lamps the one that is small; an overcast sky."""
+@pytest.mark.parametrize("wanted", ["auto", "all"])
+def test_the_maps_that_ship(name, suns, sources, wanted):
+    """A sun on the horizon; of four lamps the one that is small; lamps of a room; an overcast sky."""
+    suns = suns if wanted == "auto" else sources
     a_light = light(read_radiance_image(resource_folder("assets") / "environments" / name).pixels, name)
     if not suns:
-        refused(a_light)
+        with pytest.raises(LightError, match="has no sun"):
+            a_light.split_suns(wanted)
     else:
-        split = split_suns(a_light)
+        split = split_suns(a_light, wanted)
         assert len(split.suns) == suns
         assert_allclose(sum(sun.flux for sun in split.suns), flux_taken(split), rtol=1e-12)
+
+
+def rings(height, core, step, axis=NOON):
+    """A clear sky of 1, and a core clipped at 100 that glows: 20 and 4 in two rings around it, `step` degrees wide."""
+    pixels, far = grey(height, 2 * height), np.degrees(2 * np.arcsin(chord(centres(height, 2 * height), axis) / 2))
+    for radius, value in ((core + 2 * step, 4), (core + step, 20), (core, 100)):
+        pixels[far <= radius] = value
+    return pixels
+
+
+@pytest.mark.parametrize("axis", [NOON, towards(180, 4), towards(20, 88)])
+@pytest.mark.parametrize("step", [0.5, 1, 2, 4])
+@pytest.mark.parametrize("core", [0.3, 0.6, 1.0, 1.5])
+def test_a_clipped_sun_that_glows_is_found_and_said_to_be_clipped(core, step, axis):
+    split = split_suns(light(rings(512, core, step, axis)), "auto")
+    (sun,) = split.suns
+    assert sun.clipped
+    assert chord(sun.axis, axis) < np.radians(0.2)
+    assert_allclose(sun.flux, flux_taken(split), rtol=1e-12)
+    assert "had more" in sun_left_out(sun.directional_light, Axes())
+
+
+def test_a_glow_that_falls_like_that_of_a_lens_is_found_too():
+    far = np.degrees(2 * np.arcsin(chord(centres(256, 512), NOON) / 2))
+    sky = 0.5 + 0.5 * (1 + centres(256, 512)[..., 2])
+    pixels = np.minimum(sky + 3000 / (1 + (far / 0.3) ** 2) ** 1.5, 60)[..., None] * np.array([1.0, 0.9, 0.8])
+    (sun,) = split_suns(light(np.minimum(pixels, 40)), "auto").suns
+    assert sun.clipped
+
+
+def test_a_disc_with_a_sharp_edge_and_a_sky_around_a_real_sun_are_not_clipped():
+    for pixels in (
+        noon_sky(256, 512),
+        noon_sky(1024, 2048),
+        add_disc(grey(512, 1024), NOON, np.radians(1), 5000 * WHITE),
+    ):
+        (sun,) = split_suns(light(pixels), "auto").suns
+        assert not sun.clipped
+
+
+def spots(count, radiance=100.0):
+    pixels = grey(256, 512, 0.01)
+    for i in range(count):
+        pixels = add_disc(pixels, towards(360 * i / count, 20 - 40 * (i % 2)), np.radians(0.5), radiance * WHITE)
+    return pixels
+
+
+@pytest.mark.parametrize(
+    ("pixels", "reason", "count"),
+    [
+        (lambda: spots(12), "its 12 brightest compact sources are alike, as lamps are", 12),
+        (lambda: spots(3), "its 3 brightest compact sources are alike, as lamps are", 3),
+        (lambda: add_disc(grey(512, 1024, 0.1), NOON, np.radians(2.1), 200 * WHITE), "is 4.2 degrees wide", 1),
+        (lambda: add_disc(grey(512, 1024), NOON, np.radians(1.2), 48 * WHITE), "of the squared norm", 1),
+    ],
+)
+def test_lamps_stay_unless_they_are_asked_for(pixels, reason, count):
+    lamps = light(pixels())
+    with pytest.raises(LightError, match=reason) as caught:
+        lamps.split_suns()
+    assert "a sun is a compact source of at most 3 degrees with 25 % of the squared norm" in str(caught.value)
+    every, strongest = split_suns(lamps, "all"), split_suns(lamps, 1)
+    assert len(every.suns) == count
+    assert len(strongest.suns) == 1
+    assert_allclose(strongest.suns[0].flux, every.suns[0].flux, rtol=1e-6)
+    assert_allclose(strongest.suns[0].flux, flux_taken(strongest), rtol=1e-12)
+
+
+def test_a_sun_leaves_and_lamps_beside_it_stay():
+    pixels = add_disc(spots(4), towards(45, 70), np.radians(0.4), 1e5 * WHITE)
+    split = split_suns(light(pixels), "auto")
+    (sun,) = split.suns
+    assert chord(sun.axis, towards(45, 70)) < np.radians(0.1)
+    beyond = chord(centres(256, 512), sun.axis) > chord_of(1.01 * CAP)
+    assert_array_equal(split.rest.pixels[beyond], split.whole.pixels[beyond])
+
+
+def test_scenes_have_the_same_rule():
+    discs = [Lobe(Disc(0.01), towards(30 * i), 1e4 * WHITE) for i in range(12)]
+    with pytest.raises(LightError, match="its 12 brightest compact sources are alike"):
+        LobeLight(tuple(discs)).split_suns()
+    assert len(LobeLight(tuple(discs)).split_suns(5).suns) == 5
+    sky = Lobe(Constant(), [0, 0, 1], WHITE)
+    with pytest.raises(LightError, match=r"is 4\.2 degrees wide"):
+        LobeLight((sky, Lobe(Disc(np.radians(2.1)), [0, 0, 1], 1e4 * WHITE))).split_suns()
 
 
 def test_the_disc_of_a_scene_leaves_exactly():

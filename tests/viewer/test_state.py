@@ -203,6 +203,7 @@ def test_reset_keeps_the_light_and_what_is_asked_of_it_and_nothing_else() -> Non
         quantity="irradiance",
         compare=GIVEN,
         split_sun=True,
+        suns="all",
         window="hann",
         window_width=3.0,
         tolerance=0.1,
@@ -230,7 +231,7 @@ def test_reset_keeps_the_light_and_what_is_asked_of_it_and_nothing_else() -> Non
     for held in (other.recipe, other.view):
         assert [item.name for item in fields(held) if getattr(held, item.name) == item.default] == []
     after = press(other, "R")
-    kept = {"reading": Reading(sanitize=True), "compare": GIVEN, "tolerance": 0.1, "evaluate": "map"}
+    kept = {"reading": Reading(sanitize=True), "compare": GIVEN, "tolerance": 0.1, "evaluate": "map", "suns": "all"}
     assert after == state_of(*LIGHTS, light="sun-sky", **kept)
     assert after.view.layout_tried == "cube"
 

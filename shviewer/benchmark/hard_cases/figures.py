@@ -126,10 +126,10 @@ def band_counts() -> float:
     worst = max(
         worst, abs((smallest_band_count(errors, 0.0626) or 0) - 4), abs((smallest_band_count(errors, 0.0624) or 0) - 5)
     )
-    noise = np.random.default_rng(7).normal(size=(2, n * n, 3)) * 0.02
+    noise = np.random.default_rng(7).normal(size=(2, n * n, 3)) * 0.02 * (exact == 0)  # its squares pass for band 4
     halves = exact + noise
-    estimate = split_half_estimate(halves[0], halves[1], 4.0, 1e-4, 0.2)
-    return max(worst, float(estimate.likely != 3))
+    estimate = split_half_estimate(halves[0], halves[1], 4.0, 1e-4, 0.05)
+    return max(worst, float(estimate.likely != 5))
 
 
 def products_of_lobes() -> float:

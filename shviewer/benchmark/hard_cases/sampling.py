@@ -15,6 +15,7 @@ from shviewer.benchmark.hard_cases.evaluation import generic
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.filters import window
+from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import DirectionSet, fejer, fibonacci, gauss_legendre, jittered, uniform_random
 from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
@@ -97,6 +98,27 @@ def scattered(n_bands: int) -> float:
     found = project_samples(lambda _: next(numbers), DirectionSet(directions, weights), n_bands)
     plain = evaluate_basis(directions, n_bands).T @ (weights[:, None] * values)
     return largest(found - plain) / float(np.abs(weights[:, None] * values).sum())
+
+
+def projected_on_rules() -> float:
+    """Sums of 9 and 40 bands of noise, projected by rules of even and odd rows that are exact for them, and their products.
+
+    Bound: 1e-12, rounding of sums over up to 12 000 points.
+    """
+    worst = 0.0
+    for n in (9, 40):
+        coefficients = np.random.default_rng(8).normal(size=(n * n, 3))
+        for rule in (
+            gauss_legendre(2 * n**2),
+            gauss_legendre(2 * (n + 1) ** 2),
+            fejer(2 * (2 * n - 1) ** 2),
+            fejer(8 * n**2),
+        ):
+            found, products = project_product(lambda d, c=coefficients, n=n: evaluate_basis(d, n) @ c, rule, n)  # type: ignore[misc]
+            worst = max(
+                worst, largest(found - coefficients), largest(products / n**2 - coefficients.T @ coefficients / n**2)
+            )
+    return worst
 
 
 def sums_on_rows() -> float:
@@ -184,6 +206,7 @@ CASES = (
     Case("golden spiral", "closed form", 1e-9, spiral),
     Case("Gauss-Legendre and Fejer, every moment", "2/(k+1)", 1e-14, rules),
     *(Case(f"scattered samples, {n} bands", "plain sums", 1e-13, partial(scattered, n)) for n in (4, 7, 33)),
+    Case("9 and 40 bands projected by exact rules", "the same numbers", 1e-12, projected_on_rules),
     Case("sums of 40 bands on rows", "plain sums", 1e-12, sums_on_rows),
     Case("windows", "60-digit decimal", 1e-15, windows),
     Case("clamped lines to l = 20", "exact fractions", 2e-14, clamped_linear),

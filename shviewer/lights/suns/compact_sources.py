@@ -7,6 +7,11 @@ A source is compact if it is, in the mean of the three channels,
     worth it    at least FLUX of the image's flux and ENERGY of its ||f||^2, as both are when the source's turn comes.
 The brightest goes first, up to MOST, until none is left. Everything within one cap of CAP leaves as one source.
 
+A source is *clipped* if it ends in a plateau: PLATEAU or more texels at the image's highest value in some channel, most of
+all such texels, in a glow that has GLOW of the peak beyond the texels that its edge crosses, as no disc has, and that falls by
+FALL towards FAR. Of a clipped source the file has kept too little, and its glow is its surroundings. So it is narrow if the
+plateau is, bright against what is beyond FAR, and worth it with CLIPPED_ENERGY of ||f||^2.
+
 A source is the radiance that rises above its surroundings within CAP of its middle, which is the middle of all texels at least
 half as bright as its peak. The surroundings are the ring beyond, out to RING; their level is the radiance that LEVEL of the
 ring stays below, per channel. Texels above that level are lowered to it. Texels below 0 are raised to 0: beside a sun they are
@@ -16,29 +21,27 @@ gain flux.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, normalise
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.suns.caps import Caps, Texels, chord, chord_of
+from shviewer.lights.suns.rule import CONTRAST, ENERGY, FEW_TEXELS, MOST, Found, refusal
 from shviewer.lights.suns.sun import Sun
 
 CAP = np.radians(3.0)
 RIM = np.radians(4.0)
 RING = np.radians(6.0)
-WIDEST = np.radians(2.5)
-"""The largest half-angle of a compact source, less than CAP: a source that fills the cap goes on beyond it."""
-
-CONTRAST = 10.0
-FLUX = 0.005
-ENERGY = 0.05
 LEVEL = 0.9
-MOST = 8
+
+PLATEAU = 2
+GLOW, FALL = 0.01, 2.0
+FAR, FARTHEST = np.radians(10.0), np.radians(15.0)
+CLIPPED_ENERGY = 0.01
 
 BLOCK_VALUES = 2**18
 """Texels whose flux is summed at a time."""
@@ -46,36 +49,12 @@ BLOCK_VALUES = 2**18
 TRIES = 32
 """How many bright spots are looked at before flux and energy of the rest are computed anew."""
 
-RULE = (
-    f"a sun is at most {2 * np.degrees(WIDEST):g} degrees wide, alone, {CONTRAST:g} times as bright as what surrounds it, and "
-    f"holds {100 * FLUX:g} % of the flux and {100 * ENERGY:g} % of the squared norm"
-)
-
-
-def refusal(half_angle: float, contrast: float, flux: float, energy: float) -> str:
-    """Why the brightest spot is not compact, in words; "" if it is. Flux and energy are shares of the whole."""
-    if not contrast >= CONTRAST:
-        return f"its brightest spot is only {contrast:.2g} times as bright as what surrounds it"
-    if not half_angle <= WIDEST:
-        return f"its brightest spot is {2 * np.degrees(half_angle):.2g} degrees wide"
-    if not energy >= ENERGY:
-        return f"its brightest spot holds only {100 * energy:.2g} % of the squared norm"
-    if not flux >= FLUX:
-        return f"its brightest spot holds only {100 * flux:.2g} % of the flux"
-    return ""
-
-
-def suns_or_refusal(name: str, suns: list[Sun], why: str) -> tuple[Sun, ...]:
-    """The suns of the light `name`, the greatest flux first. LightError if there are none; why: what was found instead."""
-    if not suns:
-        raise LightError(f"{name} has no sun: {why}; {RULE}; show it unsplit")
-    return tuple(sorted(suns, key=lambda sun: -sun.flux.sum()))
-
 
 @dataclass(frozen=True, eq=False)
 class _Excess:
     """The texels that rise above their surroundings around an axis, before and after they are taken out."""
 
+    axis: Array
     texels: Texels
     before: NDArray[np.float32]
     after: NDArray[np.float32]
@@ -94,6 +73,18 @@ class _Excess:
     def mean(self) -> Array:
         """The mean of the three channels of `taken`, (k,)."""
         return np.asarray(self.taken.mean(axis=1))
+
+    @cached_property
+    def bright(self) -> Array:
+        """The mean of the three channels before, (k,)."""
+        return np.asarray(self.before.mean(axis=1, dtype=np.float64))
+
+    @cached_property
+    def core(self) -> tuple[float, int]:
+        """The half-angle of a disc as large as the texels at least half as bright as the peak, and how many they are."""
+        half = self.bright >= self.bright.max() / 2
+        solid_angle = float(self.texels.solid_angles[half].sum())
+        return float(2 * np.arcsin(np.sqrt(min(1.0, solid_angle / (4 * np.pi))))), int(half.sum())
 
     @property
     def contrast(self) -> float:
@@ -121,17 +112,39 @@ class CompactSources:
         self._mean: NDArray[np.float32] = self.pixels @ np.full(3, 1 / 3, dtype=np.float32)
         self._mean *= self._solid_angles > 0
         self._caps = Caps(layout, *self.pixels.shape[:2])
+        self._plateau = self._highest()
+        self._axes: list[Array] = []
 
-    def take_all(self) -> tuple[list[Sun], str]:
+    def take_all(self) -> tuple[list[Found], str]:
         """Take all sources out; return them and the reason why there are no more."""
-        sources: list[Sun] = []
+        sources: list[Found] = []
         while True:
             found, why = self._take_brightest(MOST - len(sources))
             sources += found
             if not found or len(sources) == MOST:
                 return sources, why
 
-    def _take_brightest(self, most: int) -> tuple[list[Sun], str]:
+    def keep(self, pixels: NDArray[np.float32], taken: list[int]) -> list[Sun]:
+        """Take only some of the sources that were found, by their indices, out of the image as it was; return them."""
+        self.pixels[:] = pixels
+        self._mean[:] = (pixels @ np.full(3, 1 / 3, dtype=np.float32)) * (self._solid_angles > 0)
+        suns = []
+        for i in taken:
+            excess = self._excess(self._axes[i])
+            suns.append(replace(self._disc(excess), clipped=self._clipped(excess)))
+            self._remove(excess)
+        return suns
+
+    def _highest(self) -> Texels | None:
+        """The texels at the highest value of a channel, if there are so few and so many that they can be a clipped sun."""
+        flat = self.pixels.reshape(-1, 3)
+        ceiling = flat.max(axis=0)
+        at = np.flatnonzero(((flat == ceiling) & (ceiling > 0)).any(axis=1))
+        if not PLATEAU <= len(at) <= len(flat) // 8:
+            return None
+        return self._caps.texels(*np.divmod(at, self.pixels.shape[1]))
+
+    def _take_brightest(self, most: int) -> tuple[list[Found], str]:
         """Take out up to `most` sources; return them and why the first spot that is not compact is none.
 
         A source has a texel of at least sqrt(ENERGY ||f||^2 / solid angle of the cap), which few texels reach.
@@ -140,29 +153,60 @@ class CompactSources:
         if not peak > 0:
             return [], "nothing in it is above 0"
         flux, squares = self._flux_and_squares(peak)
-        dimmest = np.sqrt(ENERGY * squares / np.pi) / chord_of(CAP)
+        least = ENERGY if self._plateau is None else CLIPPED_ENERGY
+        dimmest = np.sqrt(least * squares / np.pi) / chord_of(CAP)
         waiting = self._brighter_than(dimmest * peak)
-        found: list[Sun] = []
+        found: list[Found] = []
         why = ""
         for _ in range(TRIES):
             if not len(waiting) or len(found) == most:
                 break
-            excess = self._excess(self._middle(waiting[0]))
+            axis = self._middle(waiting[0])
+            excess = self._excess(axis)
             mean, weights = excess.mean / peak, excess.texels.solid_angles
             shares = float(weights @ mean) / flux, float(weights @ mean**2) / squares
+            clipped = self._clipped(excess)
             wrong = (
-                refusal(0.0, excess.contrast, *shares)
-                or excess.goes_on * "its brightest spot is part of something larger"
-            )
+                refusal(excess.core[0], np.inf, 1.0, 1.0 if shares[1] >= CLIPPED_ENERGY else shares[1])
+                if clipped
+                else refusal(0.0, excess.contrast, *shares)
+            ) or excess.goes_on * "its brightest spot is part of something larger"
             if not wrong:
                 disc = self._disc(excess)
-                wrong = refusal(disc.half_angle, excess.contrast, *shares)
+                wrong = "" if clipped else refusal(disc.half_angle, excess.contrast, *shares)
                 if not wrong:
-                    found.append(disc)
+                    core, texels = excess.core
+                    found.append(Found(replace(disc, clipped=clipped), core, texels <= FEW_TEXELS, shares[1]))
+                    self._axes.append(axis)
                     self._remove(excess)
             why = why or wrong
             waiting = waiting[chord(waiting, waiting[0]) > chord_of(CAP)]
         return found, why or "no texel is bright enough to hold so much in so small a cap"
+
+    def _clipped(self, excess: _Excess) -> bool:
+        """Whether a source is clipped in the file, as the module docstring has it."""
+        plateau = self._plateau
+        if plateau is None:
+            return False
+        here = plateau.within(excess.axis, -1, CAP)
+        if len(here.rows) < PLATEAU or here.solid_angles.sum() < plateau.solid_angles.sum() / 2:
+            return False
+        peak, (core, texels) = float(excess.bright.max()), excess.core
+        around = self._caps.cap(excess.axis, FARTHEST)
+        far = around.within(excess.axis, FAR, FARTHEST)
+        beyond = float(np.median(self._mean[far.rows, far.columns])) if len(far.rows) else 0.0
+        size = 2 * core / np.sqrt(texels)  # of a texel, about
+        edge = core + 0.8 * size  # an edge crosses texels whose centres are up to half a diagonal beyond it
+        near, farther = (
+            self._average(around.within(excess.axis, *ring)) - beyond
+            for ring in ((edge, edge + max(core, 2 * size)), (FAR / 2, FAR))
+        )
+        return peak >= CONTRAST * beyond and near >= max(GLOW * (peak - beyond), FALL * farther)
+
+    def _average(self, texels: Texels) -> float:
+        """The mean radiance of texels and channels; 0 of none."""
+        total = float(texels.solid_angles.sum())
+        return float(texels.solid_angles @ self._mean[texels.rows, texels.columns]) / total if total else 0.0
 
     def _flux_and_squares(self, peak: np.float32) -> tuple[float, float]:
         """The integrals of |mean| / peak and of its square, in the few digits that a share needs."""
@@ -198,7 +242,7 @@ class CompactSources:
         unwilling = cap.solid_angles @ (before.astype(np.float64) - after) <= 0
         after[:, unwilling] = before[:, unwilling]
         rim = self._mean[ring.rows, ring.columns][chord(ring.directions, axis) <= chord_of(RIM)]
-        return _Excess(cap, before, after, level.astype(np.float64), float(rim.max(initial=-np.inf)))
+        return _Excess(axis, cap, before, after, level.astype(np.float64), float(rim.max(initial=-np.inf)))
 
     def _disc(self, excess: _Excess) -> Sun:
         """The disc with bands 0 and 1 of the radiance taken, by the layout's exact integrals over its texels."""

@@ -4,8 +4,9 @@ compact_sources.py says what a sun is and which part of an image belongs to it. 
 which the same rule applies; they are taken out without a rest.
 
 In an image the disc has the flux that was taken, per channel. Its axis is the direction of the flux vector of the channels'
-mean, and its half-angle a follows from the vector's length: |vector| = cos(a/2)^2 flux. So bands 0 and 1 of rest plus disc are
-those of the whole, in the mean of the channels. Other bands and single channels are off, by about this share of the sun's flux:
+mean, and its half-angle a follows from the vector's length: |vector| = cos(a/2)^2 flux. So rest plus disc
+have band 0 of the whole in every channel, and band 1 in the mean of the channels. Band 1 of single channels and other bands are
+off, by about this share of the sun's flux:
     l^2 |s^2 - t^2| / 8    for standard deviations s along and t across, in radians: of texels that are not square, of glare;
     (l a)^4 / 200          for another profile than a uniform disc;
     l b                    in a channel whose own centre is at the angle b to the axis.
@@ -35,6 +36,8 @@ class Sun:
     """The half-angle of the disc, radians."""
     radiance: Array
     """Linear RGB, (3,); times the solid angle it is the flux taken."""
+    clipped: bool = False
+    """Whether the image is clipped there, so that the sun had more than this."""
 
     @property
     def solid_angle(self) -> float:
@@ -54,7 +57,9 @@ class Sun:
     @property
     def directional_light(self) -> DirectionalLight:
         """The sun as it is written beside coefficients of the rest."""
-        return DirectionalLight(self.axis, self.irradiance, self.radiance, float(np.degrees(2 * self.half_angle)))
+        return DirectionalLight(
+            self.axis, self.irradiance, self.radiance, float(np.degrees(2 * self.half_angle)), self.clipped
+        )
 
     @property
     def lobe(self) -> Lobe:

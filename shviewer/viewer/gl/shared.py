@@ -13,7 +13,7 @@ from shviewer.harmonics.basis import Array, count_bands, index, normalisation
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import MAX_LOBES
-from shviewer.lights.suns.compact_sources import MOST as MAX_SUNS
+from shviewer.lights.suns.rule import MOST as MAX_SUNS
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE
 from shviewer.viewer.view import ERRORS, TONES

@@ -141,7 +141,7 @@ def _describe_suns(picture: Picture) -> list[str]:
     sun = suns[0]
     theta, phi = theta_phi_degrees(sun.axis)
     place = f"theta {theta:.1f}, phi {phi:z.1f}"
-    size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide"
+    size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide{', clipped in the file' if sun.clipped else ''}"
     colour = " ".join(radiance(value, 0.0) for value in sun.irradiance)
     count = "sun" if len(suns) == 1 else f"{len(suns)} suns, the first"
     return [

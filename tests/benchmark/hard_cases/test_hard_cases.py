@@ -20,7 +20,7 @@ from helpers import unavailable
 from places import hard_cases
 
 from shviewer.benchmark.hard_cases import evaluation as ev
-from shviewer.benchmark.hard_cases import exact, identities, projecting, radiances, ringing, rotating
+from shviewer.benchmark.hard_cases import exact, identities, projecting, radiances, ringing, rotating, sampling
 from shviewer.benchmark.hard_cases.outcome import Case, Outcome
 from shviewer.benchmark.hard_cases.shader import renderer_or_reason
 from shviewer.benchmark.hard_cases.table import CASES, as_json, as_markdown, as_text, measure
@@ -90,6 +90,8 @@ FAILURES: dict[str, Callable[[], float]] = {
     "huge suns, 179 to 179.9 degrees": lambda: projecting.suns((179.0, 179.735, 179.9), textbook.disc_zonal),
     "1e7 samples of a constant 0.1": lambda: projecting.many_samples(textbook.project_samples_float32),
     "+-1e6 cancellation, 1e7 samples": lambda: projecting.many_cancelling_samples(textbook.project_samples_float32),
+    "jittered samples, 300 x 300 cells": lambda: sampling.stratified(sampling.uniform_random),
+    "independent samples": lambda: sampling.independent(textbook.samples_at_equal_angles),
     "black light": lambda: radiances.black(textbook.figures_of),
     "figures of radiance 1e-30 to 1e30": lambda: radiances.figures_at_any_radiance(
         lambda light: textbook.figures_of(light, np.float32)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from shviewer.harmonics.quadrature import DirectionSet
+
 
 def factorial(k: int) -> float:
     """k! in float64: infinite from 171 on."""
@@ -178,3 +180,10 @@ def figures_of(light, squares=np.float64) -> list[float]:
         power = (light.coefficients(5).astype(squares) ** 2).sum(axis=1)
         shares = np.add.reduceat(power, np.arange(5) ** 2) / norm
         return [float(np.sqrt(1 - shares.sum())), *shares]
+
+
+def samples_at_equal_angles(n_samples: int, seed: int) -> DirectionSet:
+    """Uniform in theta and phi, with weights as if they were uniform on the sphere."""
+    theta, phi = np.random.default_rng(seed).random((2, n_samples)) * [[np.pi], [2 * np.pi]]
+    directions = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+    return DirectionSet(directions, np.full(n_samples, 4 * np.pi / n_samples))
