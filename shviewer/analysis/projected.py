@@ -123,7 +123,9 @@ def project_recipe(recipe: Recipe) -> Projected:
     given = [recipe.light, *([recipe.compare] if recipe.compare else [])]
     inputs = tuple(path for path in map(file_of, given) if path)
     notes = (*shown.light.notes, *([shown.refusal] if shown.refusal else []))
-    return Projected(found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns, inputs, notes)
+    return Projected(
+        found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns, inputs, notes
+    )
 
 
 def _light(recipe: Recipe, shown: Subject) -> dict[str, Value]:
