@@ -63,8 +63,10 @@ class FunctionLight(RadianceLight):
     @property
     def best_method(self) -> str:
         sampled = self._sampled
-        rule = "cells divided" if sampled.rows is None else f"Gauss-Legendre, {grouped(2 * sampled.rows**2)} points"
-        return f"{rule}; {self._missed}"
+        rule, points = "Gauss-Legendre", 2 * (sampled.rows or 0) ** 2
+        if sampled.rows is None:
+            rule, points = "adaptive cells", sampled.evaluations
+        return f"{rule}, {grouped(points)} points; {self._missed}"
 
     @property
     def _missed(self) -> str:

@@ -1,5 +1,6 @@
 """What shviewer.lights.function promises: any Python function of directions is a light, or one line says why not."""
 
+import re
 import sys
 
 import numpy as np
@@ -93,7 +94,8 @@ def test_coefficients_agree_with_scattered_samples():
 def test_the_best_method_names_its_points():
     said = "features narrower than 0.5 degrees may be missed"
     assert FunctionLight(np.sin).best_method == f"Gauss-Legendre, 51 200 points; {said}"
-    assert FunctionLight(lambda d: np.sqrt(np.abs(d[:, 0]))).best_method == f"cells divided; {said}"
+    rough = FunctionLight(lambda d: np.sqrt(np.abs(d[:, 0]))).best_method
+    assert re.fullmatch(rf"adaptive cells, [\d ]+ points; {said}", rough)
 
 
 def test_the_map_has_the_function_at_its_texels_and_poles():

@@ -38,7 +38,7 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
     any(painter.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
     projection = picture.projection
-    method = projection.method
+    method, _, missed = projection.method.partition("; ")
     if projection.evaluations is not None:
         method = f"{method}, {grouped(projection.evaluations)} {projection.evaluation_noun}"
     spent = f"{grouped_number(projection.milliseconds)} ms" if timing and projection.milliseconds is not None else ""
@@ -60,8 +60,10 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
         any(painter.text("light", at.margin, below, name, 15, GREY, "lm") for name in names)
     if not said and "LDR" in words:
         any(painter.text("encoding", at.margin, line, "LDR", 12, FAINT, "lm") for line in (y, below))
+    low = at.hairline_y - at.px(16)  # beside the colour bar, where the corner is taken
+    unseen = [missed, missed.replace("narrower than", "under")]
     if painter.text("method", far, y, method, 13, FAINT, "rm"):
-        low = at.hairline_y - at.px(16)  # beside the colour bar, where the corner is taken
+        any(painter.text("missed", far, below, text, 12, FAINT, "rm") for text in unseen)
         any(painter.text("time", far, below, text, 12, FAINT, "rm") for text in times) or any(
             painter.text("time", at.margin, low, text, 12, FAINT, "lm") for text in times
         )
@@ -70,6 +72,8 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
         painter.text("method", far, below, both, 12, FAINT, "rm") or painter.text(
             "method", far, below, method, 12, FAINT, "rm"
         )
+    if "missed" not in painter.boxes:
+        any(painter.text("missed", at.margin, low, text, 12, FAINT, "lm") for text in unseen)
 
 
 def describe_light(picture: Picture) -> list[str]:

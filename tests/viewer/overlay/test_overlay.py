@@ -109,6 +109,14 @@ def test_at_half_size_the_captions_the_error_and_the_bars_are_there() -> None:
     assert {"original", "reconstruction", "light", "method", "relative_l2", "relative_l2_label", "bars"} <= set(boxes)
 
 
+@pytest.mark.parametrize("size", [(640, 320), (720, 400), (1280, 640), (2560, 1280)])
+@pytest.mark.parametrize("timing", [False, True])
+def test_what_may_be_missed_of_a_function_is_said_at_every_size(size: tuple[int, int], timing: bool) -> None:
+    boxes = draw_overlay(PICTURES["long name"], compose(*size), timing=timing).boxes
+    assert "missed" in boxes
+    assert "method" in boxes or size[0] < 1280
+
+
 @pytest.mark.parametrize("size", [(1280, 640), (2560, 1280)])
 def test_at_full_size_everything_is_there(size: tuple[int, int]) -> None:
     boxes = draw_overlay(PICTURES["green"], compose(*size), timing=True).boxes

@@ -123,7 +123,7 @@ class _Drawing:
 
     def legend(self) -> None:
         """Write right of the caption what each mark stands for, unless there is only one; name the best way if that fits."""
-        words = {found.method: found.words for found in self.known.values()}
+        words = {found.method: found.words.partition("; ")[0] for found in self.known.values()}
         if len(words) < 2:
             return
         room = self.caption._replace(left=self.caption.right + 14 * self.sheet.unit, right=self.area.right)
