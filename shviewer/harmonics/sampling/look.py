@@ -46,7 +46,7 @@ class Integrals:
     """Integrals of a function f over the sphere by one rule."""
 
     moments: Array = field(default_factory=lambda: np.zeros((4, 3)))
-    """Those of f, x f, y f and z f, for each channel."""
+    """Those of f, and unless there is only one row, of x f, y f and z f, for each channel."""
     products: Array = field(default_factory=lambda: np.zeros((3, 3)))
     """Those of f_i f_j."""
     magnitude: Array = field(default_factory=lambda: np.zeros(3))
@@ -60,7 +60,8 @@ class Integrals:
         weighted = weights[:, None] * values
         self.evaluations += len(values)
         self.moments[0] += weights @ values
-        self.moments[1:] += directions.T @ weighted
+        if len(self.moments) > 1:
+            self.moments[1:] += directions.T @ weighted
         self.products += values.T @ weighted
         size = np.abs(values)
         self.magnitude += weights @ size
@@ -99,7 +100,7 @@ def strides() -> NDArray[np.int64]:
 def look(radiance: Radiance) -> tuple[NDArray[np.float32], Integrals]:
     """The raster (LOOK_ROWS, LOOK_COLUMNS, 3), linear between the columns there are, and the integrals by its points."""
     texels = np.empty((LOOK_ROWS, LOOK_COLUMNS, 3), dtype=np.float32)
-    found = Integrals()
+    found = Integrals(moments=np.zeros((1, 3)))
     found.add(AXES, radiance(AXES), np.zeros(len(AXES)))
     for rows, stride in _row_groups():
         phi = column_azimuths(LOOK_COLUMNS)[::stride]

@@ -106,7 +106,10 @@ def _integrals(coefficients: Array, products: Array) -> Integrals:
 def _differences(one: Integrals, two: Integrals) -> Array:
     """How far two rules differ, (7,): in the integrals of f, of f^2, and of f^2 over all channels."""
     energy = np.abs(one.products - two.products)
-    return np.concatenate([np.abs(one.moments - two.moments).max(axis=0), energy.diagonal(), [energy.trace()]])
+    common = min(len(one.moments), len(two.moments))
+    return np.concatenate(
+        [np.abs(one.moments[:common] - two.moments[:common]).max(axis=0), energy.diagonal(), [energy.trace()]]
+    )
 
 
 def _scales(integrals: Integrals, products: Array) -> Array:
