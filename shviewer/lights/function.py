@@ -131,7 +131,7 @@ class FunctionLight(RadianceLight):
 
     @property
     def kept_bands(self) -> int:
-        return SAMPLED_BANDS if "_sampling" in vars(self) else 0
+        return SAMPLED_BANDS if "_sampled" in vars(self) else 0
 
     def products(self) -> Array:
         return self._sampled.products

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -157,8 +158,9 @@ def test_an_irradiance_has_the_time_that_its_light_took(method: str) -> None:
         ]
 
 
-def test_coefficients_that_a_light_has_kept_have_the_time_that_was_measured_or_none() -> None:
-    light = find_light("film_studio")
+@pytest.mark.parametrize("make", [lambda: find_light("film_studio"), lambda: FunctionLight(lambda d: 1 + d[:, 2])])
+def test_coefficients_that_a_light_has_kept_have_the_time_that_was_measured_or_none(make: Callable[[], Light]) -> None:
+    light = make()
     many = project(light, *BEST, 128)
     assert project(light, *BEST, 32).milliseconds is None  # the first rows of what is there
     assert measurements(light, 32) == ()
