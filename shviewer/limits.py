@@ -38,7 +38,16 @@ def check_brightness(radiance: float, name: str) -> None:
 
 
 MEMORY_SHARE = 0.5
-"""The share of the available memory that one file may take."""
+"""The share of the available memory that one file may take, in all processes that work on a batch together."""
+
+_processes = 1
+
+
+def share_memory(processes: int) -> None:
+    """Let this process take as much memory as one of so many."""
+    global _processes
+    _processes = processes
+
 
 UNASKED = 2**24
 """Fewer bytes are taken without asking how many there are, which takes 0.3 ms."""
@@ -117,7 +126,7 @@ class Limits:
         from shviewer.memory import available_bytes  # here, since ctypes takes its time
 
         free = available_bytes()
-        return None if free is None else int(MEMORY_SHARE * free)
+        return None if free is None else int(MEMORY_SHARE * free / _processes)
 
 
 def _mebibytes(count: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from functools import partial
 
 from shviewer.analysis.information import (
     DARK_PERCENTILE,
@@ -17,8 +18,11 @@ from shviewer.analysis.information import (
     describe,
 )
 from shviewer.cli.from_options import reading_from
+from shviewer.cli.jobs import in_order
+from shviewer.cli.status_line import speaking
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError, ShviewerError, within_memory
+from shviewer.lights.reading import Reading
 from shviewer.words import counted, one_line
 
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
@@ -30,13 +34,13 @@ def run(options: argparse.Namespace) -> int:
     reading = reading_from(options)
     exit_code = 0
     objects: list[dict[str, object]] = []
+    described = in_order(partial(_described, reading), options.lights, options.jobs)
     for number, text in enumerate(options.lights):
         refused: str | None = None
-        try:
-            with within_memory(text):
-                found = describe(text, reading)
-        except ShviewerError as error:
-            refused, code = str(error), error.exit_code
+        with speaking():
+            found = next(described)
+        if isinstance(found, ShviewerError):
+            refused, code = str(found), found.exit_code
             objects.append({"light_argument": text, "error": refused})
         else:
             refused, code = found.refused, LightError.exit_code
@@ -49,6 +53,14 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(objects, indent=2, allow_nan=False))
     return exit_code
+
+
+def _described(reading: Reading, light: str) -> Information | ShviewerError:
+    try:
+        with within_memory(light):
+            return describe(light, reading)
+    except ShviewerError as error:
+        return error
 
 
 def as_text(information: Information) -> str:

@@ -131,6 +131,16 @@ def add_reading_options(parser: OneLineParser, convention: str = "--convention")
     )
 
 
+def add_jobs(parser: OneLineParser) -> None:
+    """The number of processes for several lights."""
+    parser.add_argument(
+        "--jobs",
+        metavar="N",
+        type=_positive_count,
+        help="processes for several lights (default as many as there are cores and memory for, once it pays)",
+    )
+
+
 def _band_list(text: str) -> frozenset[int]:
     try:
         return frozenset(int(part) for part in text.split(",") if part.strip())

@@ -9,6 +9,7 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import (
     LIGHT_HELP,
     OneLineParser,
+    add_jobs,
     add_reading_options,
     add_table,
     add_view_options,
@@ -131,6 +132,7 @@ def info_parser() -> OneLineParser:
     parser.add_argument("lights", metavar="LIGHT", nargs="+", help=LIGHT_HELP)
     parser.add_argument("--json", action="store_true", help="the same as a JSON array, one object per LIGHT")
     add_reading_options(parser)
+    add_jobs(parser)
     return parser
 
 
@@ -165,6 +167,7 @@ def project_parser() -> OneLineParser:
     parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
     add_table(parser, Recipe)
     add_reading_options(parser, convention="--input-convention")
+    add_jobs(parser)
     parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
     return parser
 

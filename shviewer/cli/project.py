@@ -7,6 +7,7 @@ import sys
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,8 @@ from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.from_options import recipe_from, replacing_of
-from shviewer.cli.status_line import bar, status_line
+from shviewer.cli.jobs import in_order
+from shviewer.cli.status_line import bar, speaking, status_line
 from shviewer.coefficients.axes import Axes
 from shviewer.coefficients.convention import OVER_PI, Convention
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
@@ -48,6 +50,14 @@ class Row:
     error: str = ""
 
 
+@dataclass(frozen=True)
+class Noted:
+    """What was made of a light, and the notes on it."""
+
+    projected: Projected
+    notes: tuple[str, ...]
+
+
 def run(options: argparse.Namespace) -> int:
 
     convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
@@ -56,17 +66,19 @@ def run(options: argparse.Namespace) -> int:
     if options.n_bands is None and options.tolerance is None and convention.most_bands:
         options.n_bands = min(Recipe.n_bands, convention.most_bands)
 
-    def recipe_of(light: str) -> Recipe:
-        recipe, _ = recipe_from(options, light)
-        if options.tolerance is not None:
-            check_tolerance(recipe, convention)
-        return recipe
-
     lights = options.lights or ["green"]
+    recipe_of = partial(_recipe_of, options, convention)
     with status_line() as line:
         show = line.show if line else None
         kind, replacing = options.format, replacing_of(options)
-        return project_lights(lights, options.output, kind, convention, recipe_of, show, replacing)
+        return project_lights(lights, options.output, kind, convention, recipe_of, show, replacing, options.jobs)
+
+
+def _recipe_of(options: argparse.Namespace, convention: Convention, light: str) -> Recipe:
+    recipe, _ = recipe_from(options, light)
+    if options.tolerance is not None:
+        check_tolerance(recipe, convention)
+    return recipe
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
@@ -110,10 +122,11 @@ def project_lights(
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None = None,
     replacing: Replacing = ANYTHING,
+    jobs: int | None = 1,
 ) -> int:
     """Project and write; return the exit code. status: shows a line of progress, or clears it for "".
 
-    replacing: what may be replaced by what is written.
+    replacing: what may be replaced by what is written. jobs: as in `jobs.in_order`.
 
     One light: `out` is a file, a folder that exists, or "-". Several: `out` is a folder, made if need be; the code is
     BATCH_FAILED if any of them failed. ShviewerError for one light that fails, or arguments that fit no light.
@@ -121,7 +134,7 @@ def project_lights(
     if kind is not None and kind not in FORMATS:
         raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
     if len(lights) > 1:
-        return _batch(lights, out, kind or "json", convention, recipe_of, status, replacing)
+        return _batch(lights, out, kind or "json", convention, recipe_of, status, replacing, jobs)
     (light,) = lights
     if out == STDOUT:
         if kind is None:
@@ -159,6 +172,7 @@ def _batch(
     recipe_of: RecipeOf,
     status: Callable[[str], None] | None,
     replacing: Replacing,
+    jobs: int | None,
 ) -> int:
     folder = Path(out)
     if out == STDOUT or folder.suffix[1:] in FORMATS:
@@ -168,10 +182,14 @@ def _batch(
     except OSError as error:
         raise OutputError(f"{folder}: no folder can be made: {error.strerror}; choose another place") from error
     rows: list[Row] = []
+    outcomes = in_order(partial(_attempt, recipe_of, convention), lights, jobs)
     for number, light in enumerate(lights):
+        if is_code(light):
+            print(one_line(f"shviewer: note: {light}: runs the code in {split_light(light)[0]}"), file=sys.stderr)
         if status:
             status(f"{bar(number / len(lights))} {number + 1} of {len(lights)}  {light[:60]}")
-        rows.append(_one_of_many(light, folder, kind, convention, recipe_of, {row.file for row in rows}, replacing))
+        outcome = next(outcomes)
+        rows.append(_one_of_many(light, outcome, folder, kind, convention, {row.file for row in rows}, replacing))
         if rows[-1].error:
             if status:
                 status("")
@@ -184,19 +202,18 @@ def _batch(
 
 def _one_of_many(
     light: str,
+    outcome: Noted | ShviewerError,
     folder: Path,
     kind: str,
     convention: Convention,
-    recipe_of: RecipeOf,
     taken: set[str],
     replacing: Replacing,
 ) -> Row:
-    """Project one light of a batch and write it under a name of its own; return its row of the summary."""
-    if is_code(light):
-        print(one_line(f"shviewer: note: {light}: runs the code in {split_light(light)[0]}"), file=sys.stderr)
+    """Write what was made of one light of a batch under a name of its own; return its row of the summary."""
+    if isinstance(outcome, ShviewerError):
+        return Row(light, "", error=str(outcome))
     try:
-        with within_memory(light):
-            projected = _noted(light, recipe_of, convention)
+        projected = _said(outcome)
         stem = file_stem(projected.name)
         names = (f"{stem}{f'-{number}' if number > 1 else ''}.{kind}" for number in range(1, len(taken) + 2))
         path = next(folder / name for name in names if str(folder / name) not in taken)
@@ -205,20 +222,42 @@ def _one_of_many(
         _warn_below_zero(projected)
     except ShviewerError as error:
         return Row(light, "", error=str(error))
-    except Exception as error:  # a fault of this program fails this light alone
-        traceback.print_exc()
-        return Row(light, "", error=one_line(f"{light}: internal error, {type(error).__name__}: {error}"))
     return Row(light, str(path), projected)
 
 
-def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected:
-    """Project a light; stderr says what was done to it and what became of its suns."""
+def _attempt(recipe_of: RecipeOf, convention: Convention, light: str) -> Noted | ShviewerError:
+    """What is made of one light of a batch, whatever happens."""
+    try:
+        with within_memory(light):
+            return _note(recipe_of, convention, light)
+    except ShviewerError as error:
+        return error
+    except Exception as error:  # a fault of this program fails this light alone
+        traceback.print_exc()
+        return ShviewerError(f"{light}: internal error, {type(error).__name__}: {error}")
+
+
+def _note(recipe_of: RecipeOf, convention: Convention, light: str) -> Noted:
+    """Project a light, and note what was done to it and what became of its suns."""
     recipe = recipe_of(light)
     projected = project_recipe(recipe)
     suns = [sun_left_out(sun.directional_light, convention.axes) for sun in projected.suns]
-    for note in (*projected.notes, *suns):
-        print(one_line(f"shviewer: note: {projected.name}: {note}"), file=sys.stderr)
-    return projected
+    notes = *projected.notes, *suns
+    return Noted(projected, tuple(one_line(f"shviewer: note: {projected.name}: {note}") for note in notes))
+
+
+def _said(noted: Noted) -> Projected:
+    """Say on stderr what was noted."""
+    for note in noted.notes:
+        print(note, file=sys.stderr)
+    return noted.projected
+
+
+def _noted(light: str, recipe_of: RecipeOf, convention: Convention) -> Projected:
+    """Project a light; stderr says what was done to it."""
+    with speaking():
+        noted = _note(recipe_of, convention, light)
+    return _said(noted)
 
 
 def _warn_below_zero(projected: Projected) -> None:

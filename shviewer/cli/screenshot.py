@@ -7,6 +7,7 @@ import sys
 
 from shviewer.cli.from_options import replacing_of, state_from
 from shviewer.cli.notes import print_notes
+from shviewer.cli.status_line import speaking
 from shviewer.errors import UsageError
 from shviewer.viewer.composition import compose
 from shviewer.viewer.picture import prepare
@@ -27,12 +28,14 @@ def run(options: argparse.Namespace) -> int:
     replacing.check(options.out)
     if options.reference:
         replacing.check(difference)
-    state = state_from(options, all_lights=False)
+    with speaking():
+        state = state_from(options, all_lights=False)
     if state.view.lobe_view and kind == ".exr":
         raise UsageError(
             f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
         )
-    picture = prepare(state)
+    with speaking():
+        picture = prepare(state)
     composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     print_notes(state.recipe)

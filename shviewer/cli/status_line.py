@@ -5,8 +5,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from threading import Event, Thread
 
 from shviewer.ending import at_the_end
+from shviewer.progress import in_words, listening
+
+QUIET = 0.5
+"""Seconds before work is spoken of."""
+
+BETWEEN = 0.1
+"""Seconds between two looks at how far it is."""
 
 
 def bar(done: float) -> str:
@@ -38,3 +46,33 @@ def status_line() -> Iterator[StatusLine | None]:
     line = StatusLine()
     with at_the_end(line.clear):
         yield line
+
+
+@contextmanager
+def speaking() -> Iterator[None]:
+    """Say on a terminal what the body does, once that has taken QUIET seconds; the body itself prints nothing."""
+    with status_line() as line:
+        if line is None:
+            yield
+            return
+        doing, done = [""], Event()
+
+        def hear(what: str, share: float | None) -> None:
+            doing[0] = in_words(what, share) or doing[0]
+
+        def speak() -> None:
+            wait, said = QUIET, ""
+            while not done.wait(wait):
+                if doing[0] != said:
+                    said = doing[0]
+                    line.show(said[:78])
+                wait = BETWEEN
+
+        speaker = Thread(target=speak, daemon=True)
+        speaker.start()
+        try:
+            with listening(hear):
+                yield
+        finally:
+            done.set()
+            speaker.join()

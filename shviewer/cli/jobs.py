@@ -1,0 +1,104 @@
+"""The lights of a batch in several processes at a time, their results in the order of the lights.
+
+A process that is killed, perhaps for want of memory, takes only the light with it that it dies of a second time.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections import deque
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from time import perf_counter
+from typing import TypeVar
+
+from shviewer.errors import LightError
+from shviewer.limits import share_memory
+
+T = TypeVar("T")
+
+PAYS = 3.0
+"""Seconds of work that must be left for more processes, which take half a second to start, to be worth it."""
+
+PROCESS_BYTES = 2**29
+"""Available memory for each process, without which no more are started."""
+
+AHEAD = 2
+"""Lights given out for each process, so that none waits for the next one."""
+
+
+def in_order(work: Callable[[str], T], lights: Sequence[str], jobs: int | None) -> Iterator[T | LightError]:
+    """work(light) for every light, in their order; LightError in place of a result whose process was killed.
+
+    jobs: the number of processes; None: one as long as the rest is soon done, then as many as there are cores and memory
+    for. With more than one, `work` and its results must be picklable.
+    """
+    start = perf_counter()
+    for done, light in enumerate(lights):
+        left = len(lights) - done
+        wanted = jobs or (_most() if done and left * (perf_counter() - start) / done > PAYS else 1)
+        if min(wanted, left) > 1:
+            yield from _spread(work, deque(lights[done:]), min(wanted, left))
+            return
+        yield work(light)
+
+
+def _most() -> int:
+    """The processes that there are cores and memory for."""
+    from shviewer.memory import available_bytes
+
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    free = available_bytes()
+    return cores if free is None else max(1, min(cores, free // PROCESS_BYTES))
+
+
+def _spread(work: Callable[[str], T], lights: deque[str], jobs: int) -> Iterator[T | LightError]:
+    while lights:
+        yield from _pool(work, lights, jobs)
+        if lights:  # a process was killed: by the first light that has no result, or by one beside it
+            alone = deque([lights.popleft()])
+            yield from _pool(work, alone, 1)
+            if alone:
+                yield LightError(
+                    f"{alone[0]}: the process that worked on it was killed; free some memory, or see --jobs 1"
+                )
+
+
+def _pool(work: Callable[[str], T], lights: deque[str], jobs: int) -> Generator[T, None, None]:
+    """Take lights from the left as their results come; those that are left when a process is killed stay."""
+    context = multiprocessing.get_context("spawn")
+    executor = ProcessPoolExecutor(jobs, context, _begin, (jobs,))
+    given: deque[Future[T]] = deque()
+    try:
+        while lights:
+            while len(given) < min(AHEAD * jobs, len(lights)):
+                given.append(executor.submit(work, lights[len(given)]))
+            found = given[0].result()
+            given.popleft()
+            lights.popleft()
+            yield found
+    except BrokenProcessPool:
+        return
+    finally:
+        processes = list((executor._processes or {}).values())
+        executor.shutdown(wait=not lights, cancel_futures=True)
+        for process in processes:
+            process.kill()
+
+
+def _begin(jobs: int) -> None:
+    """In a new process: take a share of the memory, leave Ctrl-C to the parent, and end with it."""
+    share_memory(jobs)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+
+    def follow() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
