@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import json
 import os
+import re
 import stat
 import subprocess
 import sys
@@ -19,18 +21,27 @@ from PIL import Image
 import shviewer
 from shviewer.analysis import projections
 from shviewer.analysis.cache import MEMORY
+from shviewer.analysis.compared_files import compared_with
+from shviewer.analysis.comparison import verdict
+from shviewer.analysis.information import describe
+from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.subjects import load_light
 from shviewer.benchmark import run as run_of_report
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page import plots
-from shviewer.benchmark.page.document import read_report
+from shviewer.benchmark.page.comparing import compare
+from shviewer.benchmark.page.document import Report, read_report
 from shviewer.benchmark.page.writing import FILES
 from shviewer.benchmark.run import write_report
 from shviewer.cli import project
 from shviewer.cli.main import main
+from shviewer.coefficients.numbers import as_table
 from shviewer.coefficients.reading import read_coefficients
 from shviewer.coefficients.text_lists import plain_numbers
 from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
 from shviewer.files import DEBUG, Replacing, write_atomically
+from shviewer.lights.find import find_light
+from shviewer.lights.reading import Reading
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.state import state_of
@@ -450,3 +461,91 @@ def test_sixteen_threads_project_what_one_does() -> None:
     with ThreadPoolExecutor(16) as pool:
         together = list(pool.map(lambda name: shviewer.project(name, 5).coefficients, names))
     assert all(np.array_equal(found, alone[name]) for name, found in zip(names, together, strict=True))
+
+
+# --- what a file says is told safely, and of the file that says it
+
+
+HOSTILE = "a\x1b[2J\u202e\nb"
+
+
+def json_file(path: Path, numbers: object, **stamp: object) -> Path:
+    known = {"shviewer-coefficients": 1, "convention": "shviewer", "quantity": "radiance"} if stamp else {}
+    path.write_text(json.dumps({**known, **stamp, "coefficients": numbers}))
+    return path
+
+
+def test_what_a_stamp_a_scene_or_a_file_name_says_is_one_line_without_control_characters(tmp_path: Path) -> None:
+    stamped = json_file(tmp_path / f"{HOSTILE}.json", NINE.tolist(), light=HOSTILE)
+    scene = tmp_path / f"{HOSTILE}.toml"
+    scene.write_text(f'description = {json.dumps(HOSTILE)}\n[[lobe]]\nprofile = "constant"\nradiance = 1\n')
+    image = tmp_path / f"{HOSTILE}.png"
+    Image.new("RGB", (4, 2)).save(image)
+    for path in (stamped, scene, image):
+        light = find_light(str(path))
+        assert light.name.isprintable()
+        assert light.description.isprintable()
+    recipe, said = compared_with(Recipe(), str(json_file(tmp_path / f"{HOSTILE}-bare.json", NINE.tolist())))
+    assert said.isprintable()
+    assert recipe.compare is not None
+    assert recipe.compare.name.isprintable()
+
+
+def test_an_argument_is_repeated_without_its_control_characters(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["screenshot", "o.png", "--\x1b[2J\udcff" + "x" * 5000])
+    line = capsys.readouterr().err
+    assert line.endswith("\n")
+    assert line[:-1].isprintable()
+    assert len(line) < 1.1 * MOST_CHARACTERS
+
+
+@pytest.mark.parametrize(("name", "text"), [
+    ("sky.json", json.dumps([[1e35] * 3])),
+    ("sky.toml", '[[lobe]]\nprofile = "gaussian"\nsharpness = 1\naxis = [1, 0, 0]\nradiance = 1e30\n' * 2),
+    ("sky.txt", "1e-40 1e-40 1e-40"),
+])  # fmt: skip
+def test_a_light_that_cannot_be_shown_is_named_by_its_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, text: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    assert main(["info", str(tmp_path / name), "--convention", "shviewer"]) in (2, LightError.exit_code)
+    with pytest.raises(LightError, match=re.escape(f"{tmp_path / name}: ")):
+        describe(str(tmp_path / name), Reading(convention="shviewer"))
+
+
+def test_a_compared_file_whose_other_readings_are_too_bright_has_its_verdict(tmp_path: Path) -> None:
+    """In the convention of scipy, or channel by channel, numbers just below the limit would be above it."""
+    path = json_file(tmp_path / "bright.json", (NINE * 1e29 / 3).tolist())
+    recipe, _ = compared_with(Recipe(), str(path))
+    assert recipe.compare is not None
+    assert "off" in verdict(load_light(recipe), recipe.compare)
+
+
+def test_infinite_imaginary_parts_are_refused_in_silence() -> None:
+    with pytest.raises(LightError, match="not finite"):
+        as_table(np.array([[1, np.inf] * 3]), complex_pairs=True)
+
+
+def test_an_older_report_tells_finite_numbers_and_printable_texts(tmp_path: Path) -> None:
+    page = json.loads(Report(0, "shviewer report", {"processor": HOSTILE}, {}).as_json())
+    path = tmp_path / "old.json"
+    path.write_text(json.dumps(page))
+    assert all(line.isprintable() for line in compare(read_report(path), read_report(path)).as_markdown("old.json"))
+    assert str(read_report(path).machine["processor"]).isprintable()
+    path.write_text(json.dumps(page | {"yardstick_milliseconds": {"median": float("nan")}}))
+    with pytest.raises(UsageError, match="nan"):
+        read_report(path)
+
+
+def test_a_name_too_long_for_a_file_is_one_line_wherever_it_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = "x" * 5000
+    assert main([name]) == LightError.exit_code
+    assert main(["info", f"{name}.json"]) == LightError.exit_code
+    assert main(["project", "green", "-o", f"{name}.json"]) == OutputError.exit_code
+    assert len(capsys.readouterr().err.splitlines()) == 3
+    with pytest.raises(UsageError, match="no such reference"):
+        compare_with_reference(np.zeros((8, 8, 3), np.uint8), Path(f"{name}.png"), Path("d.png"), 0)

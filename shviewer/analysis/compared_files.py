@@ -19,7 +19,7 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import built_in_lights, read_from
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.limits import MAX_BANDS
-from shviewer.words import brief_percent
+from shviewer.words import brief_percent, one_line
 
 
 def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple[Recipe, str]:
@@ -41,11 +41,10 @@ def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple
         else:
             found = _found(recipe, listed)
             read = interpreted(listed, found.best.text)
-    light = read_from(CoefficientLight.of_file(read, file.name), file)
-    said = (
-        [] if found and found.fits else [f"{file.name}: {note}" for note in read.notes]
-    )  # what fits was guessed rightly
-    return replace(recipe, compare=light), "; ".join([*said, *([_said(file.name, found)] if found else [])])
+    name = one_line(file.name)
+    light = read_from(CoefficientLight.of_file(read, name), file)
+    said = [] if found and found.fits else [f"{name}: {note}" for note in read.notes]  # what fits was guessed rightly
+    return replace(recipe, compare=light), "; ".join([*said, *([_said(name, found)] if found else [])])
 
 
 def _found(recipe: Recipe, listed: Listed) -> Found:

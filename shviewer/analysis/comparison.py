@@ -15,6 +15,7 @@ from shviewer.analysis.subjects import subject
 from shviewer.coefficients.finding import FITS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.suspects import usual_suspects
+from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
@@ -125,7 +126,7 @@ def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Ar
             if same and not layout:
                 continue
             words = (*layout, *(() if same else (f"in the convention of {convention.name}",)))
-            with suppress(ValueError):  # complex numbers that belong to no real function
+            with suppress(ValueError, LightError):  # complex numbers of no real function, or more than can be shown
                 radiance = CoefficientLight.of_numbers(table, convention).given
                 found[words] = light.from_source(radiance)
     return found

@@ -29,5 +29,6 @@ def reconstruction_of(recipe: Recipe) -> Reconstruction:
     recipe.check()
     found = subject(recipe)
     projection = project(found.light, *sampling_of(recipe), recipe.projected_bands)
-    check_radiance(error_grid(found.whole, grid_rows(1)).peak, found.light.name)
+    named = recipe.light if isinstance(recipe.light, str) else found.light.name
+    check_radiance(error_grid(found.whole, grid_rows(1)).peak, named)
     return Reconstruction(recipe, found, projection, *reconstruct(found.light, projection, recipe.shown))

@@ -11,7 +11,6 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from pathlib import Path
 
 from shviewer.children import follow_parent
 from shviewer.cli.options import (
@@ -85,7 +84,7 @@ def _meant(arguments: list[str]) -> list[str]:
     first = arguments[0] if arguments else ""
     if first == "help":
         return ["--help", *arguments[1:]]
-    if first and not first.startswith("-") and first not in MODES and not Path(first).exists():
+    if first and not first.startswith("-") and first not in MODES and not os.path.exists(first):
         import difflib
 
         if near := difflib.get_close_matches(first, MODES, n=1, cutoff=0.75):

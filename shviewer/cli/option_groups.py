@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 from shviewer.analysis.options import Bands, Number, Option, Pair, Share, Whole, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
+from shviewer.words import one_line
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
@@ -29,7 +30,7 @@ class OneLineParser(argparse.ArgumentParser):
     """An argparse parser that reports a mistake in one line on stderr, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"shviewer: {' '.join(message.split())}; see {self.prog} --help\n")
+        self.exit(2, f"shviewer: {one_line(message)}; see {self.prog} --help\n")
 
 
 def add_view_options(parser: OneLineParser) -> None:

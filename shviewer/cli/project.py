@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -147,7 +148,7 @@ def project_lights(
         _warn_below_zero(projected)
         return 0
     path = Path(out)
-    if path.is_dir():
+    if os.path.isdir(path):
         projected = _noted(light, recipe_of, convention)
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
         replacing.check(path)

@@ -136,13 +136,14 @@ def as_table(numbers: NDArray[np.generic], *, complex_pairs: bool = False) -> ND
         raise LightError(f"{numbers.size} numbers: at most {MAX_BANDS} bands, {MAX_NUMBERS} numbers, are read")
     if np.iscomplexobj(numbers) and not complex_pairs:
         raise LightError("complex numbers; of the conventions only scipy has them: --convention scipy")
-    table = np.asarray(numbers, dtype=np.complex128 if np.iscomplexobj(numbers) else np.float64)
+    table = wide = np.asarray(numbers, dtype=np.complex128 if np.iscomplexobj(numbers) else np.float64)
     if complex_pairs and not np.iscomplexobj(table):
         if table.shape[-1:] and table.shape[-1] % 2:
             raise LightError(
                 f"rows of {table.shape[-1]} numbers; complex ones are pairs, real and imaginary part: six to a row"
             )
-        table = table[..., 0::2] + 1j * table[..., 1::2]
+        table = table[..., 0::2] + 0j
+        table.imag = wide[..., 1::2]  # not times 1j, which makes nan of infinity
     if not np.isfinite(table).all():
         row = int(np.argmin(np.isfinite(table).reshape(len(table), -1).all(axis=1)))
         where = f"{'row' if table.ndim > 1 else 'number'} {row} (from 0)"

@@ -20,7 +20,7 @@ from shviewer.coefficients.array_files import read_arrays
 from shviewer.coefficients.convention import OVER_PI, RADIANCE, Convention
 from shviewer.coefficients.numbers import Listed, as_table
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
-from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp
+from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp, safe
 from shviewer.coefficients.structures import read_structure, rows_of_numbers
 from shviewer.coefficients.suffixes import HOLDS
 from shviewer.coefficients.text_lists import plain_numbers, read_list
@@ -84,7 +84,7 @@ def interpreted(listed: Listed, named: str) -> CoefficientFile:
 
     LightError if that is impossible.
     """
-    stamp, notes = listed.stamp, listed.notes
+    stamp, notes = safe(listed.stamp), listed.notes
     if stamp:
         convention = read_stamp(stamp)
         if named and parse_convention(named) != parse_convention(str(stamp["convention"])):
@@ -126,8 +126,7 @@ def _read_json(data: bytes) -> Listed:
         found = json.loads(_text(data), parse_constant=_no_constant, object_pairs_hook=_no_key_twice)
     if not isinstance(found, dict) or SCHEMA_KEY not in found:
         return read_structure(found)
-    stamp = {key: value for key, value in found.items() if isinstance(value, str | int | float | None)}
-    return Listed(rows_of_numbers(found.get("coefficients")), stamp)
+    return Listed(rows_of_numbers(found.get("coefficients")), safe(found))
 
 
 def _no_key_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -27,6 +27,7 @@ from collections.abc import Mapping
 from shviewer.coefficients.convention import OVER_PI, QUANTITIES, Convention
 from shviewer.coefficients.programs import convention_text, parse_convention
 from shviewer.errors import LightError
+from shviewer.words import one_line
 
 SCHEMA = 1
 SCHEMA_KEY = "shviewer-coefficients"
@@ -62,6 +63,15 @@ def _in_words(convention: Convention, quantity: str) -> dict[str, Value]:
         "axes": convention.axes.words,
         "normalisation": convention.scale,
         "one-over-pi": "divided by pi" if quantity == OVER_PI else "not divided by pi",
+    }
+
+
+def safe(said: Mapping[str, object]) -> Stamp:
+    """What a file says of itself, fit to be told: texts as one line without control characters; only texts and numbers."""
+    return {
+        one_line(key): one_line(value) if isinstance(value, str) else value
+        for key, value in said.items()
+        if isinstance(value, str | int | float | None)
     }
 
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 import csv
 import re
 from bisect import bisect_right
+from collections.abc import Iterable
 from dataclasses import replace
-from itertools import accumulate, groupby
+from itertools import accumulate, chain, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,10 @@ _NAME = re.compile(r"[A-Za-z_].*", re.ASCII | re.DOTALL)
 _PLACE = re.compile(r".*?[A-Za-z_](\d)([_mMnN-]{0,2})(\d)", re.ASCII)
 _INDEX = re.compile(r"(.*?)\[\s*(\d{1,5})\s*\]", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+(?:,\d+)?(?:[eE][+-]?\d+)?", re.ASCII)
+
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
+
+DECIMAL_COMMAS = "its commas are taken as decimal ones"
 
 _AS_ASCII = str.maketrans({"\u2212": "-", "\u00a0": " ", "\u2009": " ", "\u202f": " "})
 """A minus sign and the spaces that type-setters use."""
@@ -58,7 +63,10 @@ def read_list(text: str, *, table: bool = False, sort: bool = True) -> Listed:
         raise LightError("no rows; a list has n^2 rows of red, green, blue")
     if header := _header(first, table):
         return _with_header(*header, rest.splitlines(), sort)
-    found = _rows_of(_Scan(_with_points(bare)), wrapped=not table)
+    pointed = _with_points(bare)
+    found = _rows_of(_Scan(pointed), wrapped=not table)
+    if pointed != bare:
+        found = replace(found, notes=(DECIMAL_COMMAS, *found.notes))
     if "pre-scaled base" not in text or "irradiance" not in text:
         return found
     why = "its comments, irradiance and pre-scaled base, are those of Filament's cmgen, without --no-mirror: taken as filament"
@@ -173,7 +181,20 @@ def _with_points(text: str) -> str:
         return text
     if holds_light(len(cells) + text.count(",")):
         raise LightError("commas that may be decimal ones or part the numbers; write decimal points")
+    _check_commas(cells)
     return text.replace(",", ".")
+
+
+def _check_commas(cells: Iterable[str]) -> bool:
+    """Whether some of the numbers have commas. LightError if all of these may be whole ones with a comma between thousands."""
+    commas = [cell for cell in cells if "," in cell]
+    if commas and all(map(_THOUSANDS.fullmatch, commas)):
+        whole = commas[0].replace(",", "")
+        raise LightError(
+            f"{commas[0]}, which may be {commas[0].replace(',', '.')} or, with a comma between thousands, {whole};"
+            " write decimal points"
+        )
+    return bool(commas)
 
 
 # --------------------------------------------------------------------------------------------------------- rows
@@ -341,16 +362,17 @@ def _with_header(separator: str, names: list[str], lines: list[str], sort: bool)
         cells = _cells(line, separator)
         if len(cells) != len(names):
             raise LightError(f"row {number} has {len(cells)} cells, the header {len(names)}: complete it")
-        rows.append([_cell(cells[column], number, separator) for column in columns])
+        rows.append([cells[column] for column in columns])
     if not rows:
         raise LightError("a header and no rows; a list has n^2 rows of red, green, blue")
-    table = np.array(rows)
+    notes = (DECIMAL_COMMAS,) if separator != "," and _check_commas(chain(*rows)) else ()
+    table = np.array([[_cell(cell, number, separator) for cell in row] for number, row in enumerate(rows, 1)])
     if not sort:
-        return Listed(table)
+        return Listed(table, notes=notes)
     found = sorted_by_degree(table)
     if found is None:
         raise LightError("columns l and m that do not name every coefficient of n bands once: complete or correct them")
-    return found if harmonics else replace(found, notes=())
+    return replace(found, notes=(*notes, *(found.notes if harmonics else ())))
 
 
 def _cell(cell: str, row: int, separator: str) -> float:

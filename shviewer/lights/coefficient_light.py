@@ -24,7 +24,7 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import About, Light
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, check_brightness
-from shviewer.words import counted
+from shviewer.words import counted, one_line
 
 MAP_SIZE = (1025, 2048)
 
@@ -50,7 +50,8 @@ class CoefficientLight(FiniteSum, RadianceLight):
     @classmethod
     def read(cls, path: Path, reading: Reading = DEFAULT_READING) -> CoefficientLight:
         """Read a coefficient file. LightError if it is bad or does not name its convention."""
-        return cls.of_file(read_coefficients(path, reading.convention, reading.limits), path.stem)
+        light = cls.of_file(read_coefficients(path, reading.convention, reading.limits), str(path))
+        return replace(light, name=one_line(path.stem))  # errors name the file, all else the light
 
     @classmethod
     def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:

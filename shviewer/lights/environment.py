@@ -23,6 +23,7 @@ from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.light import About, Split
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import DEFAULT_LIMITS, RASTER_BYTES, SPLIT_BYTES, Limits, check_brightness
+from shviewer.words import one_line
 
 MAX_RASTER_WIDTH = 8192
 """The most columns of the lat-long raster that stands for an image in another layout when it is drawn."""
@@ -78,7 +79,7 @@ class EnvironmentLight(RadianceLight):
                 image.pixels, image.layout, reading.layout, image.encoding.startswith("JPEG")
             )
         name = f"{path.stem}:{layer}" if layer else path.stem
-        return cls(pixels, layout, name, image.notes + notes, image.encoding, reading.limits)
+        return cls(pixels, layout, one_line(name), image.notes + notes, image.encoding, reading.limits)
 
     @property
     def description(self) -> str:

@@ -102,17 +102,10 @@ def _holds_image(path: Path, reading: Reading) -> bool:
     return holds_image(path, reading.limits)
 
 
-def _exists(path: Path) -> bool:
-    try:
-        return path.exists()
-    except (OSError, ValueError):  # too long for a file name, or with a zero byte
-        return False
-
-
 def _what_it_is(text: str) -> str:
     """Why the file or directory `text` is no light, and what to do; "" if nothing has that name."""
     path = Path(text)
-    if not _exists(path):
+    if not os.path.exists(path):
         return _what_the_colon_is(text)
     if path.is_dir():
         return "a directory; name one file in it"

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Pr
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.limits import BRIGHTEST, DEFAULT_LIMITS, Limits
+from shviewer.words import one_line
 
 PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
     "clamped-linear": (("slope", "offset"), ClampedLinear),
@@ -77,9 +79,10 @@ class _Reader:
             raise LightError(f"{self.path}: no lobe; a scene has one or more [[lobe]] tables")
         lobes = tuple(self.lobe(f"lobe {number}", table) for number, table in enumerate(tables, 1))
         try:
-            return LobeLight(lobes, self.path.stem, description)
+            light = LobeLight(lobes, str(self.path), one_line(description))
         except ValueError as error:
             raise LightError(f"{self.path}: {error}") from error
+        return replace(light, name=one_line(self.path.stem))  # errors name the file, all else the light
 
     def lobe(self, where: str, table: dict[str, Any]) -> Lobe:
         kind = table.get("profile")

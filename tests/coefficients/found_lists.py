@@ -41,6 +41,7 @@ IN_TURN = "27 numbers in one list: taken as red, green and blue in turn"
 GREY_LIST = "9 numbers in one list: taken as 3 grey bands"
 OF_SHTOOLS = "its columns are l, m, C and S, as SHTOOLS writes them, S being that of -m"
 COUNTED = "its first number, 9, says how many rows follow"
+COMMAS = "its commas are taken as decimal ones"
 
 COLOURED = {
     # three rows of n^2, whatever parts the numbers
@@ -104,9 +105,9 @@ COLOURED = {
     "objects.txt": ("[" + ",\n".join(f"{{r: {r}, g: {g}, b: {b}}}" for r, g, b in ROWS) + "]", ""),
     # the numbers themselves
     "unicode.txt": (lines(ROWS).replace("-", "\u2212").replace(" ", "\u00a0"), ""),
-    "decimal-commas.csv": (lines(ROWS, ";").replace(".", ","), ""),
-    "decimal-commas.txt": (lines(ROWS, "  ").replace(".", ","), ""),
-    "spreadsheet.csv": ("red;green;blue\n" + lines(ROWS, ";").replace(".", ","), ""),
+    "decimal-commas.csv": (lines(ROWS, ";").replace(".", ","), COMMAS),
+    "decimal-commas.txt": (lines(ROWS, "  ").replace(".", ","), COMMAS),
+    "spreadsheet.csv": ("red;green;blue\n" + lines(ROWS, ";").replace(".", ","), COMMAS),
 }
 
 GREYS = [
@@ -133,6 +134,8 @@ REFUSED = [
         ("a.txt", "16 " + "0.5 " * 48, "49 numbers, of which the first, 16, may be how many rows follow; remove it if it is"),
         ("a.txt", "16\n" + "0.5\n" * 48, "49 numbers, of which the first, 16"),
         ("a.txt", "1,5 2,5 3,5 4 5 6,5 7,5 8,5 9,5", "commas that may be decimal ones"),
+        ("a.txt", "1,234 0 2,500", "1,234, which may be 1.234 or, with a comma between thousands, 1234"),
+        ("a.csv", "red;green;blue\n1,234;0;1", "1,234, which may be 1.234 or, with a comma between thousands, 1234"),
         ("a.txt", f"float bright = 2.0;\nvec3 sh[9] = {{{LIST}}};", "2 lists of numbers, with the names bright, sh; keep"),
         ("a.txt", named(lambda l, m: f"L{l}{abs(m)} ="), "9 lists of numbers, with the names L00, L11, L10, L11"),
         ("a.glsl", "vec3(1, 2, 3), vec4(1, 2, 3, 4)", "brackets with 3 numbers and with 4; rows are equally long"),

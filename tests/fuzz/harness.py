@@ -1,10 +1,12 @@
-"""Feeds spoilt files to the reader of images and reports whatever it does beyond its promise (promise.py).
+"""Feeds spoilt files to the readers and reports whatever they do beyond their promise.
 
-    python tests/fuzz/harness.py                     20 000 mutations and every truncation
-    python tests/fuzz/harness.py --forever           mutations without end, with a line of progress every 20 000
-    python tests/fuzz/harness.py --seed 7 --case 41  saves one mutation as a file, and checks it in this process
+    python tests/fuzz/harness.py                     20 000 mutations of images and every truncation (promise.py)
+    python tests/fuzz/harness.py --doors             20 000 mutations for every other door (doors.py)
+    python tests/fuzz/harness.py [--doors] --forever           without end, with a line of progress every 20 000
+    python tests/fuzz/harness.py [--doors] --seed 7 --case 41  saves one mutation as a file, and checks it in this process
 
-Inputs that break the promise are saved in tests/fuzz/found, where test_fuzz.py checks them ever after.
+Inputs that break the promise are made as small as they still do so, and saved in tests/fuzz/found, where test_fuzz.py and
+test_doors.py check them ever after.
 
 They are read in a child process: one that dies, or does not come back, is reported with the input it was at, and the
 next goes on behind it. An input is a function of the seed and its number, so both sides know it.
@@ -19,6 +21,7 @@ import signal
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from multiprocessing.connection import Connection
@@ -26,9 +29,13 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple, Protocol
 
+import door_seeds
+import seeds as image_seeds
+from door_mutations import spoilt
+from doors import DoorWitness
+from minimise import minimised
 from mutations import mutated
 from promise import BrokenPromise, Witness
-from seeds import seeds
 
 FOUND = Path(__file__).parent / "found"
 COUNT = 20_000
@@ -36,17 +43,27 @@ _SHARES = {".hdr": 39, ".exr": 26, ".png": 13, ".jpg": 9} | {".tif": 3, ".dds": 
 _SHARES |= dict.fromkeys((".psd", ".bmp", ".webp"), 1)
 """Percent of the mutations; the reader of .hdr is the one written here. Kinds without a seed have none."""
 
+_DOOR_SHARES = {"light": 64, "compare": 4, "against": 6, "reference": 4, "stamp": 8, "arguments": 14}
 _LARGE = 2048  # bytes; of seeds up to this size every truncation is tried
 _AT_ONCE = 1000
 _OF_A_KIND = 3
 _NO_SIGN_OF_LIFE_SECONDS = 60.0  # of the wall clock, and so only for what never comes back
 _NO_START_SECONDS = 600.0  # the same, until the child is at its first input
 
-_seeds = cache(seeds)
+_seeds = image_seeds.seeds
+
+
+class Judge(Protocol):
+    """What sees whether a promise is kept, on one input after the other."""
+
+    def check(self, name: str, data: bytes) -> bool:
+        """Whether the input was accepted. BrokenPromise if the reader misbehaved."""
 
 
 class Inputs(Protocol):
     """A numbered set of files, the same in every process."""
+
+    def judge(self) -> Judge: ...
 
     def __len__(self) -> int: ...
 
@@ -58,6 +75,9 @@ class Inputs(Protocol):
 class Mutations:
     seed: int
     count: int = COUNT
+
+    def judge(self) -> Judge:
+        return warmed_up(Witness, _seeds())
 
     def __len__(self) -> int:
         return self.count
@@ -72,8 +92,33 @@ class Mutations:
 
 
 @dataclass(frozen=True)
+class DoorMutations:
+    """For every door but that of images."""
+
+    seed: int
+    count: int = COUNT
+
+    def judge(self) -> Judge:
+        return warmed_up(DoorWitness, door_seeds.seeds())
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, number: int) -> tuple[str, bytes]:
+        random = Random(f"doors/{self.seed}/{number}")
+        (door,) = random.choices(list(_DOOR_SHARES), list(_DOOR_SHARES.values()))
+        name = random.choice(_door_names(door))
+        alike = [other for other in _door_names(door) if other.endswith(Path(name).suffix)]
+        found = door_seeds.seeds()
+        return name, spoilt(name, found[name], tuple(found[other] for other in alike), random)
+
+
+@dataclass(frozen=True)
 class Truncations:
     """Of each seed, from nothing to all but one byte; of large ones about `_LARGE` of them."""
+
+    def judge(self) -> Judge:
+        return warmed_up(Witness, _seeds())
 
     def __len__(self) -> int:
         return len(_truncations())
@@ -86,6 +131,19 @@ class Truncations:
 @cache
 def _names(kind: str) -> list[str]:
     return [name for name in _seeds() if name.endswith(kind)]
+
+
+@cache
+def _door_names(door: str) -> list[str]:
+    return [name for name in door_seeds.seeds() if name.startswith(f"{door}/")]
+
+
+def warmed_up(judge: Callable[[], Judge], sound: dict[str, bytes]) -> Judge:
+    """A judge that begins when all that is loaded late is loaded: imports and first allocations are no input's fault."""
+    first = judge()
+    for name, data in sound.items():
+        verdict(first, name, data)
+    return judge()
 
 
 @cache
@@ -160,9 +218,7 @@ def _examine_until_death(inputs: Inputs, first: int, findings: Findings) -> int:
 def _work(inputs: Inputs, first: int, at: Any, begun: Any, sender: Connection) -> None:
     """The child: sends what it found every now and then, and None when it is through."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is for the parent, which ends its child
-    for name, data in _seeds().items():  # imports and first allocations are no input's fault
-        verdict(Witness(), name, data)
-    witness = Witness()
+    witness = inputs.judge()
     begun.value = 1
     for begin in range(first, len(inputs), _AT_ONCE):
         outcomes, broken = [], []
@@ -178,7 +234,7 @@ def _work(inputs: Inputs, first: int, at: Any, begun: Any, sender: Connection) -
     sender.send(None)
 
 
-def verdict(witness: Witness, name: str, data: bytes) -> bool | str:
+def verdict(witness: Judge, name: str, data: bytes) -> bool | str:
     """Whether it was accepted, or how the promise was broken."""
     try:
         return witness.check(name, data)
@@ -187,9 +243,9 @@ def verdict(witness: Witness, name: str, data: bytes) -> bool | str:
 
 
 def save(data: bytes, stem: str, name: str, folder: Path = FOUND) -> Path:
-    """Writes an input; `name` is its seed's."""
-    folder.mkdir(exist_ok=True)
-    path = folder / f"{stem}-{name}"
+    """Writes an input; `name` is its seed's, for a door but that of images with a folder."""
+    path = folder / Path(name).with_name(f"{stem}-{Path(name).name}")
+    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(data)
     return path
 
@@ -197,32 +253,47 @@ def save(data: bytes, stem: str, name: str, folder: Path = FOUND) -> Path:
 def report(inputs: Inputs, stem: str, findings: Findings, reported: Counter[str]) -> None:
     """Prints what broke the promise and saves it, the first few of a kind; `reported` counts the kinds."""
     for number, name, why in findings.broken:
-        kind = Path(name).suffix + re.sub(r"\d+", "", why)
+        kind = Path(name).suffix + kind_of(why)
         reported[kind] += 1
         if reported[kind] > _OF_A_KIND:
             continue
-        path = save(inputs[number][1], f"{stem}-{number}", name)
-        print(f"BROKEN: number {number}, of {name}: {why}; saved as {path}", flush=True)
+        path = save(_small(inputs, number, why), f"{stem}-{number}", name)
+        print(f"BROKEN: number {number} of seed {stem}, of {name}: {why}; saved as {path}", flush=True)
+
+
+def _small(inputs: Inputs, number: int, why: str) -> bytes:
+    """An input made small; one that takes its process with it, or for ever, stays as it is."""
+    name, data = inputs[number]
+    if why.startswith(("killed", "did not come back")):
+        return data
+    judge = inputs.judge()
+    return minimised(data, lambda part: kind_of(verdict(judge, name, part)) == kind_of(why))
+
+
+def kind_of(why: bool | str) -> str:
+    """What went wrong, without figures and what is quoted."""
+    return re.sub(r"\d+|'.*'|\".*\"|: .*", "", str(why))
 
 
 def _print_table(findings: Findings) -> None:
-    for name in _seeds():
+    for name in sorted(findings.accepted.keys() | findings.refused.keys()):
         accepted, refused = findings.accepted[name], findings.refused[name]
         share = accepted / max(1, accepted + refused)
-        print(f"{name:24} {accepted + refused:6} inputs, {share:6.1%} accepted, {1 - share:6.1%} refused")
+        print(f"{name:30} {accepted + refused:6} inputs, {share:6.1%} accepted, {1 - share:6.1%} refused")
 
 
-def _one(seed: int, number: int) -> int:
-    name, data = Mutations(seed)[number]
+def _one(seed: int, number: int, kind: type[Mutations | DoorMutations]) -> int:
+    inputs = kind(seed)
+    name, data = inputs[number]
     print(f"number {number} of seed {seed}, of {name}, saved as {save(data, f'{seed}-{number}', name)}", flush=True)
-    print({True: "accepted", False: "refused"}.get(outcome := verdict(Witness(), name, data), outcome))
+    print({True: "accepted", False: "refused"}.get(outcome := verdict(inputs.judge(), name, data), outcome))
     return isinstance(outcome, str)
 
 
-def _forever(seed: int) -> int:
-    began, inputs, number, reported = time.monotonic(), Mutations(seed, sys.maxsize), 0, Counter[str]()
+def _forever(seed: int, kind: type[Mutations | DoorMutations]) -> int:
+    began, inputs, number, reported = time.monotonic(), kind(seed, sys.maxsize), 0, Counter[str]()
     while True:
-        part = Mutations(seed, number + 20 * _AT_ONCE)
+        part = kind(seed, number + 20 * _AT_ONCE)
         findings = examine(part, number, most_broken=sys.maxsize)
         report(inputs, str(seed), findings, reported)
         number = len(part)
@@ -234,11 +305,12 @@ def _forever(seed: int) -> int:
         )
 
 
-def _once(seed: int, count: int) -> int:
+def _once(seed: int, count: int, doors: bool) -> int:
     reported = Counter[str]()
-    for stem, inputs in ((str(seed), Mutations(seed, count)), ("truncated", Truncations())):
+    images: dict[str, Inputs] = {str(seed): Mutations(seed, count), "truncated": Truncations()}
+    for stem, inputs in ({str(seed): DoorMutations(seed, count)} if doors else images).items():
         began = time.monotonic()
-        findings = examine(inputs)
+        findings = examine(inputs, most_broken=sys.maxsize)
         report(inputs, stem, findings, reported)
         _print_table(findings)
         print(f"{stem}: {findings.count} inputs in {time.monotonic() - began:.1f} s, {len(findings.broken)} broken")
@@ -250,11 +322,13 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="another number, other mutations")
     parser.add_argument("--count", type=int, default=COUNT)
     parser.add_argument("--forever", action="store_true")
+    parser.add_argument("--doors", action="store_true", help="all that is no image")
     parser.add_argument("--case", type=int, help="the number of one mutation")
     options = parser.parse_args()
+    kind = DoorMutations if options.doors else Mutations
     if options.case is not None:
-        return _one(options.seed, options.case)
-    return _forever(options.seed) if options.forever else _once(options.seed, options.count)
+        return _one(options.seed, options.case, kind)
+    return _forever(options.seed, kind) if options.forever else _once(options.seed, options.count, options.doors)
 
 
 if __name__ == "__main__":

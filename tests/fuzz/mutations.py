@@ -79,6 +79,13 @@ def mutated(seed: bytes, kind: str, random: Random, other: bytes) -> bytes:
     return bytes(data[:_LONGEST_FILE]) if len(seed) < _LONGEST_FILE else bytes(data)
 
 
+def spoilt_anywhere(data: bytearray, random: Random, other: bytes) -> None:
+    """One to six changes of bytes, whatever they mean."""
+    for _ in range(random.choice((1, 1, 2, 3, 6))):
+        if data:
+            random.choice(_ANYWHERE)(data, random, other)
+
+
 def _flip_bit(data: bytearray, random: Random, other: bytes) -> None:
     data[random.randrange(len(data))] ^= 1 << random.randrange(8)
 

@@ -48,19 +48,19 @@ class Witness:
 
     def __init__(self, limits: Limits = LIMITS) -> None:
         self.limits = limits
-        _forget_peak()
-        self.start = _peak_bytes()
+        forget_peak()
+        self.start = peak_bytes()
 
     def check(self, name: str, data: bytes) -> bool:
         """Whether the input was accepted. BrokenPromise if the reader misbehaved."""
-        _forget_peak()
+        forget_peak()
         began = time.process_time()
         image = _outcome(name, data, self.limits)
         seconds = time.process_time() - began
         if seconds > MOST_SECONDS:
             raise BrokenPromise(f"took {seconds:.1f} s")
         texels = self.limits.texels if image is None else image.pixels.size // 3
-        grown = _peak_bytes() - self.start
+        grown = peak_bytes() - self.start
         if grown > 2 * 12 * texels + MOST_BYTES_BEYOND_IMAGE:
             raise BrokenPromise(f"took {grown / 1e6:.0f} MB for at most {texels} texels")
         if image is not None:
@@ -185,12 +185,12 @@ def _webp_sizes(data: bytes) -> set[tuple[int, int]]:
     return found
 
 
-def _forget_peak() -> None:
+def forget_peak() -> None:
     with contextlib.suppress(OSError):
         Path("/proc/self/clear_refs").write_bytes(b"5")
 
 
-def _peak_bytes() -> int:
+def peak_bytes() -> int:
     """0 where the system does not say."""
     try:
         status = Path("/proc/self/status").read_bytes()

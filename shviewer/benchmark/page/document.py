@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from shviewer.benchmark.row import Row
 from shviewer.errors import LightError, UsageError
 from shviewer.files import read_bytes
 from shviewer.limits import DEFAULT_LIMITS
+from shviewer.words import one_line
 
 SCHEMA = "shviewer-report/1"
 HEAD = ("complete", "command", "seed", "versions", "machine", "renderer", "yardstick_milliseconds", "left_out", "extra")
@@ -59,12 +61,22 @@ def _line(value: object) -> str:
     return json.dumps(value, allow_nan=False)
 
 
+def _safe(value: Any) -> Any:
+    """A value of JSON, its texts on one line each and without control characters. ValueError for a number not finite."""
+    if isinstance(value, dict):
+        return {one_line(key): _safe(part) for key, part in value.items()}
+    if isinstance(value, list):
+        return [_safe(part) for part in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"a number in it is {value}")
+    return one_line(value) if isinstance(value, str) else value
+
+
 def read_report(path: Path) -> Report:
     """A report.json that this program wrote. UsageError if it cannot be read, or is of another kind or schema."""
     try:
-        page = json.loads(
-            read_bytes(path, DEFAULT_LIMITS, MAX_FILE_BYTES, f"a report has at most {MAX_FILE_BYTES}").decode()
-        )
+        data = read_bytes(path, DEFAULT_LIMITS, MAX_FILE_BYTES, f"a report has at most {MAX_FILE_BYTES}")
+        page = _safe(json.loads(data.decode()))
     except LightError as error:
         raise UsageError(f"{path}: cannot be read: {error}; name a report.json") from error
     except (ValueError, RecursionError) as error:

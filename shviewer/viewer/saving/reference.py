@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import warnings
 from pathlib import Path
 
@@ -29,7 +30,7 @@ def compare_with_reference(pixels: NDArray[np.uint8], reference: Path, differenc
     Then `difference` is written: the absolute difference, sixteen times as bright. UsageError if the reference is bad.
     """
     remedy = "make it with the same command, REF.png as OUT"
-    if not reference.exists():
+    if not os.path.exists(reference):
         raise UsageError(f"{reference}: no such reference; {remedy}")
     try:
         data = io.BytesIO(read_bytes(reference, DEFAULT_LIMITS))
