@@ -74,7 +74,7 @@ def broken(number: signal.Signals, code: int, errors: str, folder: Path, mark: s
     if number != signal.SIGKILL:
         ours = "shviewer" in errors.partition("Traceback")[2]
         found += ["traceback"] if ours else []
-        if code not in (0, 128 + number, *early) and "init_import_site" not in errors:
+        if code not in (0, 128 + number, *early) and "Fatal Python error" not in errors:
             found.append(f"exit code {code}")
         found += [str(path) for path in folder.rglob("*.tmp")]
         found += [str(path) for path in (folder / "tmp").iterdir()]
