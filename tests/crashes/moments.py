@@ -70,11 +70,12 @@ def send(mode: str, number: signal.Signals, seconds: float, folder: Path) -> Sen
 def broken(number: signal.Signals, code: int, errors: str, folder: Path, mark: str) -> list[str]:
     """What is not as promised, in words."""
     early = -number, (128 + number if number == signal.SIGINT else -number)  # in the start of Python itself
+    before_us = any(words in errors for words in ("Fatal Python error", "Could not import runpy"))
     found = []
     if number != signal.SIGKILL:
         ours = "shviewer" in errors.partition("Traceback")[2]
         found += ["traceback"] if ours else []
-        if code not in (0, 128 + number, *early) and "Fatal Python error" not in errors:
+        if code not in (0, 128 + number, *early) and not before_us:
             found.append(f"exit code {code}")
         found += [str(path) for path in folder.rglob("*.tmp")]
         found += [str(path) for path in (folder / "tmp").iterdir()]
