@@ -20,3 +20,5 @@ class Decoded:
     """Lines for the user on what was done to the values and what is missing."""
     layout: str | None = None
     """The layout that the file itself states, a name of lights/layouts; None if it states none."""
+    largest: float | None = None
+    """A number that no value exceeds, if the decoder knows that all are finite and none is negative; else None."""

@@ -16,7 +16,7 @@ from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.reading import DEFAULT_READING, Reading
-from shviewer.limits import Limits, check_brightness
+from shviewer.limits import BRIGHTEST, Limits, check_brightness
 from shviewer.words import counted, one_line
 
 
@@ -71,7 +71,9 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
         kind = _kind(data, Path(name).suffix.lower())
         decoded = _decoded(kind, data, reading.limits, layer, reading.isolated)
         notes = _repair(decoded.pixels) if reading.sanitize else ()
-        smallest, largest = float(decoded.pixels.min()), float(decoded.pixels.max())  # NaN if there is one
+        smallest, largest = 0.0, decoded.largest or math.inf
+        if largest > BRIGHTEST:  # else nothing needs a look
+            smallest, largest = float(decoded.pixels.min()), float(decoded.pixels.max())  # NaN if there is one
         if not math.isfinite(largest - smallest):
             _refuse_what_is_not_finite(decoded.pixels)
         if smallest < 0.0:

@@ -171,12 +171,15 @@ def decode_rgbe(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
         scanlines = scanlines[:, ::-1]
 
     packings: set[Packing] = set()
-    row = 0
+    row = highest = 0
     for packing, planes in read_scanlines(data, header.first_texel, header.scanlines, header.length):
         _convert(planes, header.rec709_from_stored, scanlines[row : row + len(planes)])
         packings.add(packing)
+        highest = max(highest, int(planes[:, 3].max()))
         row += len(planes)
-    return Decoded(pixels, f"Radiance {header.channels}, {_in_words(packings)}", header.notes)
+    largest = None if header.rec709_from_stored is not None else 255.0 * float(_VALUE_OF_ONE_STEP[highest])
+    encoding = f"Radiance {header.channels}, {_in_words(packings)}"
+    return Decoded(pixels, encoding, header.notes, largest=largest)
 
 
 def _convert(planes: NDArray[np.uint8], matrix: NDArray[np.float64] | None, out: NDArray[np.float32]) -> None:

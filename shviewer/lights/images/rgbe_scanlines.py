@@ -34,6 +34,7 @@ _NEW_PACKING_HEADER = 4  # bytes
 _LONGEST_PACKET = 128  # values
 _LONGEST_MARKER_CHAIN = 4
 _TEXELS_OF_A_BLOCK = 2**16  # its planes and what they become fit the second-level cache
+_SEARCHED_AT_ONCE = 2**20  # bytes
 _FEWEST_WALKED_AT_ONCE = 64  # scanlines; with fewer a step in numpy costs more than Python's
 _BEGINNINGS_PER_SCANLINE = 4  # true and false together; with more, walking them all costs more than Python's loop
 
@@ -103,7 +104,7 @@ def _walk_scanlines(
     longest = scanlines * (_NEW_PACKING_HEADER + 8 * length)  # bytes: a packet for every value
     stream = np.frombuffer(data, np.uint8)[position : position + longest]
     most = _BEGINNINGS_PER_SCANLINE * scanlines
-    found = _find_beginnings(data, position, position + len(stream), length, most + 1)
+    found = _find_beginnings(stream, length, most + 1)
     if len(found) > most:
         return stream, np.zeros(1, np.int64)
     packbits, ends = _walk(stream, found, length)
@@ -122,15 +123,20 @@ def _new_packing_header(length: int) -> bytes:
     return bytes((2, 2, length >> 8, length & 255))
 
 
-def _find_beginnings(data: bytes, start: int, stop: int, length: int, most: int) -> NDArray[np.int64]:
-    """Up to `most` places that look like the beginning of a scanline, as offsets from `start`."""
+def _find_beginnings(stream: NDArray[np.uint8], length: int, most: int) -> NDArray[np.int64]:
+    """Up to `most` places that look like the beginning of a scanline. Block by block this is faster than bytes.find."""
     header = _new_packing_header(length)
-    found: list[int] = []
-    place = data.find(header, start, stop)
-    while place >= 0 and len(found) < most:
-        found.append(place - start)
-        place = data.find(header, place + 1, stop)
-    return np.array(found, np.int64)
+    found, count = [], 0
+    for start in range(0, len(stream), _SEARCHED_AT_ONCE):
+        places = start + np.flatnonzero(stream[start : start + _SEARCHED_AT_ONCE] == header[0])
+        places = places[places <= len(stream) - len(header)]
+        for i in range(1, len(header)):
+            places = places[stream[places + i] == header[i]]
+        found.append(places[: most - count])
+        count += len(found[-1])
+        if count == most:
+            break
+    return np.concatenate(found) if found else np.array([], np.int64)
 
 
 def _walk(

@@ -100,6 +100,23 @@ def test_sanitising_a_sound_image_changes_nothing(read):
     assert image.notes == ()
 
 
+@pytest.mark.parametrize("value", [3e38, -3e38])
+@pytest.mark.parametrize("size", [(16, 32), (48, 64), (64, 48), (32, 48), (32, 32), (8, 48)])
+def test_radiance_near_the_end_of_float32_is_refused_without_a_warning(refusal, value, size):
+    """In the shape of every layout; warnings are errors in this test run."""
+    pixels = np.full((*size, 3), value, np.float32)
+    assert "its largest radiance is 3e+38" in refusal(exr_file({"RGB": pixels}), "light.exr")
+
+
+def test_the_brightest_texels_of_a_picture_are_those_that_count(read, refusal):
+    """Where a decoder knows a bound of the values, they are looked at only above the limit."""
+    texels = TEXELS.copy()
+    texels[3, 5] = (1, 1, 1, 236)  # 2**100, just above the limit of 1e30
+    assert "its largest radiance is 1.27e+30" in refusal(hdr_file(texels))
+    texels[3, 5] = (1, 1, 1, 235)
+    assert read(hdr_file(texels)).pixels.max() == np.float32(2.0**99)
+
+
 # --------------------------------------------------------------------------------------- files that are not images
 
 
