@@ -14,9 +14,10 @@ put right raises ShviewerError.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from shviewer.version import __version__
+
+TYPE_CHECKING = False
+"""What type checkers take for true, as typing.TYPE_CHECKING, which costs as much to import as all of this file."""
 
 if TYPE_CHECKING:
     from shviewer.analysis.projected import Projected

@@ -1,6 +1,10 @@
 """python -m shviewer, and the command shviewer."""
 
+import signal
 import sys
+
+if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is begun during the next import: no traceback, just the end
 
 from shviewer.ending import end_by_signals
 

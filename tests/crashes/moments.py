@@ -26,6 +26,7 @@ MODES: dict[str, tuple[float, Sequence[str]]] = {
     "view": (0.8, ("view-by-default", "--size", "320", "240")),
     "sweep": (2.0, ("sweep", "a.webp", "--to", "6", "--size", "640", "320")),
     "info": (1.2, ("info", "green", "film_studio", "venice_sunset", "sun-sky")),
+    "jobs": (2.5, ("project", "green", "film_studio", "cosine", "hemisphere", "sun-sky", "--jobs", "2", "-o", ".")),
     "project": (0.8, ("project", "green", "film_studio", "cosine", "hemisphere", "sun-sky", "-o", ".")),
     "report": (6.0, ("report", "--quick", "--budget", "3")),
     "stability": (3.0, ("report", "--stability")),
