@@ -22,13 +22,14 @@ TESTS = ("tests/harmonics", "tests/coefficients", "tests/lights", "--ignore=test
 class Mutant(NamedTuple):
     name: str
     file: str
+    """A file, or a folder one of whose files holds the line."""
     right: str
     wrong: str
 
 
 BASIS, PROJECTION = "shviewer/harmonics/basis.py", "shviewer/harmonics/projection.py"
 SCATTERED, QUADRATURE = "shviewer/harmonics/scattered.py", "shviewer/harmonics/quadrature.py"
-METRICS, EXTREMES = "shviewer/harmonics/metrics.py", "shviewer/harmonics/extremes.py"
+METRICS, EXTREMES = "shviewer/harmonics/metrics.py", "shviewer/harmonics"
 FILTERS, ZONAL = "shviewer/harmonics/filters.py", "shviewer/harmonics/zonal.py"
 OVERLAP, CONVENTION = "shviewer/harmonics/overlap.py", "shviewer/coefficients/convention.py"
 
@@ -256,11 +257,13 @@ MUTANTS = (
 
 
 def mutated(mutant: Mutant, tree: Path) -> None:
-    path = tree / mutant.file
-    text = path.read_text(encoding="utf-8")
-    if text.count(mutant.right) != 1:
-        raise SystemExit(f"{mutant.name}: {mutant.file} holds its line {text.count(mutant.right)} times, not once")
-    path.write_text(text.replace(mutant.right, mutant.wrong), encoding="utf-8")
+    place = tree / mutant.file
+    files = {path: path.read_text(encoding="utf-8") for path in (place.rglob("*.py") if place.is_dir() else [place])}
+    times = sum(text.count(mutant.right) for text in files.values())
+    if times != 1:
+        raise SystemExit(f"{mutant.name}: {mutant.file} holds its line {times} times, not once")
+    for path, text in files.items():
+        path.write_text(text.replace(mutant.right, mutant.wrong), encoding="utf-8")
 
 
 def noticed_by(mutant: Mutant, folder: Path, tests: bool) -> tuple[str, str]:
