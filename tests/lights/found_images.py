@@ -76,6 +76,9 @@ def _hdr() -> tuple[Found, ...]:
               "the primaries are ignored, with a note", "a.hdr",
               file(b"#?RADIANCE\n# Made with Adobe Photoshop\nGAMMA=1\nPRIMARIES=0 0 0 0 0 0 0 0\n"
                    b"FORMAT=32-bit_rle_rgbe\n#?RADIANCE\n\n"), base, "as Photoshop writes them"),
+        Found("ImageMagick", "`.hdr` of a picture for a display, with `GAMMA=0.454545`",
+              "linear, as the format has it; the note names `-colorspace RGB`", "a.hdr",
+              set_to(b"GAMMA=0.454545"), base, "-colorspace RGB"),
         Found("writers of their own", "`.hdr` without the empty line, with two, with CR, with a byte order mark",
               "as if it had one", "a.hdr", file(b"\xef\xbb\xbf#?RGBE\r\nFORMAT=32-bit_rle_rgbe\r\n"), base),
     )  # fmt: skip

@@ -92,7 +92,10 @@ class _Settings:
             case b"GAMMA":
                 numbers = _numbers(line, 1)
                 if len(numbers) != 1 or numbers[0] != 1.0:
-                    self.said.append(f"{_shown(line)} ignored: the texels are linear by definition")
+                    why = "the texels are linear by definition"
+                    if len(numbers) == 1 and abs(numbers[0] - 1 / 2.2) < 1e-3:
+                        why += "; if ImageMagick wrote it, they are sRGB codes: make it anew with -colorspace RGB"
+                    self.said.append(f"{_shown(line)} ignored: {why}")
 
     def _times(self, line: bytes, product: NDArray[np.float64], count: int) -> NDArray[np.float64]:
         """The product with the numbers of a line; without them, and with a note, if nothing can be divided by it."""
