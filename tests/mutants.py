@@ -176,7 +176,15 @@ MUTANTS = (
     Mutant(
         "negative area of rows that all count alike", EXTREMES, "axis=1) @ self.row_share)", "axis=1).mean() / 192)"
     ),
-    Mutant("one round of search", EXTREMES, "DISPLAY_ROUNDS = 3", "DISPLAY_ROUNDS = 1"),
+    Mutant(
+        "one round of search", "shviewer/harmonics/extremes/climbing.py", "DISPLAY_ROUNDS = 3", "DISPLAY_ROUNDS = 1"
+    ),
+    Mutant(
+        "bends of a tenth of the height",
+        "shviewer/harmonics/extremes/waves.py",
+        "self.reach**2 / 4",
+        "self.reach**2 / 40",
+    ),
     Mutant("energy below zero over 4 pi", EXTREMES, "4 * np.pi * float(squares) / whole", "float(squares) / whole"),
     Mutant("luminance of Rec. 601", EXTREMES, "[0.2126, 0.7152, 0.0722]", "[0.299, 0.587, 0.114]"),
     Mutant("PSNR of the peak", METRICS, "np.log10(peak**2 / mean)", "np.log10(peak / mean)"),
@@ -240,7 +248,7 @@ MUTANTS = (
         "up * right, down * (1 - right)",
         "down * (1 - right), up * right",
     ),
-    Mutant("map read half a column off", "shviewer/lights/lat_long.py", "* width - 0.5\n", "* width\n"),
+    Mutant("map read half a column off", "shviewer/lights/lat_long.py", "shape[1] - 0.5)", "shape[1])"),
     Mutant(
         "rows weighed at their centres",
         "shviewer/lights/layouts/lat_long.py",
@@ -256,9 +264,14 @@ MUTANTS = (
 )
 
 
-def mutated(mutant: Mutant, tree: Path) -> None:
+def texts(mutant: Mutant, tree: Path) -> dict[Path, str]:
+    """The files of a tree that a mutant may be in, with their texts."""
     place = tree / mutant.file
-    files = {path: path.read_text(encoding="utf-8") for path in (place.rglob("*.py") if place.is_dir() else [place])}
+    return {path: path.read_text(encoding="utf-8") for path in (place.rglob("*.py") if place.is_dir() else [place])}
+
+
+def mutated(mutant: Mutant, tree: Path) -> None:
+    files = texts(mutant, tree)
     times = sum(text.count(mutant.right) for text in files.values())
     if times != 1:
         raise SystemExit(f"{mutant.name}: {mutant.file} holds its line {times} times, not once")

@@ -16,7 +16,7 @@ from shviewer.analysis.subjects import irradiance_of, load_light
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
-from shviewer.harmonics.extremes import ErrorGrid, Extremes
+from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient, window
 from shviewer.harmonics.metrics import (
     PARSEVAL_FLOOR,
@@ -172,4 +172,4 @@ def grid_rows(n_bands: int) -> int:
 @remember(most=8, doing="sampling the light")
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
-    return ErrorGrid(light.radiance, light.landmarks(), rows, light.rows)
+    return ErrorGrid(light.radiance, light.landmarks(), rows, light.rows, light.form)

@@ -14,7 +14,8 @@ from shviewer.analysis.subjects import subject
 from shviewer.coefficients.stamp import stamp_of
 from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.extremes import LUMINANCE, SEARCH_ROUNDS, climb
+from shviewer.harmonics.extremes.climbing import SEARCH_ROUNDS, climb
+from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.lights.find import file_version, split_light
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.lights.light import About, Light

@@ -26,7 +26,17 @@ from shviewer.lights.suns.sun import Sun
 from shviewer.version import __version__
 from shviewer.words import counted
 
-ERRORS = ("relative-l2", "left-out", "added", "max-error", "minimum", "negative-area", "irradiance-relative-l2")
+ERRORS = (
+    "relative-l2",
+    "left-out",
+    "added",
+    "max-error",
+    "max-error-bound",
+    "minimum",
+    "minimum-bound",
+    "negative-area",
+    "irradiance-relative-l2",
+)
 """Keys of the stamp that hold error figures."""
 
 
@@ -151,11 +161,14 @@ def _errors(figures: Figures) -> dict[str, Value]:
         whole.left_out,
         whole.added,
         extremes.max_error,
+        extremes.max_error_bound,
         extremes.minimum,
+        extremes.minimum_bound,
         extremes.negative_area,
         figures.irradiance_relative_l2,
     )
-    return {key: float(value) for key, value in zip(ERRORS, values, strict=True) if np.isfinite(value)}
+    found = zip(ERRORS, values, strict=True)
+    return {key: float(value) for key, value in found if value is not None and np.isfinite(value)}
 
 
 def _one_line(text: str) -> str:

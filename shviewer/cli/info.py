@@ -177,8 +177,18 @@ def _origin(stamp: Stamp) -> list[tuple[str, str]]:
         f"{key} {stamp[key]}" for key in ("samples", "seed", "window", "muted") if stamp.get(key) not in (None, "none")
     ]
     parts.append(f"written by {stamp.get('written-by', 'an unknown program')}")
-    figures = [f"{words} {float(str(stamp[key])):.4g}" for key, words in FIGURES.items() if _is_number(stamp.get(key))]
+    figures = [
+        f"{words} {float(str(stamp[key])):.4g}{_bound(stamp, key)}"
+        for key, words in FIGURES.items()
+        if _is_number(stamp.get(key))
+    ]
     return [("origin", ", ".join(parts)), *([("figures there", ", ".join(figures))] if figures else [])]
+
+
+def _bound(stamp: Stamp, key: str) -> str:
+    """The bound of a figure in words, if the stamp has one."""
+    value = stamp.get(f"{key}-bound")
+    return f" (at {'least' if key == 'minimum' else 'most'} {float(str(value)):.4g})" if _is_number(value) else ""
 
 
 def _is_number(value: object) -> bool:

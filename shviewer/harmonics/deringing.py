@@ -6,7 +6,8 @@ factor h(l) of its own, except band 0, the mean. The squared L2 change, which is
     sum over l of (1 - h(l))^2 p(l),   p(l) the energy of band l,
 is made as small as possible while no channel is negative in any direction. That is a least-distance problem with one linear
 constraint per direction. Only the few lowest valleys matter; they are found on the function itself and added until none is
-below zero. There is a solution whenever the mean is not negative, since the mean alone is one.
+below zero, and until a bound of the whole sphere (extremes/waves.py) finds no other. There is a solution whenever the mean is
+not negative, since the mean alone is one.
 
 Source
     [LH] C. Lawson, R. Hanson, "Solving Least Squares Problems" (1974), chapter 23: NNLS and LDP.
@@ -20,24 +21,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_basis
-from shviewer.harmonics.extremes import valleys
+from shviewer.harmonics.extremes.climbing import valleys
+from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.metrics import band_power
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.synthesis import Synthesis
 
 MAX_DERINGED_BANDS = 32
 
 TOLERANCE = 1e-6
 """Valleys this far below zero, relative to the mean radiance, get a constraint; a trace of the mean lifts the rest."""
 
-ROUNDS, QUICK_ROUNDS, QUICK_VALLEYS = 40, 7, 40
-"""The search is quick while constraints are collected, and thorough once at the end."""
+ROUNDS, QUICK_ROUNDS, QUICK_VALLEYS = 60, 7, 40
+"""The search is quick while constraints are collected; when it finds none, the whole sphere is searched."""
+
+GRID_ROWS, EFFORT = 12, 32
+"""Rows a band of the grid for that, and the effort of the search on it."""
+
 EMPTY = 1e-10
 """A band with less than this share of the L2 norm keeps the factor 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Deringing:
-    """factors: h(l), (n,). minimum: the result's least value in any channel and direction. change: L2, relative to the norm."""
+    """factors: h(l), (n,). minimum: no direction and channel of the result is below. change: L2, relative to the norm."""
 
     factors: Array
     minimum: float
@@ -68,7 +76,10 @@ def dering(coefficients: Array) -> Deringing:
         lowest, directions, channels = valleys(coefficients * per_coefficient(factors), QUICK_ROUNDS, QUICK_VALLEYS)
         below = lowest < -TOLERANCE * mean.max()
         if not below.any():
-            break
+            bounds, lowest, directions = _searched(coefficients * per_coefficient(factors), TOLERANCE * mean.max() / 8)
+            channels, below = np.arange(3), lowest < -TOLERANCE * mean.max()
+            if not below.any():
+                break
         by_band = _band_values(coefficients, directions[below], channels[below]) / norm
         rows = np.concatenate([rows, -by_band[:, movable] / strength[movable]])
         limits = np.concatenate([limits, -by_band.sum(axis=1)])
@@ -76,11 +87,33 @@ def dering(coefficients: Array) -> Deringing:
         u, binding = least_distance(rows, limits)
         rows, limits = rows[binding], limits[binding]  # the others hold by themselves
         factors[movable] = 1 - u / strength[movable]
-    values, _, channels = valleys(coefficients * per_coefficient(factors))
-    lift = float((np.maximum(-values, 0) / np.maximum(mean[channels] - values, np.finfo(float).tiny)).max())
+    else:
+        bounds, _, _ = _searched(coefficients * per_coefficient(factors), TOLERANCE * mean.max() / 8)
+    lift = float((np.maximum(-bounds, 0) / np.maximum(mean - bounds, np.finfo(float).tiny)).max())
     factors[1:] *= 1 - lift  # a trace of the mean lifts what the rounds and the quick search left below zero
     change = float((power * (1 - factors) ** 2).sum())
-    return Deringing(factors, float(((1 - lift) * values + lift * mean[channels]).min()), float(np.sqrt(change)) / norm)
+    return Deringing(factors, float(((1 - lift) * bounds + lift * mean).min()), float(np.sqrt(change)) / norm)
+
+
+def _searched(coefficients: Array, tolerance: float) -> tuple[Array, Array, Array]:
+    """A lower bound of each channel, (3,), and the lowest values found, (3,), with their directions, (3, 3)."""
+    synthesis = Synthesis(coefficients)
+    rows = GRID_ROWS * max(synthesis.n_bands, 4)
+    theta, phi = np.pi * (np.arange(rows) + 0.5) / rows, column_azimuths(2 * rows)
+    values = synthesis.on_rows(theta, len(phi))
+    bounds, lowest, directions = np.empty(3), np.empty(3), np.empty((3, 3))
+    for channel in range(3):
+        same = next(c for c in range(channel + 1) if np.array_equal(coefficients[:, c], coefficients[:, channel]))
+        if same < channel:
+            bounds[channel], lowest[channel], directions[channel] = bounds[same], lowest[same], directions[same]
+            continue
+        own = np.ascontiguousarray(values[:, [channel]])
+        row, column = divmod(int(own.argmin()), len(phi))
+        found = Waves(own, synthesis.n_bands).lowest(float(own.min()), tolerance, EFFORT)
+        bounds[channel], lowest[channel] = found.bound, found.lowest
+        angles = (found.theta, found.phi) if found.lowest < own.min() else (theta[row], phi[column])
+        directions[channel] = directions_from_angles(*map(np.asarray, angles))
+    return bounds, lowest, directions
 
 
 def least_distance(rows: Array, limits: Array) -> tuple[Array, NDArray[np.bool_]]:

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands, degrees
-from shviewer.harmonics.extremes import LUMINANCE
 
 ROUNDING = 1e-11
 """How far a sum of squared coefficients may exceed ||f||^2, relative to it: rounding of up to 128**2 terms."""
@@ -28,6 +27,9 @@ SMALLEST = 1e-300
 
 PARSEVAL_FLOOR = 1e-7
 """Relative errors below this are lost in rounding, since they come from a difference of squares in float64."""
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Rec. 709 luminance of linear RGB [ITU-R BT.709-6, item 3.2]."""
 
 CHANNELS = ("red", "green", "blue", "luminance")
 

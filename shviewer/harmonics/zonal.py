@@ -44,6 +44,15 @@ class Profile(Protocol):
     def zonal(self, n_bands: int) -> Array:
         """lambda(l) for l = 0 to n_bands-1, shape (n_bands,)."""
 
+    def along(self, angle: Array) -> tuple[Array, Array, Array, Array]:
+        """Value, first and second derivative at angles to the axis in radians, and a bound of the fourth near each.
+
+        The value never rises with the angle.
+        """
+
+    def __hash__(self) -> int:
+        """A hash, since tables of a profile are kept."""
+
 
 @dataclass(frozen=True)
 class Constant:
@@ -55,6 +64,10 @@ class Constant:
 
     def value(self, squared_chord: Array) -> Array:
         return np.ones(np.shape(squared_chord))
+
+    def along(self, angle: Array) -> tuple[Array, Array, Array, Array]:
+        nothing = np.zeros(np.shape(angle))
+        return nothing + 1, nothing, nothing, nothing
 
     def zonal(self, n_bands: int) -> Array:
         return _leading(n_bands, 4 * np.pi)
@@ -86,6 +99,10 @@ class ClampedLinear:
     def value(self, squared_chord: Array) -> Array:
         return np.asarray(np.maximum(0, (self.slope - self.offset) - self.slope / 2 * squared_chord))
 
+    def along(self, angle: Array) -> tuple[Array, Array, Array, Array]:
+        lit = np.asarray(self.slope * (angle <= self.half_angle))
+        return self.value(_squared_chord(angle)), -lit * np.sin(angle), -lit * np.cos(angle), lit
+
     def zonal(self, n_bands: int) -> Array:
         if self.offset <= -self.slope:  # nowhere clamped
             return _leading(n_bands, -4 * np.pi * self.offset, 4 * np.pi / 3 * self.slope)
@@ -115,6 +132,10 @@ class Disc:
     def value(self, squared_chord: Array) -> Array:
         return np.asarray(np.less_equal(squared_chord, self.parameters[0]), dtype=np.float64)
 
+    def along(self, angle: Array) -> tuple[Array, Array, Array, Array]:
+        nothing = np.zeros(np.shape(angle))
+        return self.value(_squared_chord(angle)), nothing, nothing, nothing
+
     def zonal(self, n_bands: int) -> Array:
         versine = 2 * np.sin(self.half_angle / 2) ** 2
         sine_2 = np.sin(self.half_angle) ** 2
@@ -142,6 +163,11 @@ class Gaussian:
     def value(self, squared_chord: Array) -> Array:
         return np.asarray(np.exp(-self.sharpness / 2 * squared_chord))
 
+    def along(self, angle: Array) -> tuple[Array, Array, Array, Array]:
+        k, value, sine = self.sharpness, self.value(_squared_chord(angle)), np.sin(angle)
+        # with t = sqrt(k) angle the fourth derivative is below k^2 (t^4 + 6 t^2 + 3 + ...) exp(-t^2/2) < 4 k^2 exp(-t^2/4)
+        return value, -k * sine * value, k * (k * sine * sine - np.cos(angle)) * value, 4 * k * (k + 1) * np.sqrt(value)
+
     def zonal(self, n_bands: int) -> Array:
         """lambda(l)/lambda(l-1) is a ratio of modified spherical Bessel functions; its recurrence [DLMF 10.51.4]
 
@@ -160,6 +186,10 @@ class Gaussian:
             if l < n_bands:
                 ratios[l] = ratio
         return np.asarray(-2 * np.pi * np.expm1(-2 * k) / k * np.cumprod(ratios))
+
+
+def _squared_chord(angle: Array) -> Array:
+    return np.asarray(4 * np.sin(angle / 2) ** 2)
 
 
 def gegenbauer_ratios(z: float, one_minus_z: float, m: int, n_bands: int) -> Array:

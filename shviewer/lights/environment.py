@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from shviewer.files import naming
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.lights.images.radiance_files import read_radiance_image
@@ -170,6 +171,10 @@ class EnvironmentLight(RadianceLight):
         if not self.layout.solid_angles_at(row, column)[0]:
             row, column = _brightest(np.where(self.layout.solid_angles()[..., None] > 0, self.pixels, np.float32(0)))
         return self.layout.centres(row, column)
+
+    @property
+    def form(self) -> Raster:
+        return self.map.form
 
     def texels(self) -> Iterator[tuple[Array, Array]]:
         """As in Light: the texels that show something."""

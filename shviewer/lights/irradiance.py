@@ -10,17 +10,20 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
+from shviewer.harmonics.extremes.bands import Bands, band_heights
+from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.harmonics.zonal import ClampedLinear, gegenbauer_ratios
-from shviewer.lights.lat_long import LatLongMap
+from shviewer.harmonics.zonal import ClampedLinear, Profile, gegenbauer_ratios
+from shviewer.lights.lat_long import MAP_ROWS, LatLongMap
 from shviewer.lights.light import About, Light, LightBase
-from shviewer.lights.lobe import Lobe, angle_between, pair_products
+from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 
 SERIES_BANDS = 1024
 """Bands in the products of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of its norm."""
@@ -109,6 +112,16 @@ class MappedIrradiance(IrradianceLight):
         return self.map.sample(directions)
 
     @cached_property
+    def form(self) -> Bands | None:
+        """Its bands, and how far the map is from them between its points, by their second derivatives."""
+        if self.source.form is None:
+            return None
+        coefficients = self.coefficients(self.bands)
+        heights = band_heights(coefficients)
+        step, l = np.pi / (MAP_ROWS - 1), np.arange(self.bands)
+        return Bands(coefficients, float((step * l) ** 2 / 4 @ heights + np.finfo(np.float32).eps * heights.sum()))
+
+    @cached_property
     def map(self) -> LatLongMap:
         return LatLongMap.pole_to_pole(Synthesis(self.coefficients(self.bands)).on_rows)
 
@@ -119,6 +132,10 @@ class FiniteSum(LightBase):
     @property
     @abstractmethod
     def synthesis(self) -> Synthesis: ...
+
+    @property
+    def form(self) -> Bands:
+        return Bands(self.synthesis.coefficients)
 
     def radiance(self, directions: Array) -> Array:
         return self.synthesis.in_directions(directions)
@@ -147,12 +164,43 @@ class LobeIrradiance(IrradianceLight):
         return total
 
     @cached_property
+    def form(self) -> Lobes:
+        shades = [_Shade(lobe.profile, *table) for lobe, table in zip(self.source.lobes, self._tables, strict=True)]
+        return lobes_form(shades, self.source.lobes)
+
+    @cached_property
     def _tables(self) -> list[tuple[Array, Array]]:
         return [_table(lobe) for lobe in self.source.lobes]
 
     @cached_property
     def _products(self) -> Array:
         return _lobe_products(self.source.lobes)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shade:
+    """The irradiance of a lobe of unit radiance as a profile: smooth, and linear between the nodes of its table."""
+
+    profile: Profile
+    angles: Array
+    values: Array
+    kind: ClassVar[int] = -1
+    parameters: ClassVar[tuple[float, float]] = (0.0, 0.0)
+    half_angle: ClassVar[float] = np.pi
+
+    def value(self, squared_chord: Array) -> Array:
+        return np.asarray(np.interp(2 * np.arcsin(np.sqrt(np.minimum(squared_chord, 4)) / 2), self.angles, self.values))
+
+    def zonal(self, n_bands: int) -> Array:
+        return self.profile.zonal(n_bands) * irradiance_factors(n_bands)
+
+    def along(self, angle: Array) -> tuple[Array, Array, Array, Array]:
+        """As in Profile, for angles that are equally far apart: what bends within a step is twice what is seen at its ends."""
+        value = np.interp(angle, self.angles, self.values)
+        slope = np.gradient(value, angle)
+        step = angle[1] - angle[0]
+        bend = np.diff(np.pad(value, 1, mode="reflect"), 2) / step**2
+        return value, slope, bend, 8 * np.abs(bend) / step**2
 
 
 class RadianceLight(LightBase):

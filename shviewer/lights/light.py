@@ -11,6 +11,7 @@ import numpy as np
 
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes.error_grid import Form
 from shviewer.harmonics.quadrature import evaluate_rows
 from shviewer.lights.lat_long import LatLongMap
 
@@ -78,6 +79,10 @@ class Light(Protocol):
 
     def landmarks(self) -> Array:
         """Directions (j, 3) of features that a grid might step over, such as the axis of a sun."""
+
+    @property
+    def form(self) -> Form | None:
+        """The parts between which its error can be bounded; None if it is known only where it is looked at."""
 
     @property
     def source(self) -> Light:
@@ -158,6 +163,10 @@ class LightBase(ABC):
 
     def landmarks(self) -> Array:
         return np.zeros((0, 3))
+
+    @property
+    def form(self) -> Form | None:
+        return None
 
     def split_suns(self: Light, wanted: int | str = "auto") -> Split:
         raise LightError(f"{self.name}: only images and sums of lobes can be split; show it with its sun")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from shviewer.harmonics.basis import Array, normalise
+from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.zonal import Profile
 
 
@@ -22,6 +23,11 @@ class Lobe:
     def __post_init__(self) -> None:
         object.__setattr__(self, "axis", normalise(self.axis))
         object.__setattr__(self, "radiance", np.broadcast_to(np.asarray(self.radiance, dtype=np.float64), (3,)))
+
+
+def lobes_form(profiles: Sequence[Profile], lobes: Sequence[Lobe]) -> Lobes:
+    """The sum of such profiles about the lobes' axes and in their colours, as that whose error can be bounded."""
+    return Lobes(profiles, np.stack([lobe.axis for lobe in lobes]), np.stack([lobe.radiance for lobe in lobes]))
 
 
 def angle_between(first: Lobe, second: Lobe) -> float:

@@ -8,11 +8,12 @@ from functools import cached_property
 import numpy as np
 
 from shviewer.harmonics.basis import Array, normalise
+from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Constant, Disc, orient
 from shviewer.lights.irradiance import UP, LobeIrradiance, RadianceLight
 from shviewer.lights.light import Light, Split
-from shviewer.lights.lobe import Lobe, angle_between, pair_products
+from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.limits import check_brightness
 
 EDGE = 1e-9
@@ -75,6 +76,10 @@ class LobeLight(RadianceLight):
     def landmarks(self) -> Array:
         """The axes, and points just inside and outside the edge of every profile that has one."""
         return np.concatenate([_edge(lobe) for lobe in self.lobes])
+
+    @cached_property
+    def form(self) -> Lobes:
+        return lobes_form([lobe.profile for lobe in self.lobes], self.lobes)
 
     def irradiance(self) -> Light:
         return LobeIrradiance(self)

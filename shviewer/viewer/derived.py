@@ -10,7 +10,7 @@ from shviewer.analysis.figures import error_grid, grid_rows, reconstruct
 from shviewer.analysis.projections import BEST, Projection, project
 from shviewer.analysis.recipe import Shown
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.extremes import DISPLAY_ROUNDS, climb
+from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light

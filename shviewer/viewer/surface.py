@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from shviewer.analysis.cache import remember
 from shviewer.harmonics.basis import Array, count_bands, index
-from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light

@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from shviewer.harmonics.basis import evaluate_basis, index
-from shviewer.harmonics.extremes import ErrorGrid, climb, valleys
+from shviewer.harmonics.extremes.climbing import climb, valleys
+from shviewer.harmonics.extremes.error_grid import ErrorGrid
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.find import find_light
 

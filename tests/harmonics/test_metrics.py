@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import eval_legendre
 
 from shviewer.harmonics.basis import evaluate_basis, index
-from shviewer.harmonics.extremes import ErrorGrid
+from shviewer.harmonics.extremes.error_grid import ErrorGrid
 from shviewer.harmonics.metrics import (
     band_power,
     band_weights,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shviewer.harmonics.basis import Array, evaluate_basis, index
-from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.zonal import Disc
 from shviewer.lights.find import find_light
 from shviewer.lights.lobe import Lobe

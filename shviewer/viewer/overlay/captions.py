@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
-from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK
 from shviewer.viewer.overlay.painter import Painter

@@ -19,6 +19,8 @@ def write_figures(painter: Painter, picture: Picture) -> None:
     extremes = figures.extremes
     relative: tuple[str, ...] = ("relative L2 error",)
     largest: tuple[str, ...] = ("largest error",)
+    if extremes.max_error_bound is None:  # a Python function is known only where it was looked at
+        largest = ("largest error found", *largest)
     if picture.subject.suns:
         relative = ("relative L2 error of rest", "L2 error of rest")
         largest = ("largest error of rest", "largest of rest", *largest)

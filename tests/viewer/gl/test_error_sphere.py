@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from viewer.gl.frames import lobes, picture_view, positions, reconstructing, rounding, sum_of_harmonics
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobe import Lobe

@@ -14,7 +14,7 @@ from viewer.gl.frames import sum_of_harmonics
 from viewer.gl.silhouettes import coverage, outline
 
 from shviewer.harmonics.basis import Array, evaluate_basis, index
-from shviewer.harmonics.extremes import LUMINANCE
+from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.viewer.camera import matrix, towards, world_from_view
 from shviewer.viewer.composition import Box, Sphere
 from shviewer.viewer.gl import surface_renderer

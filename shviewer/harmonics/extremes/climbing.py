@@ -1,24 +1,15 @@
-"""The extremes of a reconstruction: its minimum, and its largest distance from the light.
-
-A grid finds the right valley; from there the search goes on in ever smaller patches of the function itself. So the
-result is a value that the function takes, and does not depend on where the grid's points happen to lie.
-"""
+"""The search for an extreme in ever smaller patches of a function: what it finds is a value that the function takes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, evaluate_rows
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-"""Rec. 709 luminance of linear RGB [ITU-R BT.709-6, item 3.2]."""
 
 PATCH = np.stack(np.meshgrid(np.arange(-2.0, 3.0), np.arange(-2.0, 3.0), indexing="ij"), axis=-1).reshape(-1, 2)
 PARABOLOID = np.linalg.pinv(
@@ -38,103 +29,6 @@ SEARCH_ROUNDS = 22
 Triple = tuple[float, float, float]
 Objective = Callable[[Array], Array]
 """A function to maximise: unit directions (k, 3) -> (k,)."""
-
-
-@dataclass(frozen=True)
-class Extremes:
-    """Radiance is linear; errors and minima are over all channels; areas and energies are shares, 0 to 1."""
-
-    max_error: float
-    max_error_direction: Triple
-    minimum: float
-    minimum_direction: Triple
-    negative_area: float
-    """The share of the sphere with negative Rec. 709 luminance."""
-    negative_energy: float
-    """The integral of min(reconstruction, 0)^2 divided by that of reconstruction^2, over all channels."""
-    peak: float
-    """The largest |radiance| of the original seen on the same grid."""
-
-
-class ErrorGrid:
-    """A light seen on a lat-long grid and at its landmarks, ready to be compared with any reconstruction.
-
-    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions of features that a grid may miss. rows: a faster way to
-    the radiance on whole rows, if there is one: theta (rows,) and the number of columns -> (rows, 3, columns).
-    """
-
-    def __init__(
-        self,
-        radiance: Callable[[Array], Array],
-        landmarks: Array,
-        n_rows: int,
-        rows: Callable[[Array, int], Array] | None = None,
-    ) -> None:
-        self.radiance = radiance
-        self.theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
-        self.phi = column_azimuths(2 * n_rows)
-        self.original = (rows or partial(evaluate_rows, radiance))(self.theta, len(self.phi))
-        self.landmarks = landmarks
-        self.landmark_radiance = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
-        self.peak = float(max(np.abs(self.original).max(), np.abs(self.landmark_radiance).max(initial=0)))
-        edges = np.cos(np.pi * np.arange(n_rows + 1) / n_rows)
-        self.row_share = (edges[:-1] - edges[1:]) / (2 * 2 * n_rows)
-        """The solid angle of one cell of each row divided by 4 pi, (rows,); exact."""
-
-    def compare(self, shown: Array) -> Extremes:
-        """The extremes of the reconstruction with coefficients `shown`, (n**2, 3)."""
-        synthesis = Synthesis(shown)
-        values = synthesis.on_rows(self.theta, len(self.phi))
-        error, error_direction = self._largest_error(values, synthesis)
-        row, _, column = np.unravel_index(int(values.argmin()), values.shape)
-        start = self._direction(int(row), int(column))
-        lowest, place = climb(lambda d: -synthesis.in_directions(d).min(axis=1), start, self._step, DISPLAY_ROUNDS)
-        luminance = sum(weight * values[:, channel] for channel, weight in enumerate(LUMINANCE))
-        area = float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share)
-        minimum, energy = -float(lowest[0]), self._negative_energy(values, shown)
-        return Extremes(error, error_direction, minimum, _triple(place[0]), area, energy, self.peak)
-
-    @property
-    def _step(self) -> float:
-        return float(np.pi / len(self.theta))
-
-    def _direction(self, row: int, column: int) -> Array:
-        return directions_from_angles(self.theta[[row]], self.phi[[column]])
-
-    def _largest_error(self, values: Array, synthesis: Synthesis) -> tuple[float, Triple]:
-        difference = values - self.original
-        rows, columns = _highest_in_blocks(np.abs(difference, out=difference).max(axis=1))
-        errors, places = climb(
-            lambda d: np.abs(synthesis.in_directions(d) - self.radiance(d)).max(axis=1),
-            directions_from_angles(self.theta[rows], self.phi[columns]),
-            self._step,
-            DISPLAY_ROUNDS,
-        )
-        best = float(errors.max()), _triple(places[int(errors.argmax())])
-        if len(self.landmarks):
-            there = np.abs(synthesis.in_directions(self.landmarks) - self.landmark_radiance).max(axis=1)
-            best = max(best, (float(there.max()), _triple(self.landmarks[int(there.argmax())])))
-        return best
-
-    def _negative_energy(self, values: Array, shown: Array) -> float:
-        """The share of energy below zero: that part measured on the grid, the whole as the sum of squares (Parseval)."""
-        whole = float((shown**2).sum())
-        if values.min() >= 0 or whole == 0:  # squares of less than 1e-160 may be 0
-            return 0.0
-        negative = np.minimum(values, 0).reshape(len(self.theta), -1)
-        squares = np.einsum("rx,rx->r", negative, negative) @ self.row_share
-        return min(1.0, 4 * np.pi * float(squares) / whole)
-
-
-def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Rows and columns of the highest cells of the BLOCKS best 8 x 8 blocks of a grid: several peaks, not one's slope."""
-    short = [-side % 8 for side in values.shape]
-    values = np.pad(values, ((0, short[0]), (0, short[1])), constant_values=-np.inf)
-    rows, columns = values.shape
-    blocks = values.reshape(rows // 8, 8, columns // 8, 8).transpose(0, 2, 1, 3).reshape(-1, 64)
-    best = np.argsort(blocks.max(axis=1))[-BLOCKS:]
-    inside = blocks[best].argmax(axis=1)
-    return best // (columns // 8) * 8 + inside // 8, best % (columns // 8) * 8 + inside % 8
 
 
 def valleys(
@@ -256,8 +150,3 @@ def _tangents(places: Array) -> tuple[Array, Array]:
     b = x * y * a
     right = np.stack([1 + sign * x * x * a, sign * b, -sign * x], axis=-1)
     return right, np.stack([b, sign + y * y * a, -y], axis=-1)
-
-
-def _triple(direction: Array) -> Triple:
-    x, y, z = (float(component) for component in direction)
-    return x, y, z

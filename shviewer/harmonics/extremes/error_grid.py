@@ -1,0 +1,247 @@
+"""A light on a grid, and the extremes of any reconstruction of it, with bounds that no direction passes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.extremes.bands import Bands
+from shviewer.harmonics.extremes.climbing import BLOCKS, DISPLAY_ROUNDS, Objective, climb
+from shviewer.harmonics.extremes.raster import Raster
+from shviewer.harmonics.extremes.waves import Waves
+from shviewer.harmonics.extremes.zonal_sum import Lobes
+from shviewer.harmonics.metrics import LUMINANCE
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, evaluate_rows
+from shviewer.harmonics.synthesis import Synthesis
+
+TOLERANCE = 8e-4
+"""A bound ends about this far from what was found, relative to it: what was found is within a thousandth of the extreme."""
+
+RING_POINTS = 32
+"""Points a band along the edge of a lobe, where the tables do not say where the largest error is."""
+
+MOST_OPEN = 1500
+"""With more cells than this in which the minimum could be, the tables of lobes find it sooner than the grid."""
+
+NEGLIGIBLE = 1e-7
+"""The share of the largest radiance that is no longer told apart."""
+
+Triple = tuple[float, float, float]
+
+Form: TypeAlias = Lobes | Raster | Bands
+"""The parts of a light between which its error can be bounded."""
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Radiance is linear; errors and minima are over all channels; areas and energies are shares, 0 to 1."""
+
+    max_error: float
+    max_error_bound: float | None
+    """No direction has a larger error; None for a Python function, whose largest error is found but not proved."""
+    max_error_direction: Triple
+    minimum: float
+    minimum_bound: float
+    """No direction of the reconstruction is lower."""
+    minimum_direction: Triple
+    negative_area: float
+    """The share of the sphere with negative Rec. 709 luminance."""
+    negative_energy: float
+    """The integral of min(reconstruction, 0)^2 divided by that of reconstruction^2, over all channels."""
+    peak: float
+    """The largest |radiance| of the original seen on the same grid."""
+
+
+class _Seen(NamedTuple):
+    """A reconstruction on the grid, (rows, 3, columns), and everything that is made of it once."""
+
+    shown: Array
+    synthesis: Synthesis
+    values: Array
+    waves: Waves
+
+
+class _Found(NamedTuple):
+    """An extreme value, its direction (3,), and a bound on the far side of it."""
+
+    value: float
+    direction: Array
+    bound: float
+
+
+class ErrorGrid:
+    """A light seen on a lat-long grid and at its landmarks, ready to be compared with any reconstruction.
+
+    radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions of features that a grid may miss. rows: a faster way to
+    the radiance on whole rows, if there is one: theta (rows,) and the number of columns -> (rows, 3, columns). form: the parts
+    of the light, if they are known.
+    """
+
+    def __init__(
+        self,
+        radiance: Callable[[Array], Array],
+        landmarks: Array,
+        n_rows: int,
+        rows: Callable[[Array, int], Array] | None = None,
+        form: Form | None = None,
+    ) -> None:
+        self.radiance = radiance
+        self.theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
+        self.phi = column_azimuths(2 * n_rows)
+        self.original = (rows or partial(evaluate_rows, radiance))(self.theta, len(self.phi))
+        self.landmarks = landmarks
+        self.landmark_radiance = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
+        self.peak = float(max(np.abs(self.original).max(), np.abs(self.landmark_radiance).max(initial=0)))
+        edges = np.cos(np.pi * np.arange(n_rows + 1) / n_rows)
+        self.row_share = (edges[:-1] - edges[1:]) / (2 * 2 * n_rows)
+        """The solid angle of one cell of each row divided by 4 pi, (rows,); exact."""
+        self.form = form
+
+    def compare(self, shown: Array) -> Extremes:
+        """The extremes of the reconstruction with coefficients `shown`, (n**2, 3)."""
+        synthesis = Synthesis(shown)
+        values = synthesis.on_rows(self.theta, len(self.phi))
+        seen = _Seen(shown, synthesis, values, Waves(values, synthesis.n_bands))
+        if isinstance(self.form, Lobes):
+            zonal, rest = self.form.factors(shown)
+            lowest = self._lowest_of_lobes(seen, self.form, zonal, rest)
+            error = self._error_of_lobes(seen, self.form, zonal, rest)
+        else:
+            lowest = self._lowest(seen)
+            error = self._error_of_raster(seen, self.form) if isinstance(self.form, Raster) else self._climbed(seen)
+            if isinstance(self.form, Bands):
+                error = self._error_of_bands(seen, self.form, error)
+        luminance = sum(weight * values[:, channel] for channel, weight in enumerate(LUMINANCE))
+        area = float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share)
+        return Extremes(
+            max_error=error.value,
+            max_error_bound=None if self.form is None else max(error.value, error.bound),
+            max_error_direction=_triple(error.direction),
+            minimum=lowest.value,
+            minimum_bound=min(lowest.value, lowest.bound),
+            minimum_direction=_triple(lowest.direction),
+            negative_area=area,
+            negative_energy=self._negative_energy(values, shown),
+            peak=self.peak,
+        )
+
+    @property
+    def _step(self) -> float:
+        return float(np.pi / len(self.theta))
+
+    def _negligible(self, seen: _Seen) -> float:
+        """What is no longer told apart in a reconstruction."""
+        return NEGLIGIBLE * float(max(seen.waves.high.max(), -seen.waves.low.min()))
+
+    def _best(self, objective: Objective, starts: Array, bound: float = np.inf) -> _Found:
+        """The best of directions (k, 3), climbed from."""
+        values, places = climb(objective, starts[[int(objective(starts).argmax())]], self._step / 2, DISPLAY_ROUNDS)
+        return _Found(float(values[0]), places[0], bound)
+
+    def _lowest(self, seen: _Seen) -> _Found:
+        def depth(directions: Array) -> Array:
+            return np.asarray(-seen.synthesis.in_directions(directions).min(axis=1))
+
+        row, _, column = (int(i) for i in np.unravel_index(int(seen.values.argmin()), seen.values.shape))
+        start = directions_from_angles(self.theta[[row]], self.phi[[column]])
+        values, places = climb(depth, start, self._step, DISPLAY_ROUNDS)
+        found = _Found(-float(values[0]), places[0], -np.inf)
+        tolerance = max(TOLERANCE * abs(found.value), self._negligible(seen))
+        bounded = seen.waves.lowest(found.value, tolerance)
+        if bounded.lowest < found.value - tolerance / 2:
+            deeper = self._best(depth, directions_from_angles(np.array([bounded.theta]), np.array([bounded.phi])))
+            found = min(found, _Found(-deeper.value, deeper.direction, -np.inf), key=lambda place: place.value)
+        return found._replace(bound=bounded.bound)
+
+    def _lowest_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> _Found:
+        negligible, low = self._negligible(seen), float(seen.waves.low.min())
+        if rest > negligible or seen.waves.open_cells(low, TOLERANCE * abs(low)) < MOST_OPEN:
+            return self._lowest(
+                seen
+            )  # the coefficients are not the light's own, but those of samples; or this is quicker
+        places, bound = lobes.shade(zonal).largest(TOLERANCE, negligible, magnitude=False)
+        found = self._best(lambda d: -seen.synthesis.in_directions(d).min(axis=1), places)
+        return _Found(-found.value, found.direction, -bound - rest)
+
+    def _error_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> _Found:
+        negligible = NEGLIGIBLE * self.peak
+        places, bound = lobes.error(zonal).largest(TOLERANCE, negligible, magnitude=True)
+        errors = self._error(seen, places)
+        best = int(errors.argmax())
+        found = _Found(float(errors[best]), places[best], bound + rest)
+        if rest <= negligible and bound <= found.value * (1 + 2 * TOLERANCE) + negligible:
+            return found
+        around = lobes.rings(RING_POINTS * seen.synthesis.n_bands)
+        starts = np.concatenate([places, around])
+        starts = starts[np.argsort(-self._error(seen, starts))[:BLOCKS]]
+        return max(found, self._climbed(seen, starts), key=lambda one: one.value)._replace(bound=found.bound)
+
+    def _error_of_raster(self, seen: _Seen, raster: Raster) -> _Found:
+        error = raster.largest_error(seen.waves, self.original, seen.synthesis, TOLERANCE, NEGLIGIBLE * self.peak)
+        direction = directions_from_angles(np.array([error.theta]), np.array([error.phi]))
+        found = _Found(float(self._error(seen, direction)[0]), direction[0], error.bound)
+        if error.bound <= found.value * (1 + 2 * TOLERANCE):
+            return found
+        return max(found, self._climbed(seen), key=lambda one: one.value)._replace(bound=error.bound)
+
+    def _error_of_bands(self, seen: _Seen, bands: Bands, found: _Found) -> _Found:
+        difference, left_out = bands.less(seen.shown, TOLERANCE / 4 * found.value)
+        n_bands = count_bands(difference)
+        n_rows = max(len(self.theta), 4 * n_bands)
+        values = Synthesis(difference).on_rows(np.pi * (np.arange(n_rows) + 0.5) / n_rows, 2 * n_rows)
+        tolerance = max(TOLERANCE * found.value, NEGLIGIBLE * self.peak)
+        sides = [Waves(signed, n_bands).lowest(-found.value, tolerance) for signed in (values, -values)]
+        deepest = min(sides, key=lambda side: side.lowest)
+        if -deepest.lowest > found.value + tolerance / 2:
+            start = directions_from_angles(np.array([deepest.theta]), np.array([deepest.phi]))
+            found = max(found, self._best(partial(self._error, seen), start), key=lambda one: one.value)
+        return found._replace(bound=left_out - min(side.bound for side in sides))
+
+    def _error(self, seen: _Seen, directions: Array) -> Array:
+        return np.asarray(np.abs(seen.synthesis.in_directions(directions) - self.radiance(directions)).max(axis=1))
+
+    def _climbed(self, seen: _Seen, others: Array | None = None) -> _Found:
+        """The largest error that is found from the grid, the landmarks and other directions (k, 3), without a bound."""
+        difference = seen.values - self.original
+        rows, columns = _highest_in_blocks(np.abs(difference, out=difference).max(axis=1))
+        starts = directions_from_angles(self.theta[rows], self.phi[columns])
+        if others is not None:
+            starts = np.concatenate([starts, others])
+        errors, places = climb(partial(self._error, seen), starts, self._step, DISPLAY_ROUNDS)
+        best = _Found(float(errors.max()), places[int(errors.argmax())], np.inf)
+        if len(self.landmarks):
+            there = np.abs(seen.synthesis.in_directions(self.landmarks) - self.landmark_radiance).max(axis=1)
+            highest = int(there.argmax())
+            best = max(best, _Found(float(there[highest]), self.landmarks[highest], np.inf), key=lambda one: one.value)
+        return best
+
+    def _negative_energy(self, values: Array, shown: Array) -> float:
+        """The share of energy below zero: that part measured on the grid, the whole as the sum of squares (Parseval)."""
+        whole = float((shown**2).sum())
+        if values.min() >= 0 or whole == 0:  # squares of less than 1e-160 may be 0
+            return 0.0
+        negative = np.minimum(values, 0).reshape(len(self.theta), -1)
+        squares = np.einsum("rx,rx->r", negative, negative) @ self.row_share
+        return min(1.0, 4 * np.pi * float(squares) / whole)
+
+
+def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows and columns of the highest cells of the BLOCKS best 8 x 8 blocks of a grid: several peaks, not one's slope."""
+    short = [-side % 8 for side in values.shape]
+    values = np.pad(values, ((0, short[0]), (0, short[1])), constant_values=-np.inf)
+    rows, columns = values.shape
+    blocks = values.reshape(rows // 8, 8, columns // 8, 8).transpose(0, 2, 1, 3).reshape(-1, 64)
+    best = np.argsort(blocks.max(axis=1))[-BLOCKS:]
+    inside = blocks[best].argmax(axis=1)
+    return best // (columns // 8) * 8 + inside // 8, best % (columns // 8) * 8 + inside % 8
+
+
+def _triple(direction: Array) -> Triple:
+    x, y, z = (float(component) for component in direction)
+    return x, y, z

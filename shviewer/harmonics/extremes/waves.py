@@ -1,0 +1,264 @@
+"""A band-limited function between the points of a grid: how low and how high it can go there.
+
+On every great circle through the poles, and along every circle of latitude, a function of n bands is a trigonometric
+polynomial of degree N = n - 1. If it stays within A of a constant, its k-th derivatives stay within N^k A (Bernstein), so that
+    in cells of h radians a side, their corners bound it up to (N h)^2 A / 4;
+    in them, the polynomial through the s x s points around is off by at most (1 + L) w (N h)^s A / s!,
+with w the largest product of distances to s points one apart, and L the largest sum of the magnitudes of the weights of an
+interpolation. The polynomial lies above the least of its Bernstein coefficients, and closer above it in parts of the cell.
+A itself follows from the grid: M points about a circle see all of it but 1 - cos(pi N / M) [Ehlich-Zeller].
+
+[Ehlich-Zeller] H. Ehlich, K. Zeller, "Schwankung von Polynomen zwischen Gitterpunkten", Math. Z. 86, 41 (1964).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+from math import comb, factorial, prod
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+
+Indices = NDArray[np.int64]
+
+SIEVE, FINE = 6, 10
+"""Points a side of the stencil that sorts out most cells, and of the one that judges the rest."""
+
+SIEVED_SHARE, MOST_SIEVED, MOST_FINE = 48, 8192, 400
+"""The most cells that each stencil looks at, for the first also a share of all values; what is left keeps the bound it had."""
+
+BLOCK_ROWS = 16
+"""Rows of cells that are worked on together, so that they stay in the cache."""
+
+HALVINGS = 8
+"""How often cells are halved."""
+
+
+class Bounded(NamedTuple):
+    """A lower bound of a function, the lowest value seen on the way (to about the bound's own error), and where, radians."""
+
+    bound: float
+    lowest: float
+    theta: float
+    phi: float
+
+
+class Waves:
+    """A function of `n_bands` bands by its values (rows, channels, columns) on a lat-long grid of 2 rows columns."""
+
+    def __init__(self, values: Array, n_bands: int) -> None:
+        self.values = values
+        self.rows, self.columns = len(values), values.shape[2]
+        self.step = float(np.pi / self.rows)
+        self.reach = (n_bands - 1) * self.step
+        """N h."""
+        self.high, self.low = values.max(axis=(0, 2)), values.min(axis=(0, 2))
+        self.amplitude = (self.high - self.low) / 2 / np.cos(self.reach / 2) ** 2
+        """A of each channel, (channels,)."""
+        self.slack = self.amplitude * self.reach**2 / 4
+        """How far it may pass the corners of a cell, (channels,)."""
+
+    @cached_property
+    def corners_low(self) -> Array:
+        """The lowest corner of each cell, (rows + 1, channels, columns): cell i, j lies after row i - 1 and column j.
+
+        The first and the last row of cells lie across the poles.
+        """
+        return self._corners(np.minimum, self.values)
+
+    @cached_property
+    def corners_high(self) -> Array:
+        """The highest corner of each cell."""
+        return self._corners(np.maximum, self.values)
+
+    def largest_corners(self, values: Array) -> Array:
+        """The largest corner of each cell of other values on the same points."""
+        return self._corners(np.maximum, values)
+
+    def _corners(self, better: np.ufunc, values: Array) -> Array:
+        half = self.columns // 2
+        by_row = np.empty((self.rows + 1, *values.shape[1:]))
+        better(values[:-1], values[1:], out=by_row[1:-1])
+        for edge in (0, -1):
+            better(values[edge], np.roll(values[edge], half, axis=-1), out=by_row[edge])
+        return self._paired(better, by_row)
+
+    @staticmethod
+    def _paired(better: np.ufunc, by_row: Array) -> Array:
+        """The better of each value and the next in its row."""
+        corners = np.empty_like(by_row)
+        better(by_row[..., :-1], by_row[..., 1:], out=corners[..., :-1])
+        better(by_row[..., -1], by_row[..., 0], out=corners[..., -1])
+        return corners
+
+    def open_cells(self, found: float, tolerance: float) -> int:
+        """The number of cells, times channels, that may be lower by their corners alone."""
+        return int(np.count_nonzero(self.corners_low < (found - tolerance + self.slack)[:, None]))
+
+    def lowest(self, found: float, tolerance: float, effort: int = 1) -> Bounded:
+        """A lower bound of all channels, not far below found - tolerance; found: a value that the function takes.
+
+        effort: how many times the usual number of cells are looked at, if need be.
+        """
+        low = self.corners_low - self.slack[:, None]
+        cells = np.flatnonzero(low.reshape(-1) < found - tolerance)
+        most = effort * min(self.values.size // SIEVED_SHARE, MOST_SIEVED)
+        if len(cells) > most:
+            low = self.corners_low - self.bends(below=True)
+            cells = np.flatnonzero(low.reshape(-1) < found - tolerance)
+        best = Bounded(max(found - tolerance, float(low.min())), found, 0.0, 0.0)
+        if not len(cells):
+            return best
+        lows = low.reshape(-1)[cells]
+        lows, cells, left = _lowest_first(lows, cells, most)
+        row, channel, column = (np.asarray(index) for index in np.unravel_index(cells, low.shape))
+        lows = np.maximum(
+            lows, self._control(row, channel, column, SIEVE).min(axis=(1, 2)) - self._error(SIEVE)[channel]
+        )
+        open_ = np.flatnonzero(lows < found - tolerance)
+        lows, open_, dropped = _lowest_first(lows[open_], open_, effort * MOST_FINE)
+        left = min(left, dropped)
+        row, channel, column = row[open_], channel[open_], column[open_]
+        error = self._error(FINE)[channel]
+        control = self._control(row, channel, column, FINE)
+        corner = np.stack([row - 0.5, column + 0.5], axis=1)  # in cells; theta = 0 and u = 0 are 0
+        for halving in range(HALVINGS + 1):
+            side = 0.5**halving
+            corners = control[:, [0, 0, -1, -1], [0, -1, 0, -1]]
+            if corners.size and (there := float(corners.min())) < best.lowest:
+                which, at = divmod(int(corners.argmin()), 4)
+                theta, u = corner[which] + side * np.array([at // 2, at % 2])
+                best = best._replace(
+                    lowest=there, theta=float(theta * self.step), phi=float(np.pi * (1 - 2 * u / self.columns))
+                )
+            lows = np.maximum(lows, control.min(axis=(1, 2)) - error)
+            open_ = np.flatnonzero(lows < min(found, best.lowest) - np.maximum(tolerance, 1.5 * error))
+            left = min(left, float(np.delete(lows, open_).min(initial=np.inf)))
+            lows, open_, dropped = _lowest_first(lows[open_], open_, effort * MOST_FINE)
+            left = min(left, dropped)
+            if not len(open_):
+                break
+            if halving == HALVINGS:
+                left = min(left, float(lows.min()))
+                break
+            corner = (corner[open_, None] + side / 2 * np.array([[0, 0], [0, 1], [1, 0], [1, 1]])).reshape(-1, 2)
+            control, error, lows = _halved(control[open_]), np.repeat(error[open_], 4), np.repeat(lows, 4)
+        return best._replace(bound=min(best.bound, left))
+
+    def bends(self, *, below: bool = False) -> Array:
+        """How far it can pass the bilinear surface through the corners of each cell, or `below` it alone: like the corners.
+
+        That is by an eighth of the second differences along both sides.
+        """
+        found = np.empty((self.rows + 1, *self.values.shape[1:]))
+        for top in range(0, len(found), BLOCK_ROWS):
+            cells = slice(top, min(top + BLOCK_ROWS, len(found)))
+            rows, turned = _mirrored(np.arange(cells.start - 2, cells.stop + 1), self.rows)
+            values = self.values[rows]
+            values[turned] = np.roll(values[turned], self.columns // 2, axis=-1)
+            middle = values[1:-1]
+            down, across = values[2:] + values[:-2], np.empty_like(middle)
+            np.add(middle[..., 2:], middle[..., :-2], out=across[..., 1:-1])
+            across[..., 0], across[..., -1] = middle[..., 1] + middle[..., -1], middle[..., 0] + middle[..., -2]
+            bend = found[cells]
+            bend[:] = self._moved[:, None] / 4
+            for second in (down, across):
+                second -= 2 * middle
+                np.maximum(second, 0, out=second) if below else np.abs(second, out=second)
+                bend += self._paired(np.maximum, np.maximum(second[1:], second[:-1])) / 8
+        return np.asarray(np.minimum(found, self.slack[:, None], out=found))
+
+    def curvature(self, row: Indices, column: Indices) -> Array:
+        """The largest |second derivative| along theta and along phi in cells (k,), per radian squared: (k, 2, channels)."""
+        channels = np.arange(self.values.shape[1])
+        every = np.broadcast_arrays(row[:, None], channels, column[:, None])
+        points = self._points(every[0].ravel(), every[1].ravel(), every[2].ravel(), 4)
+        found = [np.abs(np.diff(points, 2, axis=axis)) for axis in (1, 2)]
+        seen = np.stack([found[0][:, :, 1:3].max(axis=(1, 2)), found[1][:, 1:3].max(axis=(1, 2))], axis=1)
+        seen = seen.reshape(len(row), len(channels), 2).swapaxes(1, 2)
+        return np.asarray(np.minimum(seen + self._moved, self.reach**2 * self.amplitude) / self.step**2)
+
+    @property
+    def _moved(self) -> Array:
+        """How far h^2 times a second derivative in a cell may pass the second differences at its corners, (channels,).
+
+        It differs from those by (N h)^4 A / 12 at most, and moves by less than (N h)^4 A / 4 within the cell.
+        """
+        return np.asarray(self.reach**4 / 3 * self.amplitude)
+
+    def _error(self, size: int) -> Array:
+        """How far the polynomial through a stencil may be off, (channels,)."""
+        return np.asarray(_stencil(size)[1] * self.reach**size * self.amplitude)
+
+    def _control(self, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
+        """Bernstein coefficients (k, size, size) of the polynomials through the size x size points about cells (k,)."""
+        points = self._points(row, channel, column, size)
+        return np.asarray(points.reshape(-1, size**2) @ _stencil(size)[2]).reshape(-1, size, size)
+
+    def _points(self, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
+        """The size x size points about cells (k,), (k, size, size)."""
+        about = np.arange(size) - size // 2 + 1
+        rows, turned = _mirrored(row[:, None] - 1 + about, self.rows)
+        columns = column[:, None, None] + about + np.where(turned, self.columns // 2, 0)[:, :, None]
+        start = (rows * self.values.shape[1] + channel[:, None]) * self.columns
+        return np.asarray(self.values.reshape(-1).take(start[:, :, None] + columns % self.columns))
+
+
+def _mirrored(rows: Indices, count: int) -> tuple[Indices, NDArray[np.bool_]]:
+    """The rows that continue a grid of `count` rows beyond its poles, and which of them are turned half way round."""
+    beyond = (rows < 0) | (rows >= count)
+    return np.where(rows < 0, -1 - rows, np.where(beyond, 2 * count - 1 - rows, rows)), beyond
+
+
+def _lowest_first(lows: Array, cells: Indices, most: int) -> tuple[Array, Indices, float]:
+    """The `most` lowest of the cells with their bounds, and the lowest bound of the others."""
+    if len(cells) <= most:
+        return lows, cells, np.inf
+    order = np.argpartition(lows, most)
+    return lows[order[:most]], cells[order[:most]], float(lows[order[most:]].min())
+
+
+def _halved(control: Array) -> Array:
+    """Bernstein coefficients (k, s, s) -> those of the four quarters, (4 k, s, s)."""
+    size = control.shape[1]
+    split = _halves(size)  # (2 s, s)
+    by_row = control.reshape(-1, size) @ split.T
+    quarters = by_row.reshape(-1, size, 2 * size).swapaxes(1, 2).reshape(-1, size) @ split.T
+    quarters = quarters.reshape(-1, 2, size, 2, size)  # column half, column, row half, row
+    return np.ascontiguousarray(quarters.transpose(0, 3, 1, 4, 2)).reshape(-1, size, size)
+
+
+@lru_cache(maxsize=4)
+def _halves(size: int) -> Array:
+    """From Bernstein coefficients on [0, 1] to those on both halves, (2 size, size) [de Casteljau]."""
+    left = np.array([[comb(i, j) / 2**i for j in range(size)] for i in range(size)])
+    return np.concatenate([left, left[::-1, ::-1]])
+
+
+@lru_cache(maxsize=4)
+def _stencil(size: int) -> tuple[Array, float, Array]:
+    """For `size` points about the cell [0, 1], one apart: the matrix from values to Bernstein coefficients; the factor of
+    (N h)^size A in the error of two dimensions; the matrix for size x size points, (size^2, size^2), which stands on the right.
+    """
+    nodes = np.arange(1.0 - size // 2, 1.0 + size - size // 2)
+    degree = size - 1
+    x = np.linspace(0.0, 1.0, size)
+    weights = _lagrange(nodes, x)
+    bernstein = np.array([[comb(degree, j) * t**j * (1 - t) ** (degree - j) for j in range(size)] for t in x])
+    matrix = np.linalg.solve(bernstein, weights)
+    lebesgue = 1.001 * float(np.abs(_lagrange(nodes, np.linspace(0, 1, 101))).sum(axis=1).max())
+    product = prod((k + 0.5) ** 2 for k in range(size // 2))
+    both = np.asarray(np.kron(matrix, matrix).T, dtype=np.float64, order="C")
+    return matrix, (1 + lebesgue) * product / factorial(size), both
+
+
+def _lagrange(nodes: Array, x: Array) -> Array:
+    """The weights (len(x), len(nodes)) of values at the nodes in the polynomial through them, at x."""
+    weights = np.ones((len(x), len(nodes)))
+    for i, node in enumerate(nodes):
+        for other in np.delete(nodes, i):
+            weights[:, i] *= (x - other) / (node - other)
+    return weights
