@@ -32,7 +32,7 @@ MOST_CELLS = 1024
 MOST_BOXES, EVALUATIONS = 64, 1024
 """The most boxes in one round, and how often the reconstruction is evaluated before the search for a closer bound ends."""
 
-FEW_TEXELS = 2
+FEW_TEXELS = 1.5
 """Up to so many texels a side, the corners of a cell may bound the error in it better than its range does."""
 
 FIRST_CELLS = 16
@@ -247,12 +247,13 @@ class _Search:
         bounds = (np.maximum(high - lowest, highest - low) + waves.slack).max(axis=-1)
         real = (np.diff(rows)[:, :, None] > 0) & (np.diff(columns)[:, None, :] > 0) & (bounds > self.enough)
         cell, i, j = np.nonzero(real)
+        used, among = np.unique(cell, return_inverse=True)
         return _Boxes(
             np.stack([rows[cell, i], rows[cell, i + 1]], axis=1),
             np.stack([columns[cell, j], columns[cell, j + 1]], axis=1),
             corners[cell, i, j],
             bounds[cell, i, j],
-            waves.curvature(row, column)[cell],
+            waves.curvature(row[used], column[used])[among],
         )
 
     def _evaluate(self, boxes: _Boxes, split: int) -> _Boxes:
