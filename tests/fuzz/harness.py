@@ -29,6 +29,8 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple, Protocol
 
+sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest does; seeds are made by helpers of other rooms' tests
+
 import door_seeds
 import seeds as image_seeds
 from door_mutations import spoilt
@@ -282,10 +284,13 @@ def _print_table(findings: Findings) -> None:
         print(f"{name:30} {accepted + refused:6} inputs, {share:6.1%} accepted, {1 - share:6.1%} refused")
 
 
-def _one(seed: int, number: int, kind: type[Mutations | DoorMutations]) -> int:
+def _one(seed: int, number: int, kind: type[Mutations | DoorMutations], folder: Path) -> int:
     inputs = kind(seed)
     name, data = inputs[number]
-    print(f"number {number} of seed {seed}, of {name}, saved as {save(data, f'{seed}-{number}', name)}", flush=True)
+    print(
+        f"number {number} of seed {seed}, of {name}, saved as {save(data, f'{seed}-{number}', name, folder)}",
+        flush=True,
+    )
     print({True: "accepted", False: "refused"}.get(outcome := verdict(inputs.judge(), name, data), outcome))
     return isinstance(outcome, str)
 
@@ -323,11 +328,12 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=COUNT)
     parser.add_argument("--forever", action="store_true")
     parser.add_argument("--doors", action="store_true", help="all that is no image")
+    parser.add_argument("--into", type=Path, default=FOUND, help="the folder for the file of --case")
     parser.add_argument("--case", type=int, help="the number of one mutation")
     options = parser.parse_args()
     kind = DoorMutations if options.doors else Mutations
     if options.case is not None:
-        return _one(options.seed, options.case, kind)
+        return _one(options.seed, options.case, kind, options.into)
     return _forever(options.seed, kind) if options.forever else _once(options.seed, options.count, options.doors)
 
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import doors
+import harness
 import numpy as np
 import promise
 import pytest
@@ -23,6 +24,7 @@ from harness import FOUND, DoorMutations, examine, verdict
 from minimise import minimised
 from test_fuzz import assert_none_broken
 
+import shviewer
 from shviewer.errors import LightError
 
 COUNT = int(os.environ.get("SHVIEWER_FUZZ", 20_000 if os.environ.get("CI") else 4_000))
@@ -57,6 +59,26 @@ def test_every_seed_is_read() -> None:
 def test_a_mutation_is_a_function_of_seed_and_number() -> None:
     assert [DoorMutations(3)[number] for number in range(300)] == [DoorMutations(3, 7)[number] for number in range(300)]
     assert [DoorMutations(3)[number] for number in range(50)] != [DoorMutations(4)[number] for number in range(50)]
+
+
+def test_one_input_is_replayed_by_the_command_that_the_harness_names(tmp_path: Path) -> None:
+    """Outside pytest, which finds the helpers of other tests by itself."""
+    command = [
+        sys.executable,
+        str(Path(harness.__file__)),
+        "--doors",
+        "--seed",
+        "3",
+        "--case",
+        "41",
+        "--into",
+        str(tmp_path),
+    ]
+    environment = {**os.environ, "PYTHONPATH": str(Path(shviewer.__file__).parents[1])}
+    done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True)
+    name, data = DoorMutations(3)[41]
+    kept = tmp_path / Path(name).with_name(f"3-41-{Path(name).name}")
+    assert (done.returncode, kept.read_bytes()) == (0, data), done.stderr
 
 
 def test_an_input_is_made_small() -> None:
