@@ -44,6 +44,7 @@ from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.reference import compare_with_reference
+from shviewer.viewer.saving.stamp import state_of_stamp
 from shviewer.viewer.state import state_of
 from shviewer.words import MOST_CHARACTERS, one_line
 
@@ -549,3 +550,15 @@ def test_a_name_too_long_for_a_file_is_one_line_wherever_it_stands(
     assert len(capsys.readouterr().err.splitlines()) == 3
     with pytest.raises(UsageError, match="no such reference"):
         compare_with_reference(np.zeros((8, 8, 3), np.uint8), Path(f"{name}.png"), Path("d.png"), 0)
+
+
+def test_a_stamp_that_is_no_text_of_an_object_is_refused(tmp_path: Path) -> None:
+    """Among them code points that Unicode has not, at which Python itself ends with a SystemError."""
+    beyond = np.frombuffer(b"\xff\xff\xff\x7f" * 3, "<U3").reshape(())
+    for stamp in (beyond, np.array(["{}", "{}"]), np.array(5), np.array(b"{}")):
+        np.savez(tmp_path / "a.npz", coefficients=NINE, stamp=stamp)
+        with pytest.raises(LightError, match="no JSON object of a coefficient file"):
+            read_coefficients(tmp_path / "a.npz")
+    for said in ("[]", '{"compare": 1.5}', '{"compare": {"convention": "three"}}'):
+        with pytest.raises(UsageError, match="no stamp of a picture"):
+            state_of_stamp(said)

@@ -30,7 +30,7 @@ def read_arrays(data: bytes) -> Listed:
         raise LightError(f"coefficients of type {numbers.dtype} and shape {numbers.shape}; they are (n^2, 3) numbers")
     if "stamp" not in arrays:
         return arranged(numbers)
-    return Listed(numbers, _stamp_text(str(arrays["stamp"])))
+    return Listed(numbers, _stamp_text(arrays["stamp"]))
 
 
 def _arrays(data: bytes, most: int) -> dict[str, NDArray[Any]]:
@@ -60,9 +60,13 @@ def _array(file: io.BytesIO) -> NDArray[Any]:
         raise
 
 
-def _stamp_text(text: str) -> Stamp:
+def _stamp_text(array: NDArray[Any]) -> Stamp:
     try:
-        found = json.loads(text)
+        if array.dtype.kind != "U" or array.size != 1:
+            raise ValueError
+        # not str(array): it believes code points beyond those of Unicode, and Python ends with a SystemError
+        text = array.astype(array.dtype.newbyteorder("<")).tobytes().decode("utf-32-le")
+        found = json.loads(text.rstrip("\0"))
     except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict) or SCHEMA_KEY not in found:

@@ -36,9 +36,10 @@ from shviewer.analysis.subjects import load_light
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import read_report
+from shviewer.cli import info
 from shviewer.cli.from_options import reading_from, recipe_from, state_from
 from shviewer.cli.info import as_text
-from shviewer.cli.main import MODES, PARSERS, _meant, main
+from shviewer.cli.main import MODES, PARSERS, _meant
 from shviewer.cli.project import wanted_convention
 from shviewer.cli.sweep import _check_sweep
 from shviewer.coefficients.programs import CONVENTIONS
@@ -168,7 +169,8 @@ def _parsed(argv: list[str]) -> None:
     if vars(options).get("samples") and options.samples > 10_000:
         return  # honest work of any length
     if mode == "info":
-        main(argv)
+        options.jobs = 1  # more are processes, which are not the input's fault
+        info.run(options)
     elif mode == "project":
         wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
         for light in options.lights:

@@ -181,16 +181,17 @@ def state_of_stamp(text: str, light: str | Light | None = None, compare: Coeffic
         if said.get("schema", 0) > SCHEMA:
             raise UsageError(f"a picture of schema {said['schema']}: this version reads {SCHEMA}; update shviewer")
         recipe, view = _told(said["state"]) if "state" in said else _told_before_schemas(said)
+        given = (said["state"]["recipe"] if "state" in said else said).get("compare")
+        compared = str(given["name"]) if given else ""
     except (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
         raise UsageError(f"no stamp of a picture ({error}): save the picture again") from error
     name = recipe.pop("light", None)
-    given = (said["state"]["recipe"] if "state" in said else said).get("compare")
     if light is None and name is None:
         raise UsageError("the picture is of a light that has no text to name it: give the light")
     if light is None and is_code(name):
         raise UsageError(f"the picture is of {name}, which is code, and no picture runs code: give the light")
-    if given and compare is None:
-        raise UsageError(f"the picture compares with {given['name']}: give those coefficients")
+    if compared and compare is None:
+        raise UsageError(f"the picture compares with {compared}: give those coefficients")
     if compare is not None and recipe.get("n_bands", 1) > compare.n_bands:
         raise UsageError(f"{recipe['n_bands']} bands: {compare.extent}; give the coefficients of the picture")
     shown = light or name or Recipe.light
