@@ -136,7 +136,7 @@ def test_what_float32_makes_of_no_error_is_not_blown_up_to_colours(renderer: Ren
 
 def test_where_a_sun_was_split_off_the_error_is_that_of_the_rest(renderer: Renderer) -> None:
     frame = three_spheres()
-    sun = Lobe(Disc(0.04), [0.3, 0.9, 0.3], [400.0, 300.0, 200.0])
+    sun = Lobe(Disc(0.02), [0.3, 0.9, 0.3], [4000.0, 3000.0, 2000.0])
     light = lobes(Lobe(Constant(), [0, 0, 1], 1.0), Lobe(Gaussian(9.0), [0, 0, 1], 2.0), sun)
     picture = picture_of(light, n_bands=6, error="signed", split_sun=True)
     assert picture.suns
