@@ -143,7 +143,7 @@ def _change_member(members: list[tuple[str, bytes]], random: Random) -> None:
     place = random.randrange(len(members))
     name, content = members[place]
     match random.randrange(9):
-        case 0 | 1 | 2 if content.startswith(b"\x93NUMPY") and name.endswith(".npy"):
+        case 0 | 1 | 2 if content.startswith(b"\x93NUMPY") and len(content) > 10 and name.endswith(".npy"):
             members[place] = name, spoilt_npy(content, random)
         case 3:
             members[place] = random.choice(_NAMES), content

@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from copy import deepcopy
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -302,7 +303,7 @@ def _change(holder: Any, random: Random, tree: Any) -> None:
     key, value = holder[place] if pairs else (None, holder[place])
     match random.randrange(9):
         case 0 | 1 | 2:
-            value = random.choice(_VALUES)
+            value = deepcopy(random.choice(_VALUES))  # a later change may be within it
         case 3:
             holder.insert(place, holder[place])
             return

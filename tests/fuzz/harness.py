@@ -109,8 +109,8 @@ class DoorMutations:
     def __getitem__(self, number: int) -> tuple[str, bytes]:
         random = Random(f"doors/{self.seed}/{number}")
         (door,) = random.choices(list(_DOOR_SHARES), list(_DOOR_SHARES.values()))
-        name = random.choice(_door_names(door))
-        alike = [other for other in _door_names(door) if other.endswith(Path(name).suffix)]
+        alike = random.choice(list(_door_names(door).values()))
+        name = random.choice(alike)
         found = door_seeds.seeds()
         return name, spoilt(name, found[name], tuple(found[other] for other in alike), random)
 
@@ -136,8 +136,13 @@ def _names(kind: str) -> list[str]:
 
 
 @cache
-def _door_names(door: str) -> list[str]:
-    return [name for name in door_seeds.seeds() if name.startswith(f"{door}/")]
+def _door_names(door: str) -> dict[str, list[str]]:
+    """Suffix -> the seeds of a door with that suffix: of each are as many mutations, however many seeds there are."""
+    names: dict[str, list[str]] = {}
+    for name in door_seeds.seeds():
+        if name.startswith(f"{door}/"):
+            names.setdefault(Path(name).suffix, []).append(name)
+    return names
 
 
 def warmed_up(judge: Callable[[], Judge], sound: dict[str, bytes]) -> Judge:

@@ -6,6 +6,7 @@ Also three files after known faults of another reader of .hdr (stb_image, issues
 from __future__ import annotations
 
 import struct
+import zlib
 from functools import cache
 from importlib.util import find_spec
 from typing import Any
@@ -39,6 +40,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 CODECS = ("NO", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K32", "HTJ2K256", "ZSTD")
+
+_STAMP = b'{"schema": 1, "light_argument": "green", "bands": 5, "world_from_view": [[1, 0, 0]]}'
+"""The beginning of the text that a screenshot carries."""
 
 
 @cache
@@ -126,6 +130,7 @@ def _exr_seeds() -> dict[str, bytes]:
         "parts.exr": exr_parts(exr_part("light", {"RGB": half}), exr_part("depth", {"Z": luminance})),
         "layers.exr": exr_file({"RGB": half, **layers}),
         "grey.exr": exr_file({"Y": luminance}),
+        "stamped.exr": exr_file({"RGB": half}, shviewer=_STAMP.decode()),
         "luminance-chroma.exr": exr_file({"Y": OpenEXR.Channel("Y", luminance, 1, 1), **chroma}),
         "chromaticities.exr": exr_file(
             {"RGB": half}, chromaticities=(0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329)
@@ -157,6 +162,14 @@ def _png_seeds() -> dict[str, bytes]:
         (b"tEXt", b"Title\0light"),
     ]
     return {
+        "stamped.png": png_file(
+            rng.integers(0, 256, (4, 8, 3)),
+            RGB,
+            extra=[
+                (b"iTXt", b"shviewer\0\0\0\0\0" + _STAMP),
+                (b"zTXt", b"shviewer\0\0" + zlib.compress(bytes(10**6))),
+            ],
+        ),
         "colour.png": png_file(rng.integers(0, 256, (6, 12, 3)), RGB, extra=colour),
         "deep.png": png_file(deep[..., :3], RGB, 16, extra=[(b"sRGB", b"\0"), (b"cICP", bytes((1, 13, 0, 1)))]),
         "deep-alpha.png": png_file(deep, RGBA, 16, interlaced=True),
