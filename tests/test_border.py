@@ -10,7 +10,7 @@ import stat
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,9 @@ from shviewer.benchmark.page.document import Report, read_report
 from shviewer.benchmark.page.writing import FILES
 from shviewer.benchmark.run import write_report
 from shviewer.cli import project
+from shviewer.cli.from_options import reading_from
 from shviewer.cli.main import main
+from shviewer.cli.options import info_parser
 from shviewer.coefficients.numbers import as_table
 from shviewer.coefficients.reading import read_coefficients
 from shviewer.coefficients.text_lists import plain_numbers
@@ -534,9 +536,10 @@ def test_an_older_report_tells_finite_numbers_and_printable_texts(tmp_path: Path
     path.write_text(json.dumps(page))
     assert all(line.isprintable() for line in compare(read_report(path), read_report(path)).as_markdown("old.json"))
     assert str(read_report(path).machine["processor"]).isprintable()
-    path.write_text(json.dumps(page | {"yardstick_milliseconds": {"median": float("nan")}}))
-    with pytest.raises(UsageError, match="nan"):
-        read_report(path)
+    for value, says in ((float("nan"), "nan"), (10**400, "beyond 1e308")):
+        path.write_text(json.dumps(page | {"yardstick_milliseconds": {"median": value}}))
+        with pytest.raises(UsageError, match=says):
+            read_report(path)
 
 
 def test_a_name_too_long_for_a_file_is_one_line_wherever_it_stands(
@@ -562,3 +565,9 @@ def test_a_stamp_that_is_no_text_of_an_object_is_refused(tmp_path: Path) -> None
     for said in ("[]", '{"compare": 1.5}', '{"compare": {"convention": "three"}}'):
         with pytest.raises(UsageError, match="no stamp of a picture"):
             state_of_stamp(said)
+
+
+@pytest.mark.parametrize("flag", ["--max-megatexels", "--max-file-mib", "--max-memory-mib", "--max-side"])
+def test_a_limit_may_be_any_finite_number(flag: str) -> None:
+    limits = reading_from(info_parser().parse_args(["green", flag, "1e308"])).limits
+    assert max(filter(None, astuple(limits))) >= 2**63

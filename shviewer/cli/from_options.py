@@ -148,14 +148,19 @@ def reading_from(options: argparse.Namespace) -> Reading:
         raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
     chosen = {
         "side": options.max_side,
-        "texels": options.max_megatexels and int(options.max_megatexels * 2**20),
-        "file_bytes": options.max_file_mib and int(options.max_file_mib * 2**20),
-        "memory_bytes": options.max_memory_mib and int(options.max_memory_mib * 2**20),
+        "texels": _binary_millions(options.max_megatexels),
+        "file_bytes": _binary_millions(options.max_file_mib),
+        "memory_bytes": _binary_millions(options.max_memory_mib),
     }
     limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
     if options.input_convention:
         _check_convention(options, options.input_convention)
     return Reading(options.sanitize, options.layout, limits=limits, convention=options.input_convention)
+
+
+def _binary_millions(count: float | None) -> int | None:
+    """A count in units of 2**20 as a whole number, at most 2**63, which any machine counts to."""
+    return None if count is None else int(min(count, 2**43) * 2**20)
 
 
 def _check_convention(options: argparse.Namespace, convention: str) -> None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from shviewer.analysis.options import is_number
 from shviewer.benchmark.row import Row
 from shviewer.errors import LightError, UsageError
 from shviewer.files import read_bytes
@@ -67,8 +67,8 @@ def _safe(value: Any) -> Any:
         return {one_line(key): _safe(part) for key, part in value.items()}
     if isinstance(value, list):
         return [_safe(part) for part in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        raise ValueError(f"a number in it is {value}")
+    if isinstance(value, int | float) and not is_number(value):
+        raise ValueError(f"a number in it is {value if isinstance(value, float) else 'beyond 1e308'}")
     return one_line(value) if isinstance(value, str) else value
 
 
