@@ -20,14 +20,14 @@ import promise
 import pytest
 from door_seeds import REFUSED, seeds
 from doors import DOORS, DoorWitness
-from harness import FOUND, DoorMutations, examine, verdict
+from harness import FOUND, DoorMutations, Judge, examine, verdict
 from minimise import minimised
 from test_fuzz import assert_none_broken
 
 import shviewer
 from shviewer.errors import LightError
 
-COUNT = int(os.environ.get("SHVIEWER_FUZZ", 20_000 if os.environ.get("CI") else 4_000))
+COUNT = int(os.environ.get("SHVIEWER_FUZZ", 20_000 if os.environ.get("CI") else 3_000))
 PARTS = 2  # one for each of two processors
 
 
@@ -43,15 +43,18 @@ def test_inputs_of_every_door_are_read_or_refused(part: int, tmp_path: Path) -> 
         assert {name.partition("/")[0] for name in +outcomes} == set(DOORS)
 
 
-def test_what_once_broke_the_promise_does_so_no_more() -> None:
-    witness = DoorMutations(0).judge()
+@pytest.fixture(scope="module")
+def witness() -> Judge:
+    return DoorMutations(0).judge()
+
+
+def test_what_once_broke_the_promise_does_so_no_more(witness: Judge) -> None:
     found = [path.relative_to(FOUND) for door in DOORS for path in sorted((FOUND / door).glob("*"))]
     verdicts = {str(path): verdict(witness, path.as_posix(), (FOUND / path).read_bytes()) for path in found}
     assert not {name: why for name, why in verdicts.items() if isinstance(why, str)}
 
 
-def test_every_seed_is_read() -> None:
-    witness = DoorMutations(0).judge()
+def test_every_seed_is_read(witness: Judge) -> None:
     verdicts = {name: verdict(witness, name, data) for name, data in seeds().items()}
     assert not {name: said for name, said in verdicts.items() if said is not True and name not in REFUSED}
 
