@@ -136,7 +136,7 @@ class Session:
             self._later.clear()
             self._reading = None
             keep_light(self.picture.state.recipe, self.picture.subject.whole)
-            self.state = changed(self.picture.state, message=f"stopped {what}", sweep_to=None)
+            self.state = changed(self.picture.state, message=f"stopped {what}".rstrip(), sweep_to=None)
 
     def drop(self, path: str) -> None:
         """Open a file, which may have been edited since it was last opened; never code, which is no file."""
