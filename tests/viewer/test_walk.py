@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.find import is_code
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
@@ -114,9 +115,9 @@ class Walk:
         assert self.renderer.context.error == "GL_NO_ERROR"
 
     def _stamp(self, picture: Picture, composition: Composition) -> None:
-        """What the picture says of itself is the state again; a light that is an object cannot be told."""
+        """What the picture says of itself is the state again; a light that is an object cannot be told, nor is code run."""
         recipe = picture.state.recipe
-        light = None if isinstance(recipe.light, str) else recipe.light
+        light = None if isinstance(recipe.light, str) and not is_code(recipe.light) else recipe.light
         read = state_of_stamp(metadata(picture, composition, self.renderer.version), light, recipe.compare)
         assert (read.recipe, read.view) == (recipe, picture.state.view)
 

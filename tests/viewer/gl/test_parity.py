@@ -32,6 +32,7 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import MAX_LOBES, LobeLight
+from shviewer.lights.suns.rule import MOST as MAX_SUNS
 from shviewer.viewer.camera import towards
 from shviewer.viewer.composition import Box, Composition, Sphere, compose
 from shviewer.viewer.drawn import DirectSum, SplineMap
@@ -440,7 +441,9 @@ def test_the_generated_constants_carry_every_digit() -> None:
     text = glsl_constants()
     for value in (*BACKGROUND, *NEGATIVE_HUE, NEGATIVE_KNEE):
         assert repr(value) in text
-    assert f"#define LOBE_SLOTS {2 * MAX_LOBES + 8}\n" in text  # of an original, of it without suns, and the suns
+    assert (
+        f"#define LOBE_SLOTS {2 * MAX_LOBES + MAX_SUNS}\n" in text
+    )  # of an original, of it without suns, and the suns
     kinds = [profile.kind for profile in (Constant(), ClampedLinear(), Disc(1.0), Gaussian(1.0))]
     names = ("CONSTANT", "CLAMPED_LINEAR", "DISC", "GAUSSIAN")
     assert all(f"#define PROFILE_{name} {kind}\n" in text for name, kind in zip(names, kinds, strict=True))
@@ -559,7 +562,7 @@ def test_the_sun_stands_on_the_sum_of_the_rest_and_the_original_does_not_change(
     light = lobes(Lobe(Constant(), [0, 0, 1], 1.0), Lobe(Gaussian(3.0), [0, 0, 1], 2.0), disc)
     whole = picture_of(light, n_bands=n_bands)
     before = linear(renderer, whole, frame)[picture_view(frame, ORIGINAL, whole).mask]
-    split = picture_of(light, n_bands=n_bands, split_sun=True)
+    split = picture_of(light, n_bands=n_bands, split_sun=True, suns="all")  # it is wider than a sun
     frame_pixels = linear(renderer, split, frame)
     assert np.array_equal(frame_pixels[picture_view(frame, ORIGINAL, split).mask], before)
     seen = picture_view(frame, RECONSTRUCTION, split)
