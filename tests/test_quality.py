@@ -27,7 +27,7 @@ def test_nothing_names_a_machine() -> None:
         pytest.skip("not a git checkout, so there is no list of the project's files")
     for name in filter(None, listed.stdout.decode().split("\0")):
         path = ROOT / name
-        if path.suffix in (".png", ".exr", ".hdr", ".webp", ".npz") or not path.is_file():
+        if path.suffix in (".png", ".exr", ".hdr", ".webp") or not path.is_file():
             continue
-        text = path.read_text(encoding="utf-8")
-        assert not [word for word in words if word in text], name
+        data = path.read_bytes()
+        assert not [word for word in words if word.encode() in data], name
