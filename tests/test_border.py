@@ -525,7 +525,9 @@ def test_a_compared_file_whose_other_readings_are_too_bright_has_its_verdict(tmp
     assert "off" in verdict(load_light(recipe), recipe.compare)
 
 
-def test_infinite_imaginary_parts_are_refused_in_silence() -> None:
+def test_infinite_imaginary_parts_and_longer_floats_are_refused_in_silence() -> None:
+    with pytest.raises(LightError, match="not finite"):
+        as_table(np.full((1, 3), np.longdouble("1e400")))
     with pytest.raises(LightError, match="not finite"):
         as_table(np.array([[1, np.inf] * 3]), complex_pairs=True)
 
@@ -536,7 +538,7 @@ def test_an_older_report_tells_finite_numbers_and_printable_texts(tmp_path: Path
     path.write_text(json.dumps(page))
     assert all(line.isprintable() for line in compare(read_report(path), read_report(path)).as_markdown("old.json"))
     assert str(read_report(path).machine["processor"]).isprintable()
-    for value, says in ((float("nan"), "nan"), (10**400, "beyond 1e308")):
+    for value, says in ((float("nan"), "nan"), (10**400, "beyond 1e308"), ("nan", "no number")):
         path.write_text(json.dumps(page | {"yardstick_milliseconds": {"median": value}}))
         with pytest.raises(UsageError, match=says):
             read_report(path)

@@ -136,7 +136,8 @@ def as_table(numbers: NDArray[np.generic], *, complex_pairs: bool = False) -> ND
         raise LightError(f"{numbers.size} numbers: at most {MAX_BANDS} bands, {MAX_NUMBERS} numbers, are read")
     if np.iscomplexobj(numbers) and not complex_pairs:
         raise LightError("complex numbers; of the conventions only scipy has them: --convention scipy")
-    table = wide = np.asarray(numbers, dtype=np.complex128 if np.iscomplexobj(numbers) else np.float64)
+    with np.errstate(over="ignore", invalid="ignore"):  # of longer floats: what is not finite is refused below
+        table = wide = np.asarray(numbers, dtype=np.complex128 if np.iscomplexobj(numbers) else np.float64)
     if complex_pairs and not np.iscomplexobj(table):
         if table.shape[-1:] and table.shape[-1] % 2:
             raise LightError(

@@ -156,6 +156,7 @@ def _arrays() -> dict[str, bytes]:
         "light/single.npy": single(_ROWS),
         "light/half.npy": single(_ROWS.astype(">f2")),
         "light/complex.npy": single(_ROWS + 0j),
+        "light/image.npy": single(np.linspace(0, 4, 96, dtype=np.float32).reshape(4, 8, 3)),
         "light/planar.npy": single(np.asfortranarray(_ROWS.T)),
         "light/deflated.npz": saved(coefficients=_ROWS, other=np.arange(3)),
     }

@@ -166,7 +166,7 @@ def _parsed(argv: list[str]) -> None:
     argv = _meant(argv)
     mode, rest = (argv[0], argv[1:]) if argv[:1] and argv[0] in MODES else ("view", argv)
     options = PARSERS[mode]().parse_intermixed_args(rest)
-    if vars(options).get("samples") and options.samples > 10_000:
+    if (vars(options).get("samples") or 0) > 10_000 or len(vars(options).get("lights") or ()) > 20:
         return  # honest work of any length
     if mode == "info":
         options.jobs = 1  # more are processes, which are not the input's fault
@@ -209,7 +209,7 @@ class DoorWitness:
         self._stderr, name = tempfile.mkstemp()
         os.unlink(name)
         weakref.finalize(self, os.close, self._stderr)
-        weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        weakref.finalize(self, _remove, self.folder)
         (self.folder / "nine.json").write_bytes(seeds()["light/written.json"])
         (self.folder / "bare.txt").write_bytes(seeds()["light/rows.txt"])
         forget_peak()
@@ -351,6 +351,12 @@ def _unwatched() -> Iterator[None]:
         yield
     finally:
         _watching.extend(kept)
+
+
+def _remove(folder: Path) -> None:
+    """What is left of a witness that is gone, perhaps while another one watches."""
+    with _unwatched():
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 _hooked: list[bool] = []

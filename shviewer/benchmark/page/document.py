@@ -89,6 +89,8 @@ def read_report(path: Path) -> Report:
     try:
         yardstick = page["yardstick_milliseconds"]
         if yardstick is not None:
+            if not all(map(is_number, yardstick.values())):  # float() would read "nan"
+                raise ValueError("a yardstick that is no number")
             yardstick = {str(name): float(value) for name, value in yardstick.items()}
         return Report(
             seed=int(page["seed"]),
