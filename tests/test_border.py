@@ -538,6 +538,10 @@ def test_an_older_report_tells_finite_numbers_and_printable_texts(tmp_path: Path
     path.write_text(json.dumps(page))
     assert all(line.isprintable() for line in compare(read_report(path), read_report(path)).as_markdown("old.json"))
     assert str(read_report(path).machine["processor"]).isprintable()
+    path.write_text(json.dumps(page | {"machine": {"processor": ["x" * 900] * 900}}))
+    assert (
+        max(map(len, compare(read_report(path), Report(0, "", {"processor": ""}, {})).as_markdown("old.json"))) < 1000
+    )
     for value, says in ((float("nan"), "nan"), (10**400, "beyond 1e308"), ("nan", "no number")):
         path.write_text(json.dumps(page | {"yardstick_milliseconds": {"median": value}}))
         with pytest.raises(UsageError, match=says):

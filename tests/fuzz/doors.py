@@ -54,7 +54,7 @@ from shviewer.viewer.saving.stamp import state_of_stamp
 
 MOST_CHARACTERS = 1000
 
-TOLD = 4
+TOLD = 5
 """One in so many of the lights that are read is also described as `info` does; one in 2 TOLD is written and read again."""
 
 NAMES = (

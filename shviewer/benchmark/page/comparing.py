@@ -9,7 +9,7 @@ from shviewer.benchmark.front import alike, overlap
 from shviewer.benchmark.page.document import Report
 from shviewer.benchmark.page.tables import error, milliseconds, table
 from shviewer.benchmark.row import Row
-from shviewer.words import grouped
+from shviewer.words import grouped, one_line
 
 LEAST_RATIO = 1.25
 """The least ratio of times that counts: between runs, a shared machine drifts by more than one run's quartiles show."""
@@ -78,7 +78,7 @@ def compare(before: Report, after: Report) -> Comparison:
 
 def _differences(before: Report, after: Report) -> tuple[str, ...]:
     return tuple(
-        f"{name.replace('_', ' ')} {before.machine.get(name)} there, {value} here"
+        f"{name.replace('_', ' ')} {one_line(str(before.machine.get(name)), 80)} there, {value} here"
         for name, value in after.machine.items()
         if name != "system" and before.machine.get(name) != value
     )
