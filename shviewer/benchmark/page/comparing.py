@@ -78,7 +78,7 @@ def compare(before: Report, after: Report) -> Comparison:
 
 def _differences(before: Report, after: Report) -> tuple[str, ...]:
     return tuple(
-        f"{name.replace('_', ' ')} {one_line(str(before.machine.get(name)), 80)} there, {value} here"
+        f"{name.replace('_', ' ')} {one_line(str(before.machine.get(name)), 80)} there, {one_line(str(value), 80)} here"
         for name, value in after.machine.items()
         if name != "system" and before.machine.get(name) != value
     )

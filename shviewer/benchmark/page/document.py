@@ -21,6 +21,9 @@ HEAD = ("complete", "command", "seed", "versions", "machine", "renderer", "yards
 MAX_FILE_BYTES = 2**24
 """Thirty times as much as a whole report takes."""
 
+LONGEST_TEXT = 300
+"""The most letters of a text that is read from a report."""
+
 YARDSTICK = ("median", "low_quartile", "high_quartile")
 
 
@@ -69,7 +72,7 @@ def _safe(value: Any) -> Any:
         return [_safe(part) for part in value]
     if isinstance(value, int | float) and not is_number(value):
         raise ValueError(f"a number in it is {value if isinstance(value, float) else 'beyond 1e308'}")
-    return one_line(value) if isinstance(value, str) else value
+    return one_line(value, LONGEST_TEXT) if isinstance(value, str) else value
 
 
 def read_report(path: Path) -> Report:
