@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from threading import Thread
+from threading import Event, Thread
 from time import perf_counter
 from typing import Generic, TypeVar
 
@@ -23,6 +23,8 @@ class Task(Generic[T]):
         self.status = ""
         """What it is doing, in words."""
         self._stopped = False
+        self._over = Event()
+        """Set before `done` is called, which must find the task finished."""
         self._result: T | None = None
         self._error: BaseException | None = None
         self._thread: Thread = Thread(target=self._run, args=(make, after and after._thread, done), daemon=True)
@@ -34,12 +36,11 @@ class Task(Generic[T]):
 
     @property
     def finished(self) -> bool:
-        return not self._thread.is_alive()
+        return self._over.is_set()
 
     def wait(self, seconds: float | None) -> bool:
         """Wait for the end, at most so many seconds (None: as long as it takes); return whether it has come."""
-        self._thread.join(None if seconds is None else max(seconds, 0.0))
-        return self.finished
+        return self._over.wait(None if seconds is None else max(seconds, 0.0))
 
     def stop(self) -> None:
         """Want the result no more: the thread ends at its next step."""
@@ -47,7 +48,7 @@ class Task(Generic[T]):
 
     def result(self) -> T:
         """What was made. Raises what the computation raised, or Stopped."""
-        self._thread.join()
+        self._over.wait()
         if self._error is not None:
             raise self._error
         return self._result  # type: ignore[return-value]  # without an error, it was made
@@ -61,6 +62,7 @@ class Task(Generic[T]):
                 self._result = make()
         except BaseException as error:
             self._error = error
+        self._over.set()
         if done is not None:
             done()
 

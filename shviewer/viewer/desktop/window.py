@@ -158,7 +158,7 @@ class Window:
         if session.title != self.title:
             self.title = session.title
             glfw.set_window_title(self.handle, self.title)
-        pointer = self.mouse if self.hovering and not self.dragged else None
+        pointer = self.mouse if self.hovering and not self.dragged and ready else None  # a probe asks the light
         if self.canvas.draw(composition, pointer, alone=ready):
             self._due()
         glfw.swap_buffers(self.handle)

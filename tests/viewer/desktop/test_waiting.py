@@ -185,6 +185,21 @@ def test_a_task_ends_at_its_next_step_and_the_next_one_begins_then() -> None:
         task.result()
 
 
+def test_who_is_told_of_the_end_finds_the_task_finished() -> None:
+    found: list[bool] = []
+    made = threading.Event()
+    task: list[Task[None]] = []
+
+    def done() -> None:
+        made.wait(60)
+        found.append(task[0].finished)
+
+    task.append(Task(lambda: None, done=done))
+    made.set()
+    task[0]._thread.join()
+    assert found == [True]
+
+
 def test_a_listener_hears_one_thread_and_only_as_long_as_it_listens() -> None:
     heard: list[tuple[str, float | None]] = []
     with listening(lambda what, share: heard.append((what, share))):
