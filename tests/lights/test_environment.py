@@ -44,6 +44,12 @@ def test_the_norm_weighs_each_texel_by_its_solid_angle(height, width):
     assert_allclose(light.products().diagonal(), expected, rtol=1e-13, atol=0)
 
 
+@pytest.mark.parametrize("height", [1, 4, 5, 9])
+def test_the_irradiance_up_of_a_constant_image_is_pi_also_where_a_row_lies_across_the_equator(height):
+    light = replace(random_light(height, 8), pixels=np.ones((height, 8, 3), np.float32))
+    assert_allclose(light.irradiance_up(), np.pi, rtol=1e-12)
+
+
 def test_a_constant_image_has_one_coefficient_that_holds_its_norm():
     light = EnvironmentLight(LatLongMap(np.broadcast_to(np.float32([0.5, 1, 4]), (6, 12, 3)).copy()))
     coefficients = light.coefficients(8)

@@ -41,6 +41,13 @@ def test_a_large_array_goes_up_in_bands_while_the_last_one_stays(texture: ArrayT
     texture.release()
 
 
+def test_a_large_array_of_the_same_size_does_not_overwrite_the_one_shown(texture: ArrayTexture) -> None:
+    texture.follow(LARGE)
+    assert not texture.bring(LARGE + 1, NO_TIME)
+    np.testing.assert_array_equal(held(texture)[..., :3], LARGE)
+    texture.release()
+
+
 def test_an_array_that_is_given_up_half_way_leaves_nothing_behind(texture: ArrayTexture) -> None:
     before = np.ones((2, 3, 4), np.float32)
     texture.follow(before)
