@@ -252,8 +252,8 @@ MUTANTS = (
     Mutant(
         "rows weighed at their centres",
         "shviewer/lights/layouts/lat_long.py",
-        "2 * np.sin(theta) * np.sin(np.pi / (2 * self.height))",
-        "np.sin(theta) * np.pi / self.height",
+        "2 * np.sin(row_angles(self.height)) * np.sin(np.pi / (2 * self.height))",
+        "np.sin(row_angles(self.height)) * np.pi / self.height",
     ),
     Mutant(
         "deringing on the grid alone",

@@ -32,9 +32,10 @@ from shviewer.ending import temporary_folder
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import project_image
-from shviewer.harmonics.quadrature import DirectionSet, column_azimuths, directions_from_angles, jittered
+from shviewer.harmonics.quadrature import DirectionSet, column_azimuths, directions_from_angles, jittered, row_angles
 from shviewer.harmonics.scattered import project_values
 from shviewer.lights.find import find_light
+from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.light import Light
 
 SECTION = "peers"
@@ -56,17 +57,12 @@ Contest = tuple[str, int | None]
 """The library that projects, and the number of samples; None for the image."""
 
 
-def texel_solid_angles(height: int, width: int) -> Array:
-    """The solid angle of a texel in each row, steradians, (height, 1)."""
-    theta = np.pi * (np.arange(height) + 0.5) / height
-    return np.asarray((2 * np.sin(theta) * np.sin(np.pi / (2 * height)) * 2 * np.pi / width)[:, None])
-
-
 def ducc(ducc0: Any, image: NDArray[np.float32], n_bands: int, dtype: type[np.floating[Any]]) -> object:
     """ducc0's adjoint synthesis of the weighted image, which does not alias as its analysis does."""
     height, width = image.shape[:2]
     planes = np.empty((3, 1, height, width), dtype)
-    np.multiply(np.moveaxis(image, 2, 0)[:, None], texel_solid_angles(height, width).astype(dtype), out=planes)
+    solid_angle = LatLongLayout(height, width).solid_angles().astype(dtype)
+    np.multiply(np.moveaxis(image, 2, 0)[:, None], solid_angle, out=planes)
     synthesis = partial(ducc0.sht.adjoint_synthesis_2d, spin=0, lmax=n_bands - 1, geometry="F1", nthreads=1)
     return [synthesis(map=plane) for plane in planes]
 
@@ -97,8 +93,8 @@ def _sphericart_basis(library: Any, n_bands: int) -> Any:
 def sphericart(library: Any, image: NDArray[np.float32], n_bands: int, share: int = 1) -> Array:
     """The basis by sphericart and a matrix product, block by block, over every `share`-th block of rows."""
     height, width = image.shape[:2]
-    theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
-    solid_angle = texel_solid_angles(height, width)
+    theta, phi = row_angles(height), column_azimuths(width)
+    solid_angle = LatLongLayout(height, width).solid_angles()
     step = max(1, SPHERICART_BLOCK // (width * n_bands**2))
     found = np.zeros((n_bands**2, 3))
     for row in range(0, height, step * share):

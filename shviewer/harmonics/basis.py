@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 MAX_BANDS = 1400
 """The most bands: the normalisation grows like 10**(0.2086 l) and would leave float64 at l = 1478."""

@@ -25,7 +25,7 @@ from shviewer.harmonics.extremes.climbing import valleys
 from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.metrics import band_power
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.harmonics.synthesis import Synthesis
 
 MAX_DERINGED_BANDS = 32
@@ -99,7 +99,7 @@ def _searched(coefficients: Array, tolerance: float) -> tuple[Array, Array, Arra
     """A lower bound of each channel, (3,), and the lowest values found, (3,), with their directions, (3, 3)."""
     synthesis = Synthesis(coefficients)
     rows = GRID_ROWS * max(synthesis.n_bands, 4)
-    theta, phi = np.pi * (np.arange(rows) + 0.5) / rows, column_azimuths(2 * rows)
+    theta, phi = row_angles(rows), column_azimuths(2 * rows)
     values = synthesis.on_rows(theta, len(phi))
     bounds, lowest, directions = np.empty(3), np.empty(3), np.empty((3, 3))
     for channel in range(3):

@@ -121,7 +121,7 @@ def fejer(n_samples: int) -> ProductRule:
 @lru_cache(maxsize=16)
 def _fejer_rows(rows: int) -> tuple[Array, Array]:
     """Angles (i + 1/2) pi/rows and the weights of Fejer's first rule (rows,) [Waldvogel]; all are positive."""
-    theta = np.pi * (np.arange(rows) + 0.5) / rows
+    theta = row_angles(rows)
     k = np.arange(1, rows // 2 + 1)
     return theta, 2 / rows * (1 - np.cos(np.outer(theta, 2 * k)) @ (2 / (4 * k**2 - 1)))
 
@@ -153,6 +153,11 @@ def check_samples(n_samples: int) -> None:
     """Raise ValueError unless 1 <= n_samples <= MAX_SAMPLES."""
     if not 1 <= n_samples <= MAX_SAMPLES:
         raise ValueError(f"{n_samples} samples: there must be 1 to {MAX_SAMPLES}")
+
+
+def row_angles(n_rows: int) -> Array:
+    """theta of the row centres of a lat-long image, radians."""
+    return np.asarray(np.pi * (np.arange(n_rows) + 0.5) / n_rows)
 
 
 def column_azimuths(n_columns: int) -> Array:

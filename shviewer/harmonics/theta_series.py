@@ -12,12 +12,9 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, check_bands, evaluate_basis
+from shviewer.harmonics.basis import Array, Indices, check_bands, evaluate_basis
 from shviewer.harmonics.quadrature import column_azimuths
-
-Indices = NDArray[np.int64]
 
 MAX_SEPARABLE_BANDS = 512
 """The most bands with a table D, which has n**3 values: 1 GiB at 512 bands."""

@@ -14,7 +14,7 @@ from shviewer.files import naming
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.irradiance import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
@@ -108,7 +108,7 @@ class EnvironmentLight(RadianceLight):
         height = min(len(self.pixels), MAX_RASTER_WIDTH // 2) if self._is_lat_long else width // 2
         self.limits.check_memory(RASTER_BYTES * width * height, f"{self.name}: a raster of {width} x {height} texels")
         texels = np.empty((height, width, 3), dtype=np.float32)
-        theta, phi = np.pi * (np.arange(height) + 0.5) / height, column_azimuths(width)
+        theta, phi = row_angles(height), column_azimuths(width)
         block = max(1, BLOCK_VALUES // (64 * width))
         for start in range(0, height, block):
             directions = directions_from_angles(theta[start : start + block, None], phi).reshape(-1, 3)
@@ -174,7 +174,7 @@ class EnvironmentLight(RadianceLight):
 
     @property
     def form(self) -> Raster:
-        return self.map.form
+        return self.map
 
     def texels(self) -> Iterator[tuple[Array, Array]]:
         """As in Light: the texels that show something."""

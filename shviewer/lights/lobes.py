@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, normalise
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.zonal_sum import Lobes
+from shviewer.harmonics.extremes.zonal_table import around_edge
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Constant, Disc, orient
 from shviewer.lights.irradiance import UP, LobeIrradiance, RadianceLight
@@ -16,22 +18,8 @@ from shviewer.lights.light import Light, Split
 from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.limits import check_brightness
 
-EDGE = 1e-9
-"""The distance of a landmark from an edge, relative to the edge's angle."""
-
 MAX_LOBES = 64
 """The most lobes: as many as the uniform block of shaders/lobes.glsl holds."""
-
-
-def _edge(lobe: Lobe) -> Array:
-    if lobe.profile.half_angle >= np.pi:
-        return lobe.axis[None]
-    side = normalise(np.cross(lobe.axis, np.eye(3)[int(np.abs(lobe.axis).argmin())]))
-    up = np.cross(lobe.axis, side)
-    turn = np.pi / 4 * np.arange(8)[:, None]
-    ring = np.cos(turn) * side + np.sin(turn) * up
-    angles = lobe.profile.half_angle * np.array([1 - EDGE, 1 + EDGE])
-    return np.concatenate([lobe.axis[None], *(np.cos(angle) * lobe.axis + np.sin(angle) * ring for angle in angles)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +63,8 @@ class LobeLight(RadianceLight):
 
     def landmarks(self) -> Array:
         """The axes, and points just inside and outside the edge of every profile that has one."""
-        return np.concatenate([_edge(lobe) for lobe in self.lobes])
+        edges = ((lobe.axis[None], around_edge(lobe.profile, lobe.axis, 8)) for lobe in self.lobes)
+        return np.concatenate([*chain.from_iterable(edges)])
 
     @cached_property
     def form(self) -> Lobes:

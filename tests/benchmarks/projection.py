@@ -27,7 +27,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = os.environ[
 import numpy as np
 from measure import machine, medians
 
-from shviewer.benchmark.peers import IMAGE_PEERS, available, texel_solid_angles
+from shviewer.benchmark.peers import IMAGE_PEERS, available
 from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_image, project_product
@@ -36,6 +36,7 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import degrees_and_orders, series_by_parity, theta_series
 from shviewer.lights.find import built_in_lights, find_light
+from shviewer.lights.layouts.lat_long import LatLongLayout
 
 ImagePeer = Callable[[np.ndarray, int], object]
 
@@ -49,7 +50,7 @@ def loop_peer(texels: int) -> ImagePeer:
 
     def project(image: np.ndarray, n_bands: int) -> object:
         height, width = image.shape[:2]
-        solid_angle, found = texel_solid_angles(height, width), np.zeros((n_bands**2, 3))
+        solid_angle, found = LatLongLayout(height, width).solid_angles(), np.zeros((n_bands**2, 3))
         for i in range(0, height * width, max(1, height * width // texels)):
             row, column = divmod(i, width)
             theta, phi = np.pi * (row + 0.5) / height, np.pi * (1 - 2 * (column + 0.5) / width)

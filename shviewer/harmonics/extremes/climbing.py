@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.harmonics.synthesis import Synthesis
 
 PATCH = np.stack(np.meshgrid(np.arange(-2.0, 3.0), np.arange(-2.0, 3.0), indexing="ij"), axis=-1).reshape(-1, 2)
@@ -23,10 +23,8 @@ ON_RIM = np.append(np.abs(PATCH).max(axis=1) == 2, True)
 DISPLAY_ROUNDS = 3
 """The number of patches for a figure on display: down to an eighth of a grid cell, and to vertices of paraboloids."""
 
-BLOCKS = 6
 SEARCH_ROUNDS = 22
 
-Triple = tuple[float, float, float]
 Objective = Callable[[Array], Array]
 """A function to maximise: unit directions (k, 3) -> (k,)."""
 
@@ -42,8 +40,7 @@ def valleys(
     """
     synthesis = Synthesis(coefficients)
     n_rows = max(32, 6 * count_bands(coefficients))
-    theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
-    phi = column_azimuths(2 * n_rows)
+    theta, phi = row_angles(n_rows), column_azimuths(2 * n_rows)
     grid = synthesis.on_rows(theta, len(phi))
     found: list[tuple[Array, Array, NDArray[np.int64]]] = []
     for channel in range(3):

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.bands import Bands
-from shviewer.harmonics.extremes.climbing import BLOCKS, DISPLAY_ROUNDS, Objective, climb
+from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, Objective, climb
 from shviewer.harmonics.extremes.raster import Raster
+from shviewer.harmonics.extremes.raster_error import Search
 from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.metrics import LUMINANCE
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, evaluate_rows
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, evaluate_rows, row_angles
 from shviewer.harmonics.synthesis import Synthesis
 
 TOLERANCE = 8e-4
@@ -28,6 +29,9 @@ RING_POINTS = 32
 
 MOST_OPEN = 1500
 """With more cells than this in which the minimum could be, the tables of lobes find it sooner than the grid."""
+
+BLOCKS = 6
+"""The blocks of the grid from whose highest cells the largest error is climbed to."""
 
 NEGLIGIBLE = 1e-7
 """The share of the largest radiance that is no longer told apart."""
@@ -92,8 +96,7 @@ class ErrorGrid:
         form: Form | None = None,
     ) -> None:
         self.radiance = radiance
-        self.theta = np.pi * (np.arange(n_rows) + 0.5) / n_rows
-        self.phi = column_azimuths(2 * n_rows)
+        self.theta, self.phi = row_angles(n_rows), column_azimuths(2 * n_rows)
         self.original = (rows or partial(evaluate_rows, radiance))(self.theta, len(self.phi))
         self.landmarks = landmarks
         self.landmark_radiance = radiance(landmarks) if len(landmarks) else np.zeros((0, 3))
@@ -164,7 +167,7 @@ class ErrorGrid:
         if rest > negligible or seen.waves.open_cells(low, TOLERANCE * abs(low)) < MOST_OPEN:
             return self._lowest(
                 seen
-            )  # the coefficients are not the light's own, but those of samples; or this is quicker
+            )  # the coefficients are those of samples, and not the light's own; or this is quicker
         places, bound = lobes.shade(zonal).largest(TOLERANCE, negligible, magnitude=False)
         found = self._best(lambda d: -seen.synthesis.in_directions(d).min(axis=1), places)
         return _Found(-found.value, found.direction, -bound - rest)
@@ -183,7 +186,8 @@ class ErrorGrid:
         return max(found, self._climbed(seen, starts), key=lambda one: one.value)._replace(bound=found.bound)
 
     def _error_of_raster(self, seen: _Seen, raster: Raster) -> _Found:
-        error = raster.largest_error(seen.waves, self.original, seen.synthesis, TOLERANCE, NEGLIGIBLE * self.peak)
+        negligible = NEGLIGIBLE * self.peak
+        error = Search(raster, seen.waves, self.original, seen.synthesis, TOLERANCE, negligible).run()
         direction = directions_from_angles(np.array([error.theta]), np.array([error.phi]))
         found = _Found(float(self._error(seen, direction)[0]), direction[0], error.bound)
         if error.bound <= found.value * (1 + 2 * TOLERANCE):
@@ -194,7 +198,7 @@ class ErrorGrid:
         difference, left_out = bands.less(seen.shown, TOLERANCE / 4 * found.value)
         n_bands = count_bands(difference)
         n_rows = max(len(self.theta), 4 * n_bands)
-        values = Synthesis(difference).on_rows(np.pi * (np.arange(n_rows) + 0.5) / n_rows, 2 * n_rows)
+        values = Synthesis(difference).on_rows(row_angles(n_rows), 2 * n_rows)
         tolerance = max(TOLERANCE * found.value, NEGLIGIBLE * self.peak)
         sides = [Waves(signed, n_bands).lowest(-found.value, tolerance) for signed in (values, -values)]
         deepest = min(sides, key=lambda side: side.lowest)

@@ -20,9 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
-
-Indices = NDArray[np.int64]
+from shviewer.harmonics.basis import Array, Indices
 
 SIEVE, FINE = 6, 10
 """Points a side of the stencil that sorts out most cells, and of the one that judges the rest."""
@@ -67,18 +65,15 @@ class Waves:
 
         The first and the last row of cells lie across the poles.
         """
-        return self._corners(np.minimum, self.values)
+        return self.corners(np.minimum, self.values)
 
     @cached_property
     def corners_high(self) -> Array:
         """The highest corner of each cell."""
-        return self._corners(np.maximum, self.values)
+        return self.corners(np.maximum, self.values)
 
-    def largest_corners(self, values: Array) -> Array:
-        """The largest corner of each cell of other values on the same points."""
-        return self._corners(np.maximum, values)
-
-    def _corners(self, better: np.ufunc, values: Array) -> Array:
+    def corners(self, better: np.ufunc, values: Array) -> Array:
+        """The better of the corners of each cell, of any values on the points of the grid."""
         half = self.columns // 2
         by_row = np.empty((self.rows + 1, *values.shape[1:]))
         better(values[:-1], values[1:], out=by_row[1:-1])

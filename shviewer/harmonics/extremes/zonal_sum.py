@@ -11,23 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, count_bands, normalise
+from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.bands import band_heights
+from shviewer.harmonics.extremes.zonal_table import Table, around_edge, beside, perpendicular
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.quadrature import directions_from_angles
-from shviewer.harmonics.theta_series import theta_series
 from shviewer.harmonics.zonal import Constant, Profile, orient
-
-Indices = NDArray[np.int64]
-
-FEWEST_BINS, BINS_A_BAND = 1024, 64
-"""Bins of a table: 64 a band, so that a wave moves by no more than 0.05 radians in one."""
 
 ROOT_ROWS = 16
 """Rows of boxes to begin with."""
@@ -40,81 +34,6 @@ MOST_BOXES, LOOKS = 256, 32
 
 NOTHING = 1e-24
 """A band with less than this share of the energy is rounding, and has no factor."""
-
-EDGE = 1e-9
-"""The distance from an edge, relative to its angle, of a direction that is next to it."""
-
-MARGIN = 1.01
-"""Second derivatives are taken at the ends of bins; in between they may be this much larger."""
-
-
-@dataclass(frozen=True, eq=False)
-class Table:
-    """A function d of the angle to an axis, in bins of equal width from 0 to pi; at an edge it may jump or bend."""
-
-    width: float
-    ends: Array
-    """Values at the ends of the bins, (bins + 1,)."""
-    ranges: Array
-    """In each bin: minus the lowest value, the highest, the largest |d'|, and the largest second derivative along any great
-    circle, which is infinite in the bin of an edge; (4, bins).
-    """
-    edge: float
-    """The angle of the edge; 4, beyond pi, if there is none."""
-    sides: tuple[float, float]
-    """Values just inside and just outside of the edge."""
-
-    @classmethod
-    def make(cls, profile: Profile | None, zonal: Array) -> Table:
-        """The table of profile - sum of zonal(l) (2l+1)/4pi P(l), zonal: (n,); without a profile, of minus that sum."""
-        n_bands = len(zonal)
-        bins = max(FEWEST_BINS, 1 << int(np.ceil(np.log2(BINS_A_BAND * n_bands))))
-        width, l = np.pi / bins, np.arange(n_bands)
-        series = (zonal * np.sqrt((2 * l + 1) / (4 * np.pi))) @ theta_series(n_bands)[0]  # Y(l, 0) in cos(k theta)
-        waves = np.fft.fft(np.stack([series, l * series, l * l * series]), 2 * bins)[:, : bins + 1]
-        angle = width * np.arange(bins + 1)
-        values, slope, bend = -waves[0].real, -waves[1].imag, waves[2].real
-        between = (n_bands - 1) ** 2 * width**2 / 8  # the share of a wave that is lost between the ends of a bin
-        wave = float(np.ptp(values)) / 2
-        lit, lit_slope, lit_bend, rough = _along(profile, bins)
-        total, slope, bend = values + lit, slope + lit_slope, np.abs(bend + lit_bend)
-        bend[1:-1] = np.maximum(bend[1:-1], np.abs(slope[1:-1]) * np.abs(1 / np.tan(angle[1:-1])))
-        bend = MARGIN * np.maximum(bend[:-1], bend[1:]) + (n_bands - 1) ** 2 * wave * between + rough * width**2 / 8
-        slope = np.maximum(np.abs(slope[:-1]), np.abs(slope[1:])) + bend * width
-        room = bend * width**2 / 8
-        low, high = np.minimum(total[:-1], total[1:]) - room, np.maximum(total[:-1], total[1:]) + room
-        edge, sides = 4.0, (0.0, 0.0)
-        if profile is not None:  # it never rises, so that its ends bound it even where it bends too much
-            low = np.maximum(low, np.minimum(values[:-1], values[1:]) + lit[1:] - wave * between)
-            high = np.minimum(high, np.maximum(values[:-1], values[1:]) + lit[:-1] + wave * between)
-            if profile.half_angle < np.pi:
-                edge = profile.half_angle
-                outside = -float(series @ np.cos(l * edge))
-                sides = outside + float(profile.along(np.array(_beside(edge), dtype=np.float64))[0][0]), outside
-                at = np.unique(np.minimum((np.array(_beside(edge)) / width).astype(np.int64), bins - 1))
-                low[at], high[at] = np.minimum(low[at], min(sides)), np.maximum(high[at], max(sides))
-                bend[at] = np.inf
-        return cls(width, total, np.stack([-low, high, slope, bend]), edge, sides)
-
-    def window(self, radius: float) -> Array:
-        """`ranges` over all bins within `radius` of each."""
-        reach = int(np.ceil(radius / self.width))
-        padded = np.pad(self.ranges, ((0, 0), (reach, reach)), mode="edge")
-        span, wanted = 1, 2 * reach + 1
-        while span < wanted:
-            step = min(span, wanted - span)
-            padded = np.maximum(padded[:, :-step], padded[:, step:])
-            span += step
-        return padded
-
-    def bins(self, angle: Array) -> Indices:
-        return np.asarray(np.minimum((angle / self.width).astype(np.int64), self.ranges.shape[1] - 1))
-
-    def at(self, angle: Array) -> Array:
-        place = angle / self.width
-        bin_ = self.bins(angle)
-        start = self.ends[bin_]
-        return np.asarray(start + (self.ends[bin_ + 1] - start) * (place - bin_))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,17 +67,11 @@ class Lobes:
 
     def rings(self, count: int) -> Array:
         """`count` directions just inside and as many just outside of each lobe's edge, and of those where two cross, (k, 3)."""
-        turn = 2 * np.pi / count * np.arange(count)[:, None]
-        found = [np.zeros((0, 3))]
+        found = [around_edge(*lobe, count) for lobe in zip(self.profiles, self.axes, strict=True)]
         edged = [lobe for lobe in zip(self.profiles, self.axes, strict=True) if lobe[0].half_angle < np.pi]
         for number, (profile, axis) in enumerate(edged):
             for other, second in edged[:number]:
-                found += _crossings(
-                    axis, second, np.cos(_beside(profile.half_angle)), np.cos(_beside(other.half_angle))
-                )
-            side = normalise(np.cross(axis, np.eye(3)[int(np.abs(axis).argmin())]))
-            ring = np.cos(turn) * side + np.sin(turn) * np.cross(axis, side)
-            found += [np.cos(angle) * axis + np.sin(angle) * ring for angle in _beside(profile.half_angle)]
+                found += _crossings(axis, second, np.cos(beside(profile.half_angle)), np.cos(beside(other.half_angle)))
         return np.concatenate(found)
 
     def _sum(self, profiles: Sequence[Profile | None], zonal: Array) -> ZonalSum:
@@ -217,11 +130,9 @@ class ZonalSum:
         angles = [width * (int(bounds.argmax()) + share) for share in (0, 0.5, 1)]
         for table, forward in zip(self.tables, along, strict=True):
             if table.edge < np.pi:
-                angles += [angle if forward > 0 else np.pi - angle for angle in _beside(table.edge)]
-        across = next(np.cross(self.axes[0], unit) for unit in np.eye(3)[np.argsort(np.abs(self.axes[0]))])
-        across /= np.linalg.norm(across)
+                angles += [angle if forward > 0 else np.pi - angle for angle in beside(table.edge)]
         angle = np.array(angles)[:, None]
-        return np.cos(angle) * self.axes[0] + np.sin(angle) * across, float(bounds.max())
+        return np.cos(angle) * self.axes[0] + np.sin(angle) * perpendicular(self.axes[0]), float(bounds.max())
 
     def _bounds(
         self, theta: Array, phi: Array, half: float, magnitude: bool, enough: float
@@ -269,7 +180,7 @@ class ZonalSum:
             across = near - (near @ axis)[:, None] * axis
             length = np.linalg.norm(across, axis=1)
             across = across[length > 1e-9] / length[length > 1e-9, None]
-            for angle, value in zip(_beside(table.edge), table.sides, strict=True):
+            for angle, value in zip(beside(table.edge), table.sides, strict=True):
                 start = sum(map(len, points))
                 points.append(np.cos(angle) * axis + np.sin(angle) * across)
                 fixed.append((lobe, slice(start, start + len(across)), value))
@@ -300,17 +211,3 @@ def _crossings(one: Array, two: Array, near: Array, far: Array) -> list[Array]:
 
 def _angle(directions: Array, axis: Array) -> Array:
     return np.asarray(np.arccos(np.clip(directions @ axis, -1, 1)))
-
-
-def _beside(edge: float) -> tuple[float, float]:
-    """Angles just inside and just outside of an edge."""
-    return edge * (1 - EDGE), edge * (1 + EDGE)
-
-
-@lru_cache(maxsize=256)
-def _along(profile: Profile | None, bins: int) -> tuple[Array, Array, Array, Array]:
-    """A profile at the ends of the bins, its first and second derivative there, and the fourth in the bins."""
-    if profile is None:
-        return (np.zeros(bins + 1),) * 3 + (np.zeros(bins),)
-    value, slope, bend, fourth = profile.along(np.linspace(0, np.pi, bins + 1))
-    return value, slope, bend, np.maximum(fourth[:-1], fourth[1:])

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.quadrature import Radiance, angles_from_directions, directions_from_angles
 from shviewer.harmonics.row_transform import by_parity
 from shviewer.harmonics.sampling.look import BLOCK, LOOK_COLUMNS, N_STRIPS, STRIP_ROWS, strides
@@ -29,8 +29,6 @@ POINTS, NODES = 8, 12
 
 HIGHEST = 2
 """How many of the POINTS terms of a polynomial tell whether there should be more."""
-
-Indices = NDArray[np.int64]
 
 
 @lru_cache(maxsize=4)

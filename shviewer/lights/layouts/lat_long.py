@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection import project_image
-from shviewer.harmonics.quadrature import angles_from_directions, directions_from_angles
+from shviewer.harmonics.quadrature import angles_from_directions, directions_from_angles, row_angles
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.layout import Indices
 
@@ -32,8 +32,7 @@ class LatLongLayout:
 
     def solid_angles(self) -> Array:
         """As in Layout, (height, 1): the difference of the cosines of a row's edges, in a form that does not cancel."""
-        theta = np.pi * (np.arange(self.height) + 0.5) / self.height
-        rows = 2 * np.sin(theta) * np.sin(np.pi / (2 * self.height)) * (2 * np.pi / self.width)
+        rows = 2 * np.sin(row_angles(self.height)) * np.sin(np.pi / (2 * self.height)) * (2 * np.pi / self.width)
         return np.asarray(rows[:, None])
 
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
