@@ -41,9 +41,10 @@ from shviewer.coefficients.numbers import as_table
 from shviewer.coefficients.reading import read_coefficients
 from shviewer.coefficients.text_lists import plain_numbers
 from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
-from shviewer.files import DEBUG, Replacing, write_atomically
+from shviewer.files import DEBUG
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
+from shviewer.outputs import Replacing, write_atomically
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.saving.stamp import state_of_stamp

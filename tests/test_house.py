@@ -18,7 +18,19 @@ ROOMS = (
     ("lights",),
     ("coefficients",),
     ("harmonics",),
-    ("children", "ending", "errors", "files", "limits", "memory", "progress", "resources", "version", "words"),
+    (
+        "children",
+        "ending",
+        "errors",
+        "files",
+        "limits",
+        "memory",
+        "outputs",
+        "progress",
+        "resources",
+        "version",
+        "words",
+    ),
 )
 """From top to bottom. Files of one line may import each other, as long as they do not go round."""
 

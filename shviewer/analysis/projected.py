@@ -19,10 +19,10 @@ from shviewer.coefficients.stamp import Value, stamp_of
 from shviewer.coefficients.suns import sun_keys
 from shviewer.coefficients.writing import encode
 from shviewer.errors import UsageError
-from shviewer.files import Replacing, write_atomically
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.lights.find import file_of
 from shviewer.lights.suns.sun import Sun
+from shviewer.outputs import Replacing, write_atomically
 from shviewer.version import __version__
 from shviewer.words import counted
 

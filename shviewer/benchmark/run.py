@@ -26,9 +26,9 @@ from shviewer.benchmark.row import Row
 from shviewer.benchmark.timing import summarise
 from shviewer.ending import at_the_end
 from shviewer.errors import UsageError
-from shviewer.files import Replacing
 from shviewer.lights.find import file_of
 from shviewer.lights.light import Light
+from shviewer.outputs import Replacing
 from shviewer.viewer.gl.renderer import Renderer
 
 PEER_BANDS = (3, 9, 16, 32)

@@ -12,7 +12,7 @@ from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
 from shviewer.errors import UsageError
-from shviewer.files import Replacing
+from shviewer.outputs import Replacing
 
 if TYPE_CHECKING:
     from shviewer.lights.reading import Reading

@@ -27,8 +27,8 @@ from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, ShviewerError, UsageError, within_memory
-from shviewer.files import ANYTHING, Replacing, file_stem, write_atomically
 from shviewer.lights.find import is_code, split_light
+from shviewer.outputs import ANYTHING, Replacing, file_stem, write_atomically
 from shviewer.words import counted, one_line
 
 STDOUT = "-"

@@ -26,7 +26,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"{name:<20}{find_light(name).description}")
         return 0
     from shviewer.analysis.subjects import subject
-    from shviewer.files import file_stem
+    from shviewer.outputs import file_stem
     from shviewer.viewer.composition import compose
     from shviewer.viewer.desktop import window
     from shviewer.viewer.desktop.glfw_window import NoDisplayError

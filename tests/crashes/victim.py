@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 import shviewer
-from shviewer import files
+from shviewer import outputs
 from shviewer.benchmark import page
 from shviewer.benchmark.page import plots, writing
 from shviewer.benchmark.page.document import Report
@@ -103,11 +103,10 @@ class Steps:
             return right(path, flags, mode, **options)
 
         os.open = opened
-        files.open = self.open_file  # type: ignore[attr-defined]  # the writer's own open, in place of the built-in one
+        outputs.open = self.open_file  # type: ignore[attr-defined]  # the writer's own open, in place of the built-in one
 
     def open_file(self, path: Any, mode: str, **options: Any) -> Any:
-        file = builtins.open(path, mode, **options)  # noqa: SIM115
-        return file if mode == "rb" else _Slow(file, self)
+        return _Slow(builtins.open(path, mode, **options), self)
 
 
 class _Slow:

@@ -46,9 +46,9 @@ from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.reading import read_coefficients
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import ShviewerError
-from shviewer.files import OURS
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
+from shviewer.outputs import OURS
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.saving.stamp import state_of_stamp
 

@@ -26,11 +26,11 @@ from places import DATA
 from scipy.special import sph_harm_y
 from viewer.gl.frames import square_frame
 
-from shviewer import files, resources
+from shviewer import outputs, resources
 from shviewer.errors import OutputError, ShaderError, UsageError
-from shviewer.files import write_atomically
 from shviewer.harmonics.basis import Array
 from shviewer.lights.find import find_light
+from shviewer.outputs import write_atomically
 from shviewer.version import __version__
 from shviewer.viewer.composition import compose
 from shviewer.viewer.gl import shader_source
@@ -254,7 +254,7 @@ def test_a_failing_move_leaves_the_old_file_and_nothing_else(tmp_path: Path, mon
     def fail(source: str, target: Path) -> None:
         raise OSError(5, "Input/output error")
 
-    monkeypatch.setattr(files.os, "replace", fail)
+    monkeypatch.setattr(outputs.os, "replace", fail)
     with pytest.raises(OutputError, match=r"a\.png: cannot be written: Input/output error"):
         write_atomically(path, b"new")
     assert path.read_bytes() == b"old"

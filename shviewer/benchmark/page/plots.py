@@ -20,8 +20,8 @@ from shviewer.benchmark.page.plot_marks import INCHES, STYLE, Curve, draw_curves
 from shviewer.benchmark.page.tables import plain
 from shviewer.benchmark.projection_rows import SECTION as PROJECTION
 from shviewer.benchmark.row import Row
-from shviewer.files import write_atomically
 from shviewer.harmonics.metrics import pareto_front
+from shviewer.outputs import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,7 +15,7 @@ from shviewer.benchmark.page.document import Report
 from shviewer.benchmark.page.tables import bullet, error, milliseconds, table
 from shviewer.benchmark.row import COLUMNS, Row
 from shviewer.errors import OutputError
-from shviewer.files import write_atomically
+from shviewer.outputs import write_atomically
 
 FILES = ("report.md", "report.json", "report.csv")
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import UsageError
-from shviewer.files import ANYTHING, Replacing, check_place, write_atomically
 from shviewer.limits import MAX_BANDS
+from shviewer.outputs import ANYTHING, Replacing, check_place, write_atomically
 from shviewer.viewer.actions import step_sweep, with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS

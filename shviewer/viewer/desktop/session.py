@@ -16,9 +16,9 @@ from time import perf_counter
 from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError, within_memory
-from shviewer.files import file_stem
 from shviewer.lights.find import is_code
 from shviewer.lights.light import Light
+from shviewer.outputs import file_stem
 from shviewer.viewer.actions import Command, open_light, step_sweep, with_bands
 from shviewer.viewer.animation.metronome import Metronome
 from shviewer.viewer.camera import facing

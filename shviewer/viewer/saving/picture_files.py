@@ -14,7 +14,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from shviewer.errors import OutputError
-from shviewer.files import write_atomically
+from shviewer.outputs import write_atomically
 from shviewer.version import __version__
 
 

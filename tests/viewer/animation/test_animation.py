@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from shviewer.errors import OutputError, UsageError
-from shviewer.files import check_place
+from shviewer.outputs import check_place
 from shviewer.viewer.actions import step_sweep
 from shviewer.viewer.animation.animation import HOLD, MAX_PIXELS, band_sweep, save_animation, turntable
 from shviewer.viewer.composition import compose

@@ -18,7 +18,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image, ImageSequence
 
-from shviewer import files
+from shviewer import outputs
 from shviewer.errors import GraphicsError, OutputError
 from shviewer.version import __version__
 from shviewer.viewer.animation import animation
@@ -212,7 +212,7 @@ def test_a_failure_in_the_middle_leaves_the_file_there_was(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(files.os, "fsync", full)
+    monkeypatch.setattr(outputs.os, "fsync", full)
     with pytest.raises(OutputError, match=rf"a\.{suffix}: cannot be written: No space left on device"):
         save(band_sweep(STATE, 1, 2), kept.name)
     assert ([*tmp_path.iterdir()], kept.read_text()) == ([kept], "kept")
