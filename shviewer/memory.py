@@ -17,28 +17,25 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-Rooms = Iterator[int]
-"""Bytes that each of several limits leaves; nothing for a limit that is not set or not told."""
-
 _CGROUP_2 = ("memory.max", "memory.current", "inactive_file")
 _CGROUP_1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
 
 
 def available_bytes() -> int | None:
     """The bytes; None where the system does not tell."""
-    rooms: list[int] = []
+    left: list[int] = []
     with suppress(Exception):  # what a system tells in another way than it should limits nothing
         if os.name == "nt":
-            rooms += windows(getattr(ctypes, "windll").kernel32)  # noqa: B009
+            left += windows(getattr(ctypes, "windll").kernel32)  # noqa: B009
         elif sys.platform == "darwin":
-            rooms += macos(ctypes.CDLL(None), os.sysconf("SC_PAGE_SIZE"))
+            left += macos(ctypes.CDLL(None), os.sysconf("SC_PAGE_SIZE"))
         else:
-            rooms += linux(Path("/"))
-    return max(0, min(rooms)) if rooms else None
+            left += linux(Path("/"))
+    return max(0, min(left)) if left else None
 
 
-def linux(root: Path) -> Rooms:
-    """As told below `root`, where /proc and /sys are."""
+def linux(root: Path) -> Iterator[int]:
+    """Bytes that each limit leaves, of those that are set and told below `root`, where /proc and /sys are."""
     with suppress(OSError, KeyError):
         yield 1024 * _table(root / "proc/meminfo")["MemAvailable"]
     with suppress(OSError, ValueError, ImportError, IndexError):
@@ -53,8 +50,8 @@ def linux(root: Path) -> Rooms:
         yield from _cgroups(root)
 
 
-def _cgroups(root: Path) -> Rooms:
-    """What the memory controllers leave, whichever version they are of."""
+def _cgroups(root: Path) -> Iterator[int]:
+    """Bytes that the memory controllers leave, whichever version they are of."""
     groups = [line.split(":", 2) for line in (root / "proc/self/cgroup").read_text().splitlines()]
     for line in (root / "proc/self/mountinfo").read_text().splitlines():
         mount, _, kind = line.partition(" - ")
@@ -69,8 +66,8 @@ def _cgroups(root: Path) -> Rooms:
                 yield from _levels(root / point[1:], inside, _CGROUP_1 if one else _CGROUP_2)
 
 
-def _levels(mount: Path, inside: str, files: tuple[str, str, str]) -> Rooms:
-    """What each level leaves, from the group `inside` the hierarchy up to its mount."""
+def _levels(mount: Path, inside: str, files: tuple[str, str, str]) -> Iterator[int]:
+    """Bytes that each level leaves, from the group `inside` the hierarchy up to its mount."""
     parts = [part for part in inside.split("/") if part not in ("", "..")]
     for depth in range(len(parts), -1, -1):
         folder = mount.joinpath(*parts[:depth])
@@ -85,7 +82,7 @@ def _table(path: Path) -> dict[str, int]:
     return {row[0]: int(row[1]) for row in rows if len(row) > 1 and row[1].isdigit()}
 
 
-def macos(library: Any, page: int) -> Rooms:
+def macos(library: Any, page: int) -> Iterator[int]:
     """library: the C library. page: bytes of a page."""
     counts, filled = (ctypes.c_uint32 * 64)(), ctypes.c_uint32(38)  # vm_statistics64: free, active, inactive, ...
     if library.host_statistics64(library.mach_host_self(), 4, ctypes.byref(counts), ctypes.byref(filled)) == 0:
@@ -101,7 +98,7 @@ class MemoryStatus(ctypes.Structure):
     ]
 
 
-def windows(kernel: Any) -> Rooms:
+def windows(kernel: Any) -> Iterator[int]:
     """kernel: kernel32."""
     status = MemoryStatus(length=ctypes.sizeof(MemoryStatus))
     if kernel.GlobalMemoryStatusEx(ctypes.byref(status)):

@@ -61,11 +61,15 @@ def replacing_of(options: argparse.Namespace) -> Replacing:
     """What the command may replace. Its inputs are its lights, coefficients to compare, and a reference."""
     from shviewer.lights.find import split_light
 
-    given = vars(options)
-    lights: list[str] = given.get("lights") or [given.get("light") or "green"]
-    others = [given.get(name) for name in ("compare", "reference")]
-    inputs = [*(split_light(light)[0] for light in lights), *(Path(other) for other in others if other)]
+    others = [vars(options).get(name) for name in ("compare", "reference")]
+    inputs = [*(split_light(light)[0] for light in lights_of(options)), *(Path(other) for other in others if other)]
     return Replacing(tuple(inputs), options.force)
+
+
+def lights_of(options: argparse.Namespace) -> list[str]:
+    """What is given as LIGHT, or what stands for it."""
+    given = vars(options)
+    return given.get("lights") or [given.get("light", "green")]
 
 
 def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
@@ -141,11 +145,11 @@ def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
 
 def reading_from(options: argparse.Namespace) -> Reading:
     """The reading that the options ask for. UsageError for an unknown layout or convention."""
-    from shviewer.lights.reading import LAYOUTS, Reading
+    from shviewer.lights.reading import LAYOUT_CHOICES, Reading
     from shviewer.limits import Limits
 
-    if options.layout not in ("auto", *LAYOUTS):
-        raise UsageError(f"layout {options.layout!r}: it must be one of auto, {', '.join(LAYOUTS)}")
+    if options.layout not in LAYOUT_CHOICES:
+        raise UsageError(f"layout {options.layout!r}: it must be one of {', '.join(LAYOUT_CHOICES)}")
     chosen = {
         "side": options.max_side,
         "texels": _binary_millions(options.max_megatexels),
@@ -173,8 +177,7 @@ def _check_convention(options: argparse.Namespace, convention: str) -> None:
         parse_convention(convention)
     except ValueError as error:
         raise UsageError(str(error)) from error
-    given = vars(options)
-    lights: list[str] = given.get("lights") or [given.get("light", "green")]
+    given, lights = vars(options), lights_of(options)
     if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
         return
     name = "--input-convention" if "convention" in given else "--convention"

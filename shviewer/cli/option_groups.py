@@ -142,6 +142,11 @@ def add_jobs(parser: OneLineParser) -> None:
     )
 
 
+def add_force(parser: OneLineParser) -> None:
+    """What `Replacing` asks for."""
+    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
+
+
 def _band_list(text: str) -> frozenset[int]:
     try:
         return frozenset(int(part) for part in text.split(",") if part.strip())

@@ -9,6 +9,7 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import (
     LIGHT_HELP,
     OneLineParser,
+    add_force,
     add_jobs,
     add_reading_options,
     add_table,
@@ -89,7 +90,7 @@ def screenshot_parser() -> OneLineParser:
         default=0.001,
         help="share of the pixels, 0 to 1, that may differ from the reference by more than 2/255 (default 0.001)",
     )
-    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
+    add_force(parser)
     return parser
 
 
@@ -117,7 +118,7 @@ def sweep_parser() -> OneLineParser:
     )
     parser.add_argument("--no-overlay", action="store_true", help="the spheres alone")
     add_view_options(parser)
-    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
+    add_force(parser)
     return parser
 
 
@@ -168,7 +169,7 @@ def project_parser() -> OneLineParser:
     add_table(parser, Recipe)
     add_reading_options(parser, convention="--input-convention")
     add_jobs(parser)
-    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
+    add_force(parser)
     return parser
 
 
@@ -205,6 +206,6 @@ def report_parser() -> OneLineParser:
     )
     parser.add_argument("--stability", action="store_true", help="also the hard cases; exit 1 if one fails")
     parser.add_argument("--no-shader", action="store_true", help="nothing is drawn; needs no OpenGL")
-    parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
+    add_force(parser)
     add_reading_options(parser)
     return parser
