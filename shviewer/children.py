@@ -1,9 +1,9 @@
-"""Child processes that do not outlive this one, even if it is killed: their stdin is a pipe that ends with it."""
+"""Child processes that do not outlive this one, even if it is killed: they wait for what ends with it, such as a pipe."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 LEASH = "SHVIEWER_LEASH"
@@ -29,11 +29,15 @@ def follow_parent() -> None:
 
 def watch_stdin() -> None:
     """End this process when its stdin, a pipe that is written no more, is closed at the other end."""
+    end_after(lambda: os.read(0, 1))
 
+
+def end_after(wait: Callable[[], object]) -> None:
+    """End this process as soon as `wait` returns, whatever it does meanwhile."""
     import threading
 
     def watch() -> None:
-        os.read(0, 1)
+        wait()
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -24,6 +24,7 @@ from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.compared_files import compared_with
 from shviewer.analysis.comparison import verdict
 from shviewer.analysis.information import describe
+from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.benchmark import run as run_of_report
@@ -341,6 +342,29 @@ def test_a_fault_of_this_program_fails_one_light_of_a_batch(
     assert main(["project", "cosine", "green", "-o", "out"]) == 1
     assert [path.name for path in Path("out").iterdir()] == ["green.json"]
     assert "cosine: internal error, ZeroDivisionError" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("fault", "says"), [(ZeroDivisionError, "internal error"), (MemoryError, "not enough memory")])
+def test_what_fails_as_one_light_of_a_batch_is_written_fails_it_alone(
+    nine: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    fault: type[Exception],
+    says: str,
+) -> None:
+    right = Projected.encode
+
+    def encode(self: Projected, *arguments: Any) -> bytes:
+        if self.name == "cosine":
+            raise fault
+        return right(self, *arguments)
+
+    monkeypatch.setattr(Projected, "encode", encode)
+    assert main(["project", "cosine", "green", "-o", "out"]) == 1
+    assert [path.name for path in Path("out").iterdir()] == ["green.json"]
+    said = capsys.readouterr()
+    assert f"cosine: {says}" in said.err
+    assert "1 of 2 written" in said.out
 
 
 def test_without_a_display_a_second_picture_takes_the_next_name(

@@ -21,8 +21,7 @@ from shviewer.cli.from_options import reading_from
 from shviewer.cli.jobs import in_order
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
-from shviewer.errors import LightError, ShviewerError, within_memory
-from shviewer.lights.reading import Reading
+from shviewer.errors import LightError, ShviewerError
 from shviewer.words import counted, one_line
 
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
@@ -34,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
     reading = reading_from(options)
     exit_code = 0
     objects: list[dict[str, object]] = []
-    described = in_order(partial(_described, reading), options.lights, options.jobs)
+    described = in_order(partial(describe, reading=reading), options.lights, options.jobs)
     for number, text in enumerate(options.lights):
         refused: str | None = None
         with speaking():
@@ -53,14 +52,6 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(objects, indent=2, allow_nan=False))
     return exit_code
-
-
-def _described(reading: Reading, light: str) -> Information | ShviewerError:
-    try:
-        with within_memory(light):
-            return describe(light, reading)
-    except ShviewerError as error:
-        return error
 
 
 def as_text(information: Information) -> str:

@@ -8,15 +8,16 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import threading
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from time import perf_counter
 from typing import TypeVar
 
-from shviewer.errors import LightError
+from shviewer.children import end_after
+from shviewer.errors import LightError, ShviewerError, within_memory
 from shviewer.limits import share_memory
 
 T = TypeVar("T")
@@ -31,20 +32,29 @@ AHEAD = 2
 """Lights given out for each process, so that none waits for the next one."""
 
 
-def in_order(work: Callable[[str], T], lights: Sequence[str], jobs: int | None) -> Iterator[T | LightError]:
-    """work(light) for every light, in their order; LightError in place of a result whose process was killed.
+def in_order(work: Callable[[str], T], lights: Sequence[str], jobs: int | None) -> Iterator[T | ShviewerError]:
+    """work(light) for every light, in their order, or the error that it ended with: none stops the others.
 
     jobs: the number of processes; None: one as long as the rest is soon done, then as many as there are cores and memory
     for. With more than one, `work` and its results must be picklable.
     """
+    attempt = partial(_attempt, work)
     start = perf_counter()
     for done, light in enumerate(lights):
         left = len(lights) - done
         wanted = jobs or (_most() if done and left * (perf_counter() - start) / done > PAYS else 1)
         if min(wanted, left) > 1:
-            yield from _spread(work, deque(lights[done:]), min(wanted, left))
+            yield from _spread(attempt, deque(lights[done:]), min(wanted, left))
             return
-        yield work(light)
+        yield attempt(light)
+
+
+def _attempt(work: Callable[[str], T], light: str) -> T | ShviewerError:
+    try:
+        with within_memory(light):
+            return work(light)
+    except ShviewerError as error:
+        return error
 
 
 def _most() -> int:
@@ -94,11 +104,5 @@ def _begin(jobs: int) -> None:
     """In a new process: take a share of the memory, leave Ctrl-C to the parent, and end with it."""
     share_memory(jobs)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-
-    def follow() -> None:
-        if parent is not None:
-            parent.join()
-            os._exit(1)
-
-    threading.Thread(target=follow, daemon=True).start()
+    if parent := multiprocessing.parent_process():
+        end_after(parent.join)

@@ -1,13 +1,21 @@
-"""Notes on stderr: what was done to a light, and how well compared coefficients agree with it."""
+"""Notes on stderr: what was done to a light, how well compared coefficients agree with it, and what its file holds."""
 
 from __future__ import annotations
 
 import sys
 
+import numpy as np
+
 from shviewer.analysis.comparison import verdict
+from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.words import one_line
+from shviewer.coefficients.axes import Axes
+from shviewer.coefficients.suns import sun_left_out
+from shviewer.words import counted, one_line
+
+ROUNDING = 1e-6
+"""A minimum below zero by no more than this share of the largest coefficient counts as zero."""
 
 
 def print_notes(recipe: Recipe) -> None:
@@ -17,4 +25,24 @@ def print_notes(recipe: Recipe) -> None:
     notes += [f"note: {shown.refusal}"] if shown.refusal else []
     notes += [verdict(load_light(recipe), recipe.compare)] if recipe.compare else []
     for note in notes:
-        print(one_line(f"shviewer: {note}"), file=sys.stderr)
+        _say(note)
+
+
+def print_notes_on(projected: Projected, axes: Axes) -> None:
+    """Print the notes on a light that was projected, and what was left out of it. axes: those of the file."""
+    for note in (*projected.notes, *(sun_left_out(sun.directional_light, axes) for sun in projected.suns)):
+        _say(f"note: {projected.name}: {note}")
+
+
+def warn_below_zero(projected: Projected) -> None:
+    """Print that the reconstruction that was written is below zero, if it is by more than rounding."""
+    minimum = projected.figures.extremes.minimum
+    if minimum >= -ROUNDING * float(np.abs(projected.coefficients).max()):
+        return
+    says = f"the {projected.quantity} of its {counted(projected.n_bands, 'band')} goes to {minimum:.3g}"
+    remedy = "" if projected.about["window"] == "dering" else "; --window dering takes that away"
+    _say(f"note: {projected.name}: {says}{remedy}")
+
+
+def _say(text: str) -> None:
+    print(one_line(f"shviewer: {text}"), file=sys.stderr)

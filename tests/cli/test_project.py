@@ -5,16 +5,15 @@ from __future__ import annotations
 import json
 import os
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from places import ASSETS
 
-from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main
-from shviewer.cli.project import project_lights
-from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.cli.status_line import StatusLine
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
@@ -220,18 +219,13 @@ def test_a_light_cannot_break_out_of_a_comment(tmp_path: Path) -> None:
     assert said == "// light-is: a * / b #error c"
 
 
-def test_progress_goes_through_the_lights_and_is_cleared(tmp_path: Path, capsys: Capture) -> None:
+def test_progress_goes_through_the_lights_and_is_cleared(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     shown: list[str] = []
-
-    def recipe_of(light: str) -> Recipe:
-        return Recipe(light, n_bands=2)
-
-    assert (
-        project_lights(
-            ["green", "no such light", "cosine"], str(tmp_path), "csv", CONVENTIONS["three"], recipe_of, shown.append
-        )
-        == 1
-    )
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(StatusLine, "show", lambda self, text: shown.append(text))
+    assert project("green", "no such light", "cosine", "-o", tmp_path, "--bands", 2) == 1
     assert [text[:26].count("#") for text in shown if text] == [0, 8, 16]
     assert [text.split("] ")[1] for text in shown if text] == [
         "1 of 3  green",
