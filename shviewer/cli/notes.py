@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shviewer.analysis.comparison import verdict
-from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.coefficients.axes import Axes
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.words import counted, one_line
+
+if TYPE_CHECKING:  # a picture loads nothing that writes files of coefficients
+    from shviewer.analysis.projected import Projected
+    from shviewer.coefficients.axes import Axes
 
 ROUNDING = 1e-6
 """A minimum below zero by no more than this share of the largest coefficient counts as zero."""
