@@ -38,9 +38,9 @@ from shviewer.cli import project
 from shviewer.cli.from_options import reading_from
 from shviewer.cli.main import main
 from shviewer.cli.options import info_parser
+from shviewer.coefficients.lists.scan import plain_numbers
 from shviewer.coefficients.numbers import as_table
 from shviewer.coefficients.reading import read_coefficients
-from shviewer.coefficients.text_lists import plain_numbers
 from shviewer.errors import LightError, OutputError, ShviewerError, UsageError
 from shviewer.files import DEBUG
 from shviewer.lights.find import find_light

@@ -112,15 +112,14 @@ def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
 
 @remember(most=16, doing="searching bands")
 def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
-    """The relative L2 error for every band count searched: (MAX_BANDS,), for samples (MAX_DIRECT_BANDS,), of given
-    coefficients all that there are.
+    """The relative L2 error for every band count searched: (MAX_BANDS,), for samples, which are rarely good for more,
+    (MAX_DIRECT_BANDS,), of given coefficients all that there are.
     """
     exact = project(light, *BEST, MAX_BANDS).coefficients
-    given = (
-        method.n_bands if isinstance(method, CoefficientLight) else MAX_DIRECT_BANDS
-    )  # samples are rarely good for more
-    n_bands = MAX_BANDS if method == "best" else min(given, MAX_BANDS)
-    shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
+    if method == "best":
+        return errors_by_band_count(light.products(), exact, exact)
+    n_bands = MAX_DIRECT_BANDS if isinstance(method, str) else min(method.n_bands, MAX_BANDS)
+    shown = project(light, method, samples, seed, n_bands).coefficients
     return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 
 

@@ -111,9 +111,8 @@ def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Meas
 
 
 def _measure(light: Light, sampling: tuple[str, int, int], projection: Projection) -> None:
-    """Measure a projection and keep the numbers; a repetition keeps the lesser time, and without a time there is none."""
-    if projection.milliseconds is None:
-        return
+    """Measure a projection that took time and keep the numbers; a repetition keeps the lesser time."""
+    assert projection.milliseconds is not None
     n_bands, shown = projection.n_bands, projection.coefficients
     exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
     errors = errors_by_band_count(light.products(), exact, shown)
@@ -139,18 +138,22 @@ def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Pr
 
 @remember(most=32, doing="projecting")
 def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project, take the time, and keep the measurement."""
+    """Project, take the time, and keep the measurement; what took none has the time that was measured before, if any."""
     projection = _timed_projection(light, method, samples, seed, n_bands)
-    _measure(light, (method, samples, seed), projection)
-    return projection
+    if projection.milliseconds is not None:
+        _measure(light, (method, samples, seed), projection)
+        return projection
+    with MEMORY.lock:
+        before = _known(light, n_bands).get((method, samples, seed))
+    return replace(projection, milliseconds=before.milliseconds) if before else projection
 
 
 def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project and take the time: of an irradiance that of its source, of kept coefficients the one measured before."""
+    """Project and take the time: of an irradiance that of its source, of coefficients that the light has kept none."""
     if light is not light.source:
         source = project(light.source, method, samples, seed, n_bands)
         return replace(source, coefficients=light.from_source(source.coefficients))
-    start, evaluations = perf_counter(), None
+    start, evaluations, kept = perf_counter(), None, False
     if method == "jittered":
         directions = jittered(samples, seed)
         evaluations = len(directions.weights)
@@ -164,9 +167,5 @@ def _timed_projection(light: Light, method: str, samples: int, seed: int, n_band
     else:
         kept = n_bands <= light.kept_bands
         coefficients = light.coefficients(n_bands)
-        if kept:
-            with MEMORY.lock:
-                before = _known(light, n_bands).get(BEST)
-            return Projection(coefficients, light.best_method, None, before.milliseconds if before else None)
         words = light.best_method
-    return Projection(coefficients, words, evaluations, 1000 * (perf_counter() - start))
+    return Projection(coefficients, words, evaluations, None if kept else 1000 * (perf_counter() - start))

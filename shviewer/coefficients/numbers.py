@@ -62,9 +62,7 @@ def arranged(numbers: Numbers, *, wrapped: bool = False) -> Listed:
         if columns == 4 and (last := numbers[0, 3]) in (0, 1) and (numbers[:, 3] == last).all():
             return Listed(numbers[:, :3], notes=(f"the fourth of its columns, {last:g} throughout, is dropped",))
     if wrapped and columns != 3:
-        if not _is_square(rows):
-            return _in_one_list(numbers.reshape(-1))
-        if columns % 3 == 0 and columns > 6 and _is_square(numbers.size // 3):
+        if not _is_square(rows) or (columns % 3 == 0 and columns > 6 and _is_square(numbers.size // 3)):
             return _in_one_list(numbers.reshape(-1))
         if columns not in (2, 6):  # real and imaginary parts, if the convention is complex
             raise LightError(
@@ -137,23 +135,21 @@ def as_table(numbers: NDArray[np.generic], *, complex_pairs: bool = False) -> ND
     if np.iscomplexobj(numbers) and not complex_pairs:
         raise LightError("complex numbers; of the conventions only scipy has them: --convention scipy")
     with np.errstate(over="ignore", invalid="ignore"):  # of longer floats: what is not finite is refused below
-        table = wide = np.asarray(numbers, dtype=np.complex128 if np.iscomplexobj(numbers) else np.float64)
+        table = np.asarray(numbers, dtype=np.complex128 if np.iscomplexobj(numbers) else np.float64)
     if complex_pairs and not np.iscomplexobj(table):
         if table.shape[-1:] and table.shape[-1] % 2:
             raise LightError(
                 f"rows of {table.shape[-1]} numbers; complex ones are pairs, real and imaginary part: six to a row"
             )
-        table = table[..., 0::2] + 0j
-        table.imag = wide[..., 1::2]  # not times 1j, which makes nan of infinity
+        table = np.ascontiguousarray(table).view(np.complex128)
     if not np.isfinite(table).all():
         row = int(np.argmin(np.isfinite(table).reshape(len(table), -1).all(axis=1)))
         where = f"{'row' if table.ndim > 1 else 'number'} {row} (from 0)"
         raise LightError(f"{where} is not finite; coefficients are finite numbers: project the light again")
     flat = table.reshape(-1)
-    n_bands = isqrt(flat.size)
-    if n_bands**2 == flat.size and (table.ndim == 1 or table.shape[1] == 1) and n_bands:
-        return np.repeat(flat[:, None], 3, axis=1)
-    if table.ndim == 2 and table.shape[1] != 3:
+    if flat.size and _is_square(flat.size) and (table.ndim == 1 or table.shape[1] == 1):
+        flat = np.repeat(flat, 3)
+    elif table.ndim == 2 and table.shape[1] != 3:
         raise LightError(f"rows of {table.shape[1]} numbers; a row holds red, green and blue: keep only those")
     rows = flat.size / 3
     n_bands = max(1, round(rows**0.5))
@@ -163,4 +159,6 @@ def as_table(numbers: NDArray[np.generic], *, complex_pairs: bool = False) -> ND
             f"{what}: n bands have n^2 rows; near are n = {n_bands} ({n_bands**2} rows) and "
             f"n = {n_bands + (1 if n_bands**2 < rows or n_bands == 1 else -1)}"
         )
+    if n_bands > MAX_BANDS:
+        raise LightError(f"{n_bands} bands: at most {MAX_BANDS} are read; keep the first {MAX_BANDS**2} rows")
     return np.ascontiguousarray(flat.reshape(-1, 3))

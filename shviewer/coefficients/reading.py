@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +19,13 @@ from numpy.typing import NDArray
 
 from shviewer.coefficients.array_files import read_arrays
 from shviewer.coefficients.convention import OVER_PI, RADIANCE, Convention
+from shviewer.coefficients.lists.scan import plain_numbers
+from shviewer.coefficients.lists.structures import read_structure, rows_of_numbers
+from shviewer.coefficients.lists.text import read_list
 from shviewer.coefficients.numbers import Listed, as_table
 from shviewer.coefficients.programs import CONVENTIONS, parse_convention
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp, safe
-from shviewer.coefficients.structures import read_structure, rows_of_numbers
 from shviewer.coefficients.suffixes import HOLDS
-from shviewer.coefficients.text_lists import plain_numbers, read_list
 from shviewer.errors import LightError
 from shviewer.files import decoding, naming, read_bytes
 from shviewer.harmonics.basis import Array, count_bands
@@ -85,7 +87,7 @@ def interpreted(listed: Listed, named: str) -> CoefficientFile:
     LightError if that is impossible.
     """
     stamp, notes = safe(listed.stamp), listed.notes
-    if stamp:
+    if listed.stamp:
         convention = read_stamp(stamp)
         if named and parse_convention(named) != parse_convention(str(stamp["convention"])):
             raise LightError(
@@ -126,7 +128,7 @@ def _read_json(data: bytes) -> Listed:
         found = json.loads(_text(data), parse_constant=_no_constant, object_pairs_hook=_no_key_twice)
     if not isinstance(found, dict) or SCHEMA_KEY not in found:
         return read_structure(found)
-    return Listed(rows_of_numbers(found.get("coefficients")), safe(found))
+    return Listed(rows_of_numbers(found.get("coefficients")), found)
 
 
 def _no_key_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -154,10 +156,6 @@ def _read_text(data: bytes, table: bool = False) -> Listed:
     return Listed(numbers.reshape(-1, columns) if columns and numbers.size % columns == 0 else numbers, stamp)
 
 
-def _read_table(data: bytes) -> Listed:
-    return _read_text(data, table=True)
-
-
 def _comments(text: str) -> Stamp:
     """The stamp in the comments; empty if there is none."""
     found: dict[str, str | int | float | None] = {}
@@ -177,7 +175,7 @@ def _text(data: bytes) -> str:
 
 _READERS: dict[str, Callable[[bytes], Listed]] = {
     "json": _read_json,
-    "csv": _read_table,
+    "csv": partial(_read_text, table=True),
     "text": _read_text,
     "arrays": read_arrays,
 }

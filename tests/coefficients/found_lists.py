@@ -143,9 +143,11 @@ REFUSED = [
         ("a.csv", "l,m,r,g,b\n0,0,1,2,3\n1,0,1,2,3\n1,1,1,2,3\n1,1,1,2,3\n", "columns l and m that do not name every"),
         ("a.csv", "red,green,blue\n", "a header and no rows"),
         ("a.csv", "red;green;blue\n1;2;three\n", "'three' in row 1 is no number"),
+        ("a.csv", 'red,green,blue\n"1,5",2,3\n', "'1,5' in row 1 is no number"),
         ("a.json", json.dumps([{"irradianceCoefficients": ROWS.tolist()}] * 2), "2 lights with coefficients in it; keep one"),
         ("a.json", json.dumps({"type": "LightProbe", "sh": [1] * 27, "intensity": [1]}), "its intensity is no number"),
         ("a.json", json.dumps([{"r": 1, "g": 2}] * 9), "rows of three numbers each"),
+        ("a.json", json.dumps([{"r": 1, "R": 2, "g": 3, "b": 4}] * 9), "rows of three numbers each"),
         ("a.json", json.dumps({"a": 1}), "is that of three.js or glTF"),
         ("a.json", json.dumps({"shviewer-coefficients": None, "coefficients": [[1, 1, 1]] * 9}), "version reads schema 1"),
 ]  # fmt: skip

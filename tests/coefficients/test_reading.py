@@ -192,6 +192,9 @@ def test_what_is_too_large_is_refused_before_it_is_unpacked(tmp_path: Path) -> N
     np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": (2**40, 3)})  # type: ignore[no-untyped-call]
     assert "claims" in refused(tmp_path / "d.npy", header.getvalue())
     assert "at most 128 bands" in refused(tmp_path / "e.json", json.dumps([0.5] * (129**2 * 6)))
+    for channels in (1, 3):
+        many = npz(coefficients=np.ones((129**2, channels)))
+        assert "129 bands: at most 128 are read" in refused(tmp_path / "f.npz", many)
     assert "4 bands, so its numbers are not those of three" in refused(tmp_path / "f.json", json.dumps([0.5] * 48))
 
 

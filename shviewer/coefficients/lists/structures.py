@@ -17,14 +17,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.coefficients.lists.names import channel_order, places_of
 from shviewer.coefficients.numbers import MAX_NUMBERS, Listed, arranged
-from shviewer.coefficients.text_lists import places_of
 from shviewer.errors import LightError
 from shviewer.limits import MAX_BANDS
 
 THREE, GLTF = "three", "shviewer,irradiance,-y+z+x"
-
-_CHANNELS = (("red", "green", "blue", "alpha"), ("r", "g", "b", "a"), ("x", "y", "z", "w"))
 
 
 def read_structure(found: object) -> Listed:
@@ -53,11 +51,10 @@ def read_structure(found: object) -> Listed:
 
 def rows_of_numbers(found: object) -> NDArray[np.float64]:
     """A JSON list of numbers (k,), or of rows of numbers or objects of channels (k, j). LightError for anything else."""
-    if isinstance(found, list) and len(found) > MAX_NUMBERS:
-        raise LightError(f"{len(found)} rows or numbers: at most {MAX_BANDS} bands, {MAX_NUMBERS} numbers, are read")
-    rows = (
-        [_by_channel(row) or row if isinstance(row, dict) else row for row in found] if isinstance(found, list) else []
-    )
+    rows = found if isinstance(found, list) else []
+    if len(rows) > MAX_NUMBERS:
+        raise LightError(f"{len(rows)} rows or numbers: at most {MAX_BANDS} bands, {MAX_NUMBERS} numbers, are read")
+    rows = [_by_channel(row) if isinstance(row, dict) else row for row in rows]
     if any(type(value) is bool for row in rows for value in (row if isinstance(row, list) else [row])):
         raise LightError("true or false among the coefficients; they are numbers")
     try:
@@ -71,11 +68,9 @@ def rows_of_numbers(found: object) -> NDArray[np.float64]:
 
 def _by_channel(found: Mapping[str, Any]) -> list[Any] | None:
     """What an object of channels, {"r": ..., "g": ..., "b": ...}, holds of each; None for any other object."""
-    named = {key.strip("_").lower(): value for key, value in found.items() if key != "_isDirty"}  # of Babylon's vectors
-    for names in _CHANNELS:
-        if set(names[:3]) <= set(named) <= set(names):
-            return [named[name] for name in names if name in named]
-    return None
+    named = [key for key in found if key != "_isDirty"]  # of Babylon's vectors
+    order = channel_order(named)
+    return [found[named[place]] for place in order] if order and len(order) == len(named) else None
 
 
 def _objects(found: object) -> Iterator[dict[str, Any]]:

@@ -167,6 +167,7 @@ def test_coefficients_that_a_light_has_kept_have_the_time_that_was_measured_or_n
     for _ in range(2):
         projections._measured_projection.cache_clear()
         assert project(light, *BEST, 128).milliseconds == many.milliseconds
+    assert [found.repetitions for found in measurements(light, 128)] == [1]
 
 
 def test_what_was_not_projected_has_no_time(tmp_path: Path) -> None:

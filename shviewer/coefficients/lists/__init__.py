@@ -1,0 +1,1 @@
+"""Lists of coefficients as other programs, shaders, spreadsheets and people write them."""
