@@ -25,6 +25,7 @@ _BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0
 _SAME = 1e-3  # in x and y; files round them to three or four digits
 _FARTHEST = 10.0  # of x and y from 0; the widest space in use (REDWideGamutRGB) reaches 1.5
 _FLATTEST = 1e-4  # twice the area of the triangle of primaries; that of Rec. 709 is 0.22
+_BLOCK_TEXELS = 2**16  # of an image at a time, so that they stay in the cache
 
 
 def are_same(chromaticities: ArrayLike, others: ArrayLike) -> bool:
@@ -41,6 +42,23 @@ def rec709_from(chromaticities: ArrayLike) -> NDArray[np.float64]:
     checked = _checked(chromaticities)
     rec709_from_xyz = np.linalg.inv(_xyz_from_rgb(REC709))
     return rec709_from_xyz @ _adaptation(checked[3], REC709[3]) @ _xyz_from_rgb(checked)
+
+
+def convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64] | None) -> None:
+    """Multiply the colours of an image (height, width, 3) by a (3, 3) matrix, in place; None is the identity.
+
+    A texel with an Inf or NaN is left alone: it would spread to all its channels unreported.
+    """
+    if matrix is None:
+        return
+    transposed = matrix.T.astype(np.float32)
+    rows = max(1, _BLOCK_TEXELS // pixels.shape[1])
+    for top in range(0, len(pixels), rows):
+        block = pixels[top : top + rows]
+        with np.errstate(invalid="ignore", over="ignore"):
+            converted = block @ transposed
+        sound = True if np.isfinite(converted).all() else np.isfinite(block).all(axis=2, keepdims=True)
+        np.copyto(block, converted, where=sound)
 
 
 def rec709_from_columns(columns: NDArray[np.float64]) -> NDArray[np.float64]:

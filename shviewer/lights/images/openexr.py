@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.images.chromaticities import REC709, are_same, rec709_from
+from shviewer.lights.images.chromaticities import REC709, are_same, convert, rec709_from
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.luminance_chroma import rgb_from_luminance_chroma
 from shviewer.lights.images.openexr_headers import Part, Window, read_headers
@@ -52,8 +52,7 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     planes = _planes(open_openexr(openexr, data, header_only=False), part, source)
     kinds = "/".join(dict.fromkeys(_KINDS.get(str(plane.dtype), str(plane.dtype)) for plane in planes))
     pixels = _radiance(planes, part, source)
-    if matrix is not None:
-        convert(pixels, matrix)
+    convert(pixels, matrix)
     pixels, cut = on_display_window(pixels, part.window, part.display)
 
     words = ["OpenEXR", kinds, *part.storage]
@@ -135,15 +134,6 @@ def _every_half() -> NDArray[np.float32]:
     """(65536,): the value of each pattern of bits."""
     with np.errstate(invalid="ignore"):  # signalling NaN
         return np.arange(2**16, dtype=np.uint16).view(np.float16).astype(np.float32)
-
-
-def convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64]) -> None:
-    """Convert in place. A texel with an Inf or NaN is left alone: it would spread to all its channels unreported."""
-    transposed = matrix.T.astype(np.float32)
-    for top in range(0, len(pixels), _ROWS):
-        rows = pixels[top : top + _ROWS]
-        with np.errstate(invalid="ignore", over="ignore"):
-            np.copyto(rows, rows @ transposed, where=np.isfinite(rows).all(axis=2, keepdims=True))
 
 
 def on_display_window(

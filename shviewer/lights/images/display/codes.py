@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
+from shviewer.lights.images.chromaticities import convert
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.display.colour import Colour
 from shviewer.limits import Limits
@@ -48,10 +49,12 @@ class Codes(NamedTuple):
     profile: bytes  # ICC, empty for none
     xmp: bytes = b""  # empty for none
 
-    def upright(self, orientation: int) -> NDArray[Any]:
-        """The values, turned as an EXIF orientation says."""
+    def colours(self, orientation: int) -> NDArray[Any]:
+        """The values without alpha, (height, width, 1 or 3), turned as an EXIF orientation says."""
+        values = self.values.reshape(*self.values.shape[:2], -1)
+        colours = values[..., : 3 if values.shape[2] > 2 else 1]
         turn = TURNS.get(orientation)
-        return turn(self.values) if turn else self.values
+        return turn(colours) if turn else colours
 
     def notes(self) -> tuple[str, ...]:
         """What is not in the values any more, for the user."""
@@ -64,16 +67,13 @@ def damaged(reason: str) -> LightError:
     return LightError(f"damaged or cut short, {reason}; fetch or export the file again")
 
 
-def linear(values: NDArray[Any], bits: int, colour: Colour) -> NDArray[np.float32]:
-    """Radiance (height, width, 3) of the picture's own primaries, grey in all three channels.
+def linear(codes: Codes, colour: Colour) -> NDArray[np.float32]:
+    """The upright radiance (height, width, 3) in the picture's own primaries, grey in all three channels.
 
     By blocks of rows, since an index takes 8 bytes a value.
     """
-    table = colour.table(bits)
-    height, width = values.shape[:2]
-    colours = (
-        values[..., :3] if values.ndim == 3 and values.shape[2] >= 3 else values.reshape(height, width, -1)[..., :1]
-    )
+    table, colours = colour.table(codes.bits), codes.colours(codes.orientation)
+    height, width = colours.shape[:2]
     pixels = np.empty((height, width, 3), np.float32)
     rows = max(1, _BLOCK_TEXELS // width)
     for top in range(0, height, rows):
@@ -88,20 +88,11 @@ def linear(values: NDArray[Any], bits: int, colour: Colour) -> NDArray[np.float3
 
 def linearised(kind: str, codes: Codes, colour: Colour, notes: Iterable[str] = ()) -> Decoded:
     """The light of codes for a display, of which it is said that what was brighter than white is lost. kind: the format."""
-    pixels = converted(linear(codes.upright(codes.orientation), codes.bits, colour), colour.rec709_from)
+    pixels = linear(codes, colour)
+    convert(pixels, colour.rec709_from)
     words = f"{codes.bits} bit {colour.curve_name}"
     lost = f"{words}, linearised: what was brighter than white is lost, so a sun will be too weak"
     return Decoded(pixels, f"{kind}, {words} (LDR)", (lost, *colour.notes, *notes, *codes.notes()))
-
-
-def converted(pixels: NDArray[np.float32], matrix: NDArray[np.float64] | None) -> NDArray[np.float32]:
-    """Radiance (height, width, 3) times a (3, 3) matrix, in place; None for the identity."""
-    if matrix is not None:
-        rows = max(1, _BLOCK_TEXELS // pixels.shape[1])
-        transposed = matrix.T.astype(np.float32)
-        for top in range(0, len(pixels), rows):
-            pixels[top : top + rows] = pixels[top : top + rows] @ transposed
-    return pixels
 
 
 def decode(

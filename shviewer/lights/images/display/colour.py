@@ -8,13 +8,13 @@ Sources
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
-from shviewer.lights.images.chromaticities import REC709, are_same, rec709_from
+from shviewer.lights.images.chromaticities import rec709_from
 
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Codes from 0 to 1 -> light from 0 to 1."""
@@ -29,8 +29,8 @@ _PRIMARIES = {  # by number in [H273]; 1 is Rec. 709
     11: ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060), (0.314, 0.351)),
     12: ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060), _D65),
 }
-_SRGB, _LINEAR = 13, 8
-_POWERS = {4: 2.2, 5: 2.8, _LINEAR: 1.0}
+_SRGB = 13
+_POWERS = {4: 2.2, 5: 2.8, 8: 1.0}
 _HDR = {16: "PQ", 18: "HLG"}
 
 
@@ -58,18 +58,12 @@ class Colour:
 
 
 def power(exponent: float) -> Curve:
+    """The curve light = code ** exponent."""
     return lambda encoded: encoded**exponent
 
 
-def of_power(exponent: float) -> tuple[tuple[Curve, ...], str]:
-    """The curve light = code ** exponent, and its name."""
-    return (power(exponent),), "linear" if exponent == 1.0 else f"gamma {exponent:g}"
-
-
-def matrix_or_none(chromaticities: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """The matrix from RGB of these primaries to Rec. 709; None if they are its own. LightError if they make no RGB space."""
-    matrix = rec709_from(chromaticities)
-    return None if are_same(chromaticities, REC709) else matrix
+def power_name(exponent: float) -> str:
+    return "linear" if exponent == 1.0 else f"gamma {exponent:g}"
 
 
 def from_cicp(primaries: int, transfer: int) -> Colour:
@@ -79,12 +73,15 @@ def from_cicp(primaries: int, transfer: int) -> Colour:
             f"coded in {_HDR[transfer]} (it says so itself); only sRGB, plain powers and curves of ICC profiles are read:"
             " convert it to .exr"
         )
-    curves, name = of_power(_POWERS[transfer]) if transfer in _POWERS else ((linear_from_srgb,), "sRGB")
-    notes = [] if transfer in (*_POWERS, _SRGB) else [f"its curve (cICP {transfer}) is taken for that of sRGB"]
+    colour, notes = Colour(), []
+    if exponent := _POWERS.get(transfer):
+        colour = Colour((power(exponent),), power_name(exponent))
+    elif transfer != _SRGB:
+        notes = [f"its curve (cICP {transfer}) is taken for that of sRGB"]
     matrix = None
     if primaries in _PRIMARIES:
-        matrix = matrix_or_none(np.array(_PRIMARIES[primaries]))
+        matrix = rec709_from(_PRIMARIES[primaries])
         notes.append(f"its primaries (cICP {primaries}) are converted to Rec. 709")
     elif primaries != 1:
         notes.append(f"its primaries (cICP {primaries}) are taken for Rec. 709")
-    return Colour(curves, name, matrix, tuple(notes))
+    return replace(colour, rec709_from=matrix, notes=tuple(notes))

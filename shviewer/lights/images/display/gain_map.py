@@ -73,10 +73,9 @@ def _has_gain_map(found: Properties) -> bool:
     return any(name.startswith(_HDRGM) for name in found)
 
 
-def apply(pixels: NDArray[np.float32], values: NDArray[Any], metadata: Metadata) -> None:
-    """Turn the light of a picture (height, width, 3) into HDR, in place; values: the codes of its map, (rows, columns[, 3])."""
+def apply(pixels: NDArray[np.float32], codes: NDArray[Any], metadata: Metadata) -> None:
+    """Turn the light of a picture (height, width, 3) into HDR, in place; codes: of its map, (rows, columns, 1 or 3)."""
     height, width = pixels.shape[:2]
-    codes = values.reshape(*values.shape[:2], -1)[..., : 3 if values.ndim == 3 and values.shape[2] >= 3 else 1]
     across, weight_across = _between(width, codes.shape[1])
     down, weight_down = _between(height, codes.shape[0])
     gains = codes.shape[2] if _alike(metadata) else 3

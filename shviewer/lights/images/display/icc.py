@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from shviewer.errors import LightError
 from shviewer.lights.images.chromaticities import rec709_from_columns
-from shviewer.lights.images.display.colour import Colour, Curve, from_cicp, linear_from_srgb, power
+from shviewer.lights.images.display.colour import Colour, Curve, from_cicp, linear_from_srgb, power, power_name
 from shviewer.words import one_line
 
 _HEADER = 128  # bytes
@@ -71,7 +71,7 @@ def _power_of(steps: NDArray[np.float64], light: list[NDArray[np.float64]]) -> s
     exponent = float(np.round(np.log(light[0][middle]) / np.log(steps[middle]), 2))
     if any(np.abs(values - steps**exponent).max() > _SAME_LIGHT for values in light):
         return ""
-    return "linear" if exponent == 1.0 else f"gamma {exponent:g}"
+    return power_name(exponent)
 
 
 def _tags(profile: bytes) -> dict[bytes, bytes]:

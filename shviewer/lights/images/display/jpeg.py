@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import LightError
+from shviewer.lights.images.chromaticities import convert
 from shviewer.lights.images.decoded import Decoded
-from shviewer.lights.images.display.codes import Codes, converted, damaged, decode, linear
+from shviewer.lights.images.display.codes import Codes, damaged, decode, linear
 from shviewer.lights.images.display.colour import Colour
 from shviewer.lights.images.display.gain_map import GainMap, apply, find_gain_map
 from shviewer.lights.images.display.icc import colour_of_profile
 from shviewer.lights.images.display.jpeg_segments import Jpeg, read_jpeg
-from shviewer.lights.images.display.photo_sphere import place
+from shviewer.lights.images.display.photo_sphere import placed
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
 _MOST_TEXELS_OF_A_BYTE = 8 * 64  # a block of 8 x 8 takes at least one bit of Huffman code
@@ -31,21 +32,22 @@ def decode_jpeg(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     codes = _whole(first, limits)
     colour = colour_of_profile(codes.profile)
     words, notes = f"{codes.bits} bit {colour.curve_name}", []
-    pixels = linear(codes.upright(codes.orientation), codes.bits, colour)
+    pixels = linear(codes, colour)
     matrix, white = colour.rec709_from, ""
     try:
         if gain_map := find_gain_map(data, first):
             map_codes = _whole(gain_map.jpeg, limits)
             into, matrix = _matrices(colour, map_codes, gain_map)
-            apply(converted(pixels, into), map_codes.upright(codes.orientation), gain_map.metadata)
+            convert(pixels, into)
+            apply(pixels, map_codes.colours(codes.orientation), gain_map.metadata)
             white = f"{2.0**gain_map.metadata.headroom:.3g} times "
     except LightError as error:
         notes.append(f"its gain map is not read ({error})")
     mapped = " and its gain map at full headroom" if white else ""
     lost = f"{words}{mapped}, linearised: what was brighter than {white}white is lost, so a sun will be too weak"
-    pixels, layout, placed = place(converted(pixels, matrix), codes.xmp, limits)
+    convert(pixels, matrix)
     encoding = f"JPEG, {words} with a gain map (HDR)" if white else f"JPEG, {words} (LDR)"
-    return Decoded(pixels, encoding, (lost, *notes, *colour.notes, *codes.notes(), *placed), layout)
+    return placed(Decoded(pixels, encoding, (lost, *notes, *colour.notes, *codes.notes())), codes.xmp, limits)
 
 
 def _whole(jpeg: Jpeg, limits: Limits) -> Codes:

@@ -19,8 +19,8 @@ from shviewer.errors import LightError
 from shviewer.lights.images.display.codes import damaged
 
 _SOI, _EOI, _SOS, _DRI, _APP1, _APP2 = 0xD8, 0xD9, 0xDA, 0xDD, 0xE1, 0xE2
-_NEXT = re.compile(rb"\xff+([\x01-\xfe])", re.DOTALL)
-_NEXT_AFTER_SCAN = re.compile(rb"\xff+([\x01-\xcf\xd8-\xfe])", re.DOTALL)  # within a scan stand 0 and restarts
+_NEXT = re.compile(rb"\xff+([\x01-\xfe])")
+_NEXT_AFTER_SCAN = re.compile(rb"\xff+([\x01-\xcf\xd8-\xfe])")  # within a scan stand 0 and restarts
 _RST0 = 0xD0
 _LAST_RESTART = re.compile(rb".*\xff([\xd0-\xd7])", re.DOTALL)
 _ALONE = (0x01, *range(0xD0, 0xD8))  # markers without a segment
@@ -47,7 +47,6 @@ class Jpeg(NamedTuple):
     """The contents of its segments of that name: profiles, gain maps, lists of pictures."""
     xmp: bytes
     """Its XMP packet; empty for none."""
-
     restart: int
     """The number, 0 to 7, of the restart that would come next."""
 
@@ -78,7 +77,7 @@ def read_jpeg(file: bytes, start: int = 0) -> Jpeg:
         if marker in _FRAMES:
             if frame is not None:
                 raise damaged("another image before its end")
-            frame = _Frame.read(marker, content)
+            frame = _Frame(marker, content)
         elif marker == _APP2:
             app2.append(content)
         elif marker == _APP1 and content.startswith(_XMP):
@@ -119,15 +118,11 @@ def following_images(file: bytes, first: Jpeg) -> list[Jpeg]:
 class _Frame:
     """The components of an image, and which bits of which coefficients its scans have brought."""
 
-    def __init__(self, marker: int, components: bytes) -> None:
+    def __init__(self, marker: int, header: bytes) -> None:
+        components = header[6 : 6 + 3 * header[5] : 3] if len(header) > 5 else b""
         self.marker = marker
         self.scans = 0
         self.left = {component: [14] * 64 for component in components}  # bits that have not come, of each coefficient
-
-    @staticmethod
-    def read(marker: int, content: bytes) -> _Frame:
-        count = content[5] if len(content) > 5 else 0
-        return _Frame(marker, content[6 : 6 + 3 * count : 3])
 
     def add_scan(self, content: bytes) -> None:
         self.scans += 1

@@ -8,10 +8,12 @@ Source
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.display.xmp import number, properties
 from shviewer.limits import Limits
 
@@ -26,14 +28,20 @@ _PART = (
 _POSE = ("PosePitchDegrees", "PoseRollDegrees")
 
 
-def place(
-    pixels: NDArray[np.float32], xmp: bytes, limits: Limits
-) -> tuple[NDArray[np.float32], str | None, tuple[str, ...]]:
-    """The picture (height, width, 3) on the whole sphere, black elsewhere; the layout that it states, or None; and notes.
+def placed(decoded: Decoded, xmp: bytes, limits: Limits) -> Decoded:
+    """The picture on the whole sphere, black elsewhere, with the layout that its XMP states.
 
     A picture that was made smaller since keeps its place: the numbers count texels of the picture as it was.
     LightError for a sphere beyond the limits.
     """
+    pixels, layout, notes = _placed(decoded.pixels, xmp, limits)
+    return replace(decoded, pixels=pixels, layout=layout, notes=(*decoded.notes, *notes))
+
+
+def _placed(
+    pixels: NDArray[np.float32], xmp: bytes, limits: Limits
+) -> tuple[NDArray[np.float32], str | None, tuple[str, ...]]:
+    """Pixels, layout and notes."""
     gpano = {name.removeprefix(_GPANO): texts for name, texts in properties(xmp).items() if name.startswith(_GPANO)}
     projection = (gpano.get("ProjectionType") or [""])[0]
     if projection not in ("", "equirectangular"):
@@ -76,6 +84,6 @@ def _in_texels(numbers: list[float | None], pixels: NDArray[np.float32]) -> tupl
 def _pose(gpano: dict[str, list[str]]) -> tuple[str, ...]:
     """A note if the sphere is not level."""
     angles = [number(gpano.get(name)) or 0.0 for name in _POSE]
-    return ("its XMP (GPano) states a pitch of {:g} and a roll of {:g} degrees: not applied".format(*angles),) * any(
-        angles
-    )
+    if not any(angles):
+        return ()
+    return ("its XMP (GPano) states a pitch of {:g} and a roll of {:g} degrees: not applied".format(*angles),)

@@ -9,15 +9,17 @@ Source
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 
 import numpy as np
 
 from shviewer.errors import LightError
+from shviewer.lights.images.chromaticities import REC709, are_same, rec709_from
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.display.codes import decode, linearised
-from shviewer.lights.images.display.colour import Colour, from_cicp, matrix_or_none, of_power
+from shviewer.lights.images.display.colour import Colour, from_cicp, power
 from shviewer.lights.images.display.icc import colour_of_profile
-from shviewer.lights.images.display.photo_sphere import place
+from shviewer.lights.images.display.photo_sphere import placed
 from shviewer.lights.images.display.png_chunks import check_texels, plain_png, read_chunks, xmp_in
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
@@ -37,9 +39,7 @@ def decode_png(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     codes = decode(PngImageFile, plain_png(chunks, compressed), limits)
     colour = _colour(chunks, codes.profile)
     animated = ["animated: only the first frame is read"] if b"acTL" in chunks else []
-    decoded = linearised("PNG", codes, colour, animated)
-    pixels, layout, placed = place(decoded.pixels, xmp_in(chunks), limits)
-    return Decoded(pixels, decoded.encoding, (*decoded.notes, *placed), layout)
+    return placed(linearised("PNG", codes, colour, animated), xmp_in(chunks), limits)
 
 
 def _colour(chunks: dict[bytes, bytes], profile: bytes) -> Colour:
@@ -51,21 +51,22 @@ def _colour(chunks: dict[bytes, bytes], profile: bytes) -> Colour:
         return colour_of_profile(profile)
     if b"sRGB" in chunks:
         return Colour()
-    curve = Colour()
+    colour = Colour()
     if len(chunks.get(b"gAMA", b"")) == 4:
         gamma = struct.unpack(">I", chunks[b"gAMA"])[0] / 1e5
         if not 0.1 <= gamma <= 10.0:
-            curve = Colour(notes=(f"its gAMA of {gamma:g} is ignored, sRGB assumed",))
+            colour = Colour(notes=(f"its gAMA of {gamma:g} is ignored, sRGB assumed",))
         elif abs(gamma - _SRGB_GAMMA) >= 0.005:
-            curves, _ = of_power(1.0 / gamma)
-            curve = Colour(curves, f"gamma {gamma:g}", notes=(f"its gAMA of {gamma:g} is honoured",))
+            colour = Colour((power(1.0 / gamma),), f"gamma {gamma:g}", notes=(f"its gAMA of {gamma:g} is honoured",))
     if len(chunks.get(b"cHRM", b"")) != 32:
-        return curve
-    white, *primaries_xy = (np.array(struct.unpack(">8I", chunks[b"cHRM"])) / 1e5).reshape(4, 2)
+        return colour
+    white_first = (np.array(struct.unpack(">8I", chunks[b"cHRM"])) / 1e5).reshape(4, 2)
+    chromaticities = np.roll(white_first, -1, axis=0)
+    if are_same(chromaticities, REC709):
+        return colour
     try:
-        matrix = matrix_or_none(np.array([*primaries_xy, white]))
+        matrix = rec709_from(chromaticities)
     except LightError as error:
-        note = f"its cHRM is ignored: {str(error).rpartition(';')[0]}"
-        return Colour(curve.curves, curve.curve_name, None, (*curve.notes, note))
-    notes = curve.notes if matrix is None else (*curve.notes, "its primaries (cHRM) are converted to Rec. 709")
-    return Colour(curve.curves, curve.curve_name, matrix, notes)
+        return replace(colour, notes=(*colour.notes, f"its cHRM is ignored: {str(error).rpartition(';')[0]}"))
+    notes = (*colour.notes, "its primaries (cHRM) are converted to Rec. 709")
+    return replace(colour, rec709_from=matrix, notes=notes)

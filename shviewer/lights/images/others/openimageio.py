@@ -13,16 +13,16 @@ from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
 from shviewer.files import decoding
+from shviewer.lights.images.chromaticities import convert
 from shviewer.lights.images.decoded import Decoded
-from shviewer.lights.images.display.codes import TURNS, Codes, linearised
+from shviewer.lights.images.display.codes import Codes, linearised
 from shviewer.lights.images.display.colour import Colour
 from shviewer.lights.images.display.icc import colour_of_profile
-from shviewer.lights.images.openexr import convert, on_display_window
+from shviewer.lights.images.openexr import on_display_window
 from shviewer.lights.images.openexr_headers import Window
 from shviewer.limits import DEFAULT_LIMITS, Limits
 from shviewer.words import one_line
@@ -90,11 +90,11 @@ def _read(library: Any, file: Any, limits: Limits, kind: str) -> Decoded:
     if file.seek_subimage(1, 0):
         notes = [f"only {'the merged image of its layers' if kind == 'PSD' else 'the first of its images'} is read"]
     orientation, profile = spec.get_int_attribute("Orientation", 1), _bytes(spec.getattribute("ICCProfile"))
+    codes = Codes(values, _BITS.get(stored, 32), alpha, orientation, profile)
     if stored in _BITS:
-        codes = Codes(values, _BITS[stored], alpha, orientation, profile)
         decoded = linearised(kind, codes, colour_of_profile(profile), notes)
     else:
-        decoded = _floats(kind, stored, values, orientation, profile, notes)
+        decoded = _floats(kind, stored, codes, notes)
     return _placed(decoded, spec, orientation)
 
 
@@ -110,24 +110,16 @@ def _check(spec: Any, limits: Limits) -> None:
         )
 
 
-def _floats(
-    kind: str, stored: str, values: NDArray[np.float32], orientation: int, profile: bytes, notes: list[str]
-) -> Decoded:
-    turn = TURNS.get(orientation)
-    if turn:
-        values, notes = turn(values), [*notes, f"turned upright: its EXIF orientation is {orientation}"]
-    if values.shape[2] in (2, 4):
-        notes = [*notes, "alpha dropped"]
-    colour = colour_of_profile(profile)
-    if colour.curve_name == "linear":
-        notes = [*colour.notes, *notes]
-    elif profile:
-        colour, notes = Colour(), ["its colour profile (ICC) is ignored, Rec. 709 assumed", *notes]
-    colours = values[..., :3] if values.shape[2] > 2 else np.repeat(values[..., :1], 3, axis=2)
-    pixels = np.ascontiguousarray(colours)
-    if colour.rec709_from is not None:
-        convert(pixels, colour.rec709_from)
-    return Decoded(pixels, f"{kind}, {stored}, taken as linear", tuple(notes))
+def _floats(kind: str, stored: str, radiance: Codes, notes: list[str]) -> Decoded:
+    """The light of texels that are linear, whatever their profile says; it may state their primaries."""
+    colour = colour_of_profile(radiance.profile)
+    if colour.curve_name != "linear":
+        ignored = ("its colour profile (ICC) is ignored, Rec. 709 assumed",) if radiance.profile else ()
+        colour = Colour(notes=ignored)
+    colours = radiance.colours(radiance.orientation)
+    pixels = np.ascontiguousarray(colours if colours.shape[2] == 3 else np.repeat(colours, 3, axis=2))
+    convert(pixels, colour.rec709_from)
+    return Decoded(pixels, f"{kind}, {stored}, taken as linear", (*colour.notes, *notes, *radiance.notes()))
 
 
 def _placed(decoded: Decoded, spec: Any, orientation: int) -> Decoded:
