@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import warnings
 import zipfile
 from typing import Any
@@ -18,6 +19,7 @@ from shviewer.files import decoding
 from shviewer.words import one_line
 
 NPY = ".npy"
+_LONGEST_HEADER = 2**17  # bytes
 
 
 def read_arrays(data: bytes) -> Listed:
@@ -86,14 +88,17 @@ def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, most: int) -> io.By
 def _small_npy(data: bytes, most: int) -> io.BytesIO:
     if len(data) > most:
         raise LightError(f"more than {most} bytes unpacked: 128 bands have less")
-    file = io.BytesIO(data)
+    shape, dtype = npy_header(data)
+    size = dtype.itemsize * math.prod(shape)
+    if size > most:
+        raise LightError(f"an array of shape {shape} claims {size} bytes; the limit is {most}: 128 bands have less")
+    return io.BytesIO(data)
+
+
+def npy_header(data: bytes) -> tuple[tuple[int, ...], np.dtype[Any]]:
+    """The shape and the type of the array in an .npy. Whatever NumPy raises for a header that is none."""
+    file = io.BytesIO(data[:_LONGEST_HEADER])
     version = np.lib.format.read_magic(file)
     read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
     shape, _, dtype = read(file)
-    size = dtype.itemsize
-    for side in shape:
-        size *= side
-    if size > most:
-        raise LightError(f"an array of shape {shape} claims {size} bytes; the limit is {most}: 128 bands have less")
-    file.seek(0)
-    return file
+    return shape, dtype

@@ -77,15 +77,16 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
 
 
 def _read(text: str, path: Path, part: str, reading: Reading) -> Light:
-    if path.suffix.lower() == ".toml":
+    suffix = path.suffix.lower()
+    if suffix == ".toml":
         from shviewer.lights.scene import read_scene
 
         return read_scene(path, reading.limits)
-    if path.suffix.lower() in IMAGE_SUFFIXES or (path.suffix.lower() == ".npy" and _holds_image(path, reading)):
+    if suffix in IMAGE_SUFFIXES or (suffix == ".npy" and _holds_image(path, reading)):
         from shviewer.lights.environment import EnvironmentLight
 
         return EnvironmentLight.read(path, reading, part)
-    if path.suffix.lower() in COEFFICIENT_SUFFIXES:
+    if suffix in COEFFICIENT_SUFFIXES:
         from shviewer.lights.coefficient_light import CoefficientLight
 
         return CoefficientLight.read(path, reading)

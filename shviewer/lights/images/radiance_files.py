@@ -42,7 +42,7 @@ _BY_OPENIMAGEIO = (
 )
 _KINDS = (_RGBE, _OPENEXR, _PNG, _JPEG, _PFM, _DDS, _ARRAY, *_BY_OPENIMAGEIO)
 
-IMAGE_SUFFIXES = tuple(dict.fromkeys(suffix for kind in _KINDS if kind is not _ARRAY for suffix in kind.suffixes))
+IMAGE_SUFFIXES = tuple(suffix for kind in _KINDS if kind is not _ARRAY for suffix in kind.suffixes)
 
 _OTHER_MAGICS = (
     (b"GIF8", "a GIF"),

@@ -97,7 +97,7 @@ class CubeLayout:
         return angles
 
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
-        shown = self._faces_by_cell[rows // self.face, columns // self.face] >= 0
+        shown = self.faces_by_cell[rows // self.face, columns // self.face] >= 0
         return np.where(shown, self._face_solid_angles[rows % self.face, columns % self.face], 0.0)
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
@@ -108,7 +108,7 @@ class CubeLayout:
 
     def centres(self, rows: Indices, columns: Indices) -> Array:
         """As in Layout; for a texel in an empty cell, the middle of the front face."""
-        face = self._faces_by_cell[rows // self.face, columns // self.face]
+        face = self.faces_by_cell[rows // self.face, columns // self.face]
         u, v = ((2 * (index % self.face) + 1) / self.face - 1 for index in (columns, rows))
         directions = self._directions(np.maximum(face, 0), u, v)
         directions[face < 0] = [1.0, 0.0, 0.0]
@@ -177,7 +177,7 @@ class CubeLayout:
         return slice(row, row + self.face), slice(column, column + self.face)
 
     @cached_property
-    def _faces_by_cell(self) -> NDArray[np.int64]:
+    def faces_by_cell(self) -> NDArray[np.int64]:
         """The index of the face in each cell, (rows, columns); -1 for an empty cell."""
         cells = np.full((self.arrangement.rows, self.arrangement.columns), -1)
         for i, face in enumerate(self.arrangement.faces):

@@ -22,7 +22,6 @@ from shviewer.lights.layouts.cube import (
     TALL_PACK,
     VERTICAL_CROSS,
     VERTICAL_STRIP,
-    Arrangement,
     CubeLayout,
 )
 from shviewer.lights.layouts.lat_long import LatLongLayout
@@ -44,6 +43,8 @@ SAMPLES = 2**18
 _Notes = tuple[str, ...]
 _Pixels = NDArray[np.float32]
 _CROSSES = (VERTICAL_CROSS, HORIZONTAL_CROSS)
+_PACKS = (PACK, TALL_PACK)
+_CUBES = (*_CROSSES, HORIZONTAL_STRIP, VERTICAL_STRIP, *_PACKS)
 
 
 class Recognised(NamedTuple):
@@ -64,7 +65,7 @@ def recognise(pixels: _Pixels, stated: str | None, wanted: str, lossy: bool = Fa
     """
     height, width = pixels.shape[:2]
     if wanted != "auto":
-        if wanted == "cube" and _arrangement(height, width) is None and (found := _framed_cross(pixels)):
+        if wanted == "cube" and _cube(height, width) is None and (found := _framed_cross(pixels)):
             return found
         return Recognised(_fitting(wanted, height, width, stated), (), pixels)
     misfits: _Notes = ()
@@ -83,13 +84,13 @@ def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
     if name == "lat-long":
         return LatLongLayout(height, width)
     if name == "cube":
-        arrangement = OPENEXR if stated == "cube" and OPENEXR.face_size(height, width) else _arrangement(height, width)
-        if arrangement is None:
+        cube = _cube(height, width, stated)
+        if cube is None:
             raise LightError(
                 f"{shown} is no cube: it must be a cross of 3 x 4 or 4 x 3 faces, a strip of 6 x 1 or 1 x 6, or a pack of"
                 " 3 x 2 or 2 x 3; choose another --layout"
             )
-        return CubeLayout(arrangement, arrangement.face_size(height, width))
+        return cube
     if name in ("angular", "mirror-ball"):
         if height != width:
             raise LightError(
@@ -103,23 +104,22 @@ def _by_shape(pixels: _Pixels, lossy: bool) -> Recognised:
     """The layout, and how it was guessed, if it was."""
     height, width = pixels.shape[:2]
     shown = f"{width} x {height}"
-    arrangement = _arrangement(height, width)
-    if arrangement is not None:
-        cube = CubeLayout(arrangement, arrangement.face_size(height, width))
-        packed = arrangement in (PACK, TALL_PACK)
-        if not packed and _has_empty_cells(pixels, arrangement, lossy):
-            note = f"{shown} is taken as a cube, {arrangement.name}: --layout lat-long if it is not"
-            return Recognised(cube, (note,), pixels)
+    cube = _cube(height, width)
+    packed = cube is not None and cube.arrangement in _PACKS
+    if cube is not None:
+        taken = f"{shown} is taken as a cube, {cube.arrangement.name}"
+        if not packed and _has_empty_cells(pixels, cube, lossy):
+            return Recognised(cube, (f"{taken}: --layout lat-long if it is not",), pixels)
         if fit_together(pixels, cube):
-            note = f"{shown} is taken as a cube, {arrangement.name}, since its faces fit together: --layout lat-long if not"
+            note = f"{taken}, since its faces fit together: --layout lat-long if not"
             return Recognised(cube, (note,), pixels)
     if width == height and _is_disc(pixels, lossy):
         note = f"{shown} with a disc is taken as an angular map: --layout mirror-ball for a ball"
         return Recognised(AngularLayout(height), (note,), pixels)
     if found := _framed_cross(pixels):
         return found
-    if arrangement is not None:
-        what = "pack of a cube" if arrangement in (PACK, TALL_PACK) else "cube cross, whose corners are empty"
+    if cube is not None:
+        what = "pack of a cube" if packed else "cube cross, whose corners are empty"
         guess = f"is not 2:1 and no {what}; taken as lat-long: --layout cube if it is one"
     elif width == height:
         guess = "is not 2:1 and no disc on one colour; taken as lat-long: --layout angular or mirror-ball if it is one"
@@ -133,17 +133,16 @@ def _framed_cross(pixels: _Pixels) -> Recognised | None:
     rows, columns = _inside_border(pixels)
     inner = pixels[rows, columns]
     height, width = inner.shape[:2]
-    for arrangement in _CROSSES if inner.shape != pixels.shape else ():
-        size = arrangement.face_size(height, width)
-        if size and (
-            _has_empty_cells(inner, arrangement, lossy=False) or fit_together(inner, CubeLayout(arrangement, size))
-        ):
-            note = (
-                f"{pixels.shape[1]} x {pixels.shape[0]} is taken as a cube, {arrangement.name} of {width} x {height} within a"
-                " border: --layout lat-long if it is not"
-            )
-            return Recognised(CubeLayout(arrangement, size), (note,), np.ascontiguousarray(inner))
-    return None
+    cube = _cube(height, width)
+    if inner.shape == pixels.shape or cube is None or cube.arrangement not in _CROSSES:
+        return None
+    if not (_has_empty_cells(inner, cube, lossy=False) or fit_together(inner, cube)):
+        return None
+    note = (
+        f"{pixels.shape[1]} x {pixels.shape[0]} is taken as a cube, {cube.arrangement.name} of {width} x {height} within a"
+        " border: --layout lat-long if it is not"
+    )
+    return Recognised(cube, (note,), np.ascontiguousarray(inner))
 
 
 def _inside_border(pixels: _Pixels) -> tuple[slice, slice]:
@@ -159,28 +158,28 @@ def _inside_border(pixels: _Pixels) -> tuple[slice, slice]:
     return spans[0], spans[1]
 
 
-def _arrangement(height: int, width: int) -> Arrangement | None:
-    """The arrangement of six whole faces that fills the image, if any. Strips are taken to be OpenGL's and Direct3D's."""
-    for arrangement in (*_CROSSES, HORIZONTAL_STRIP, VERTICAL_STRIP, PACK, TALL_PACK):
-        if arrangement.face_size(height, width):
-            return arrangement
+def _cube(height: int, width: int, stated: str | None = None) -> CubeLayout | None:
+    """The cube whose six whole faces fill the image, if any.
+
+    A strip is OpenEXR's if the file states a cube, else taken to be OpenGL's and Direct3D's.
+    """
+    for arrangement in (OPENEXR, *_CUBES) if stated == "cube" else _CUBES:
+        if face := arrangement.face_size(height, width):
+            return CubeLayout(arrangement, face)
     return None
 
 
-def _has_empty_cells(pixels: NDArray[np.float32], arrangement: Arrangement, lossy: bool) -> bool:
+def _has_empty_cells(pixels: NDArray[np.float32], cube: CubeLayout, lossy: bool) -> bool:
     """Whether the cells without a face, if there are any, are all of one colour but for a margin."""
-    size = arrangement.face_size(*pixels.shape[:2])
-    margin = min(LOSSY_MARGIN if lossy else MARGIN, size // 4)
-    places = {(face.row, face.column) for face in arrangement.faces}
-    faces, empty = [], []
-    for row, column in np.ndindex(arrangement.rows, arrangement.columns):
-        cell = pixels[row * size : (row + 1) * size, column * size : (column + 1) * size]
-        if (row, column) in places:
-            step = _step(6 * cell.shape[0] * cell.shape[1])
-            faces.append(cell[::step, ::step].reshape(-1, 3))
-        else:
-            empty.append(cell[margin : size - margin, margin : size - margin].reshape(-1, 3))
-    return not empty or _stands_out(np.concatenate(faces), np.concatenate(empty))
+    shown = cube.faces_by_cell >= 0
+    if shown.all():
+        return True
+    size = cube.face
+    margin, step = min(LOSSY_MARGIN if lossy else MARGIN, size // 4), _step(6 * size**2)
+    cells = pixels.reshape(len(shown), size, -1, size, 3).swapaxes(1, 2)
+    faces = cells[:, :, ::step, ::step][shown]
+    empty = cells[:, :, margin : size - margin, margin : size - margin][~shown]
+    return _stands_out(faces.reshape(-1, 3), empty.reshape(-1, 3))
 
 
 def _is_disc(pixels: NDArray[np.float32], lossy: bool) -> bool:

@@ -48,9 +48,7 @@ def fit_together(pixels: NDArray[np.float32], layout: CubeLayout) -> bool:
     )
 
 
-def _lines(
-    layout: CubeLayout,
-) -> tuple[Places, Places, Places, NDArray[np.bool_]]:
+def _lines(layout: CubeLayout) -> tuple[Places, Places, Places, NDArray[np.bool_]]:
     """Along the four edges of each face, 24 lines: texels, those across the seam, and those further within.
 
     Also which of the lines do not meet their neighbours in the image as well, (24,).
@@ -58,12 +56,8 @@ def _lines(
     last = layout.face - 1
     along = np.unique(np.linspace(0, last, min(layout.face, _MOST_TEXELS)).astype(np.int64))
     start, end = np.zeros_like(along), np.full_like(along, last)
-    edges = (
-        (start, along, -1, 0),
-        (end, along, 1, 0),
-        (along, start, 0, -1),
-        (along, end, 0, 1),
-    )  # and the step outwards
+    # rows, columns, and the step outwards
+    edges = ((start, along, -1, 0), (end, along, 1, 0), (along, start, 0, -1), (along, end, 0, 1))
     lines = []
     for face in range(6):
         for rows, columns, down, right in edges:

@@ -13,6 +13,7 @@ Source
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from shviewer.errors import LightError
@@ -98,21 +99,20 @@ def read_jpeg(file: bytes, start: int = 0) -> Jpeg:
     return Jpeg(file[start:scans_end] + _END, position, frame.marker in _ARITHMETIC, tuple(app2), xmp, restart)
 
 
-def following_images(file: bytes, first: Jpeg) -> list[Jpeg]:
+def following_images(file: bytes, first: Jpeg) -> Iterator[Jpeg]:
     """The whole images behind the first, wherever they stand."""
-    images = []
-    place = file.find(b"\xff\xd8\xff", first.end)
+    place = first.end
     for _ in range(_FOLLOWING):
+        place = file.find(b"\xff\xd8\xff", place)
         if place < 0:
-            break
+            return
         try:
-            images.append(read_jpeg(file, place))
+            image = read_jpeg(file, place)
         except LightError:
             place += 1
         else:
-            place = images[-1].end
-        place = file.find(b"\xff\xd8\xff", place)
-    return images
+            place = image.end
+            yield image
 
 
 class _Frame:

@@ -7,9 +7,11 @@ import warnings
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from shviewer.coefficients.array_files import npy_header
 from shviewer.errors import LightError
 from shviewer.files import decoding, read_bytes
 from shviewer.lights.images.decoded import Decoded
@@ -38,10 +40,6 @@ def decode_array(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     return Decoded(pixels, f"NumPy, {dtype}", layout="lat-long")
 
 
-def _header(data: bytes) -> tuple[tuple[int, ...], np.dtype[np.generic]]:
+def _header(data: bytes) -> tuple[tuple[int, ...], np.dtype[Any]]:
     with decoding("NPY"), warnings.catch_warnings(action="ignore"):  # of headers that Python 2 wrote
-        file = io.BytesIO(data[: 2**17])
-        version = np.lib.format.read_magic(file)
-        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-        shape, _, dtype = read(file)
-    return shape, dtype
+        return npy_header(data)
