@@ -186,54 +186,30 @@ class Found(NamedTuple):
 
 
 FOUND = (
-    Found(
-        "Filament's cmgen, and copies of it",
-        "`sh.txt` with the comments `irradiance, pre-scaled base`",
-        "`filament`, with a note",
-        "sh.txt",
-    ),
-    Found(
-        "three.js, `LightProbe.toJSON`",
-        "`.json` with `sh` and an intensity",
-        "`three`, times the intensity, with notes",
-        "probe.json",
-    ),
-    Found(
-        "three.js, `JSON.stringify` of `SphericalHarmonics3`",
-        "`.json` with x, y, z",
-        "`three`, with a note",
-        "harmonics.json",
-    ),
+    Found("Filament's cmgen, and copies of it", "`sh.txt` with the comments `irradiance, pre-scaled base`",
+          "`filament`, with a note", "sh.txt"),
+    Found("three.js, `LightProbe.toJSON`", "`.json` with `sh` and an intensity",
+          "`three`, times the intensity, with notes", "probe.json"),
+    Found("three.js, `JSON.stringify` of `SphericalHarmonics3`", "`.json` with x, y, z",
+          "`three`, with a note", "harmonics.json"),
     Found("Unity, text of an asset", "`sh[ 0]: ...` to `sh[26]: ...`, red first", "`unity`, with a note", "probe.txt"),
-    Found(
-        "glTF",
-        "`irradianceCoefficients`, whose convention it does not state",
-        f"`{BABYLON}`, as Babylon.js reads it, with a note",
-        "scene.gltf",
-    ),
-    Found(
-        "Babylon.js, `JSON.stringify` of `SphericalHarmonics`",
-        "`.json` with `l00`, `l1_1`, ...",
-        "rows, sorted by these names",
-        "babylon.json",
-    ),
+    Found("glTF", "`irradianceCoefficients`, whose convention it does not state",
+          f"`{BABYLON}`, as Babylon.js reads it, with a note", "scene.gltf"),
+    Found("Babylon.js, `JSON.stringify` of `SphericalHarmonics`", "`.json` with `l00`, `l1_1`, ...",
+          "rows, sorted by these names", "babylon.json"),
     Found("SHTOOLS, `shwrite`", "`l, m, C, S`", "grey, S being that of -m, with a note", "shtools.txt"),
     Found("shaders", "`const vec3 L00 = vec3(...)`, `L1m1`, ...", "rows, sorted by these names", "book.glsl"),
     Found("shaders", "`vec3[9]`, `float3 sh[9]`, `array<vec3<f32>, 9>`", "rows", "wgsl.txt"),
     Found("shaders", "`vec4`s, filled up with 0 or 1", "rows, the fill dropped, with a note", "std140.glsl"),
-    Found(
-        "ARKit, Unity",
-        "all of red, then of green, then of blue, a line or an array each",
-        "that, with a note",
-        "lists.h",
-    ),
+    Found("ARKit, Unity", "all of red, then of green, then of blue, a line or an array each",
+          "that, with a note", "lists.h"),
     Found("JavaScript", "`{r: ..., g: ..., b: ...}`", "rows", "objects.txt"),
     Found("spreadsheets", "decimal commas and semicolons", "that", "spreadsheet.csv"),
     Found("word processors", "a typographic minus", "a minus", "unicode.txt"),
     Found("anything", "an index before red, green and blue", "dropped, with a note", "index.txt"),
     Found("anything", "n² lines of four or more of unknown meaning", "refused", "9 lines of 4 numbers"),
     Found("anything", "several lists in one file", "refused, with their names", "2 lists of numbers"),
-)
+)  # fmt: skip
 
 
 def cases() -> set[str]:

@@ -13,6 +13,8 @@ import zipfile
 from functools import cache
 from random import Random
 
+from tree_mutations import spoilt_tree
+
 _TYPES = (
     *(
         "'<f8' | '>f8' | '<f4' | '<f2' | '<f16' | '<i8' | '<c8' | '<c16' | '<c32' | 'O8' | '<U5' | '<U100000' | "
@@ -165,12 +167,10 @@ def _change_member(members: list[tuple[str, bytes]], random: Random) -> None:
 
 
 def _stamp(random: Random) -> bytes:
-    from door_mutations import _spoilt_tree  # it spoils archives with the functions of this file
-
     sound = {"shviewer-coefficients": 1, "convention": "shviewer", "quantity": "radiance", "bands": 3, "light": "green"}
     text = random.choice(_STAMPS)
     if random.random() < 0.7:
-        text = _spoilt_tree(json.dumps(sound).encode(), random).decode("utf-8", "replace")
+        text = spoilt_tree(json.dumps(sound).encode(), random).decode("utf-8", "replace")
     payload = text.encode("utf-32-le", "replace")
     header = f"{{'descr': '<U{max(1, len(text))}', 'fortran_order': False, 'shape': (), }}"
     return _npy(header, payload or bytes(4), random)

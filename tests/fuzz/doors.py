@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import shutil
 import sys
 import tempfile
 import time
@@ -25,6 +24,7 @@ import numpy as np
 import promise
 from door_seeds import seeds
 from promise import DIRECTIONS, MOST_BYTES_BEYOND_IMAGE, BrokenPromise, forget_peak, peak_bytes
+from watch import remove, unwatched, watched
 
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.compared_files import compared_with
@@ -101,7 +101,7 @@ def _light(path: Path, data: bytes) -> Iterator[object]:
         kind = FORMATS[number // 64 % len(FORMATS)]
         written = project_recipe(Recipe(str(path), reading, n_bands=2))
         encoded = written.encode(CONVENTIONS["shviewer"], kind)
-        with _unwatched(), tempfile.TemporaryDirectory() as folder:
+        with unwatched(), tempfile.TemporaryDirectory() as folder:
             again = Path(folder, f"again.{kind}")
             again.write_bytes(encoded)
             read = read_coefficients(again)
@@ -123,7 +123,7 @@ def _against(path: Path, data: bytes) -> Iterator[object]:
 
 
 def _sound_report() -> Any:
-    with _unwatched(), tempfile.TemporaryDirectory() as folder:
+    with unwatched(), tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "report.json")
         path.write_bytes(seeds()["against/report.json"])
         return read_report(path)
@@ -209,7 +209,7 @@ class DoorWitness:
         self._stderr, name = tempfile.mkstemp()
         os.unlink(name)
         weakref.finalize(self, os.close, self._stderr)
-        weakref.finalize(self, _remove, self.folder)
+        weakref.finalize(self, remove, self.folder)
         (self.folder / "nine.json").write_bytes(seeds()["light/written.json"])
         (self.folder / "bare.txt").write_bytes(seeds()["light/rows.txt"])
         forget_peak()
@@ -227,7 +227,7 @@ class DoorWitness:
         try:
             path.write_bytes(data)
             began = time.process_time()
-            with self._quiet(), _watched(self.folder) as done:
+            with self._quiet(), watched(self.folder) as done:
                 accepted = _outcome(door, path, data, plain)
             seconds = time.process_time() - began
         finally:
@@ -303,67 +303,3 @@ def _innermost(error: BaseException) -> str:
             where = f"{file.name}:{at.tb_lineno}"
         at = at.tb_next
     return where
-
-
-# ---------------------------------------------------------------------------------------------- what must not be done
-
-_FORBIDDEN = (
-    *("os.remove", "os.rename", "os.mkdir", "os.rmdir", "os.link", "os.symlink", "os.chmod", "os.chown", "os.truncate"),
-    *("subprocess.Popen", "os.system", "os.exec", "os.fork", "os.posix_spawn", "os.startfile", "os.kill"),
-    *("socket.connect", "socket.bind", "socket.getaddrinfo", "pickle.find_class", "ctypes.dlopen", "shutil.copyfile"),
-)
-_done: list[str] = []
-_watching: list[str] = []
-"""The folder of the inputs, while one is read."""
-
-
-def _audit(event: str, arguments: tuple[Any, ...]) -> None:
-    if not _watching:
-        return
-    if event == "open":
-        path, _, flags = arguments
-        if isinstance(flags, int) and flags & (os.O_WRONLY | os.O_RDWR) and path != os.devnull:
-            _done.append(f"opens {path!r} to write")
-    elif event in _FORBIDDEN:
-        _done.append(f"{event}{arguments!r}"[:200])
-    elif event == "exec" and arguments[0].co_filename.startswith((_watching[0], "<string>")):
-        _done.append(f"runs code of {arguments[0].co_filename}")
-
-
-@contextlib.contextmanager
-def _watched(folder: Path) -> Iterator[list[str]]:
-    """What is done that reading must not, in words."""
-    _audit_once()
-    _done.clear()
-    _watching.append(str(folder))
-    try:
-        yield _done
-    finally:
-        _watching.clear()
-
-
-@contextlib.contextmanager
-def _unwatched() -> Iterator[None]:
-    """The witness itself writes."""
-    kept = _watching.copy()
-    _watching.clear()
-    try:
-        yield
-    finally:
-        _watching.extend(kept)
-
-
-def _remove(folder: Path) -> None:
-    """What is left of a witness that is gone, perhaps while another one watches."""
-    with _unwatched():
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-_hooked: list[bool] = []
-
-
-def _audit_once() -> None:
-    """A hook cannot be taken away again; this one does nothing unless an input is read."""
-    if not _hooked:
-        _hooked.append(True)
-        sys.addaudithook(_audit)

@@ -20,7 +20,8 @@ import promise
 import pytest
 from door_seeds import REFUSED, seeds
 from doors import DOORS, DoorWitness
-from harness import FOUND, DoorMutations, Judge, examine, verdict
+from harness import FOUND, examine
+from inputs import DoorMutations, Judge, verdict
 from minimise import minimised
 from test_fuzz import assert_none_broken
 

@@ -12,7 +12,8 @@ import harness
 import numpy as np
 import promise
 import pytest
-from harness import FOUND, Mutations, Truncations, examine, save, verdict
+from harness import FOUND, examine, save
+from inputs import Mutations, Truncations, verdict
 from promise import LIMITS, BrokenPromise, Witness
 from seeds import seeds, stb_seeds
 
