@@ -126,6 +126,18 @@ def _fejer_rows(rows: int) -> tuple[Array, Array]:
     return theta, 2 / rows * (1 - np.cos(np.outer(theta, 2 * k)) @ (2 / (4 * k**2 - 1)))
 
 
+@lru_cache(maxsize=1)
+def clenshaw_curtis_rows(rows: int) -> tuple[Array, Array]:
+    """Angles from pole to pole, an odd number, and their weights (rows,) [Waldvogel, (2.4)], exact up to degree rows - 1."""
+    n = rows - 1
+    theta = np.linspace(0, np.pi, rows)
+    k = np.arange(1, n // 2 + 1)
+    share = np.where(k == n // 2, 1, 2) / (4 * k**2 - 1)
+    weights = (1 - np.cos(np.outer(theta, 2 * k)) @ share) * 2 / n
+    weights[[0, -1]] /= 2
+    return theta, weights
+
+
 @lru_cache(maxsize=16)
 def _gauss_legendre_rows(rows: int) -> tuple[Array, Array]:
     """Gauss-Legendre nodes as angles (rows,) and their weights (rows,).

@@ -195,7 +195,7 @@ class EnvironmentLight(RadianceLight):
         sources = CompactSources(self.pixels, self.layout)
         found, why = sources.take_all()
         taken = chosen(self.name, found, wanted, why)
-        suns = [found[i].sun for i in taken] if len(taken) == len(found) else sources.keep(self.pixels, taken)
+        suns = [found[i].sun for i in taken] if len(taken) == len(found) else sources.keep(taken)
         return Split(replace(self, pixels=sources.pixels), tuple(suns))
 
 

@@ -105,7 +105,7 @@ class MappedIrradiance(IrradianceLight):
         kept = self.source.coefficients(self.bands)
         beyond = max(float(np.trace(self.source.products()) - (kept**2).sum()), 0.0)
         total = float(np.trace(self.products()))
-        tail = float(irradiance_factors(self.bands + 2)[-2:].__abs__().max())
+        tail = float(np.abs(irradiance_factors(self.bands + 2)[-2:]).max())
         return max(self.source.accuracy(), tail * float(np.sqrt(beyond / total)) if total else 0.0)
 
     def radiance(self, directions: Array) -> Array:

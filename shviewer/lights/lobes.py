@@ -119,9 +119,8 @@ class LobeLight(RadianceLight):
     def _energy_of(self, disc: Lobe) -> float:
         """The share of ||f||^2 that one of the discs holds by itself, both in the mean of the channels."""
         radiance, solid_angle = float(disc.radiance.mean()), float(disc.profile.zonal(1)[0])
-        return (
-            radiance**2 * solid_angle / (float(self.products().sum()) / 9 or 1.0)
-        )  # squares of less than 1e-160 may be 0
+        whole = float(self.products().sum()) / 9 or 1.0  # squares of less than 1e-160 may be 0
+        return radiance**2 * solid_angle / whole
 
     def _without(self, lobe: Lobe) -> LobeLight:
         """The other lobes; a black constant if there are none."""

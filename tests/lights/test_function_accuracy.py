@@ -20,7 +20,7 @@ from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import state_of
 
 EVERY = 24
-"""Every so manieth case is judged here, and all of them by python tests/benchmarks/functions.py."""
+"""One case in so many is judged here, and all of them by python tests/benchmarks/functions.py."""
 
 
 @pytest.mark.parametrize("number", range(5))

@@ -9,11 +9,12 @@ cells have no sign in common, unless edges run along the rows: how much they agr
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.quadrature import Radiance, directions_from_angles
 from shviewer.harmonics.sampling.cells import (
     NODES,
@@ -241,11 +242,10 @@ def _seen(texels: NDArray[np.float32], strip: int, stride: int) -> Array:
     return rows.reshape(STRIP_ROWS + 1, -1, STRIP_ROWS, 3).transpose(1, 0, 2, 3).astype(np.float64)
 
 
-@dataclass(eq=False)
-class _Samples:
+class _Samples(NamedTuple):
     """Points of the look: the number of the cell, place along u and theta in it, 0 to 1, (k,) each; values (k, 3)."""
 
-    cell: NDArray[np.int64]
+    cell: Indices
     across: Array
     down: Array
     values: Array
@@ -263,7 +263,7 @@ class _Samples:
                 _places_across(stride),
             )
             found.append(_Samples(number.ravel(), across.ravel(), down.ravel(), values.reshape(-1, 3)))
-        return _Samples(*(np.concatenate([getattr(part, name) for part in found]) for name in vars(self)))
+        return _Samples(*map(np.concatenate, zip(*found, strict=True)))
 
     def divided(self, split: NDArray[np.bool_]) -> _Samples:
         """Those in the quarters of the cells that are divided, split (n,)."""

@@ -85,7 +85,7 @@ class Cells:
     def beside(self, sides: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Which cells, (n,), touch a marked side of another: sides (n, 4), those of left, right, top and bottom."""
         per_row, n_rows = sectors() << self.depth, N_STRIPS << self.depth
-        row, column = self._row_and_column()
+        row, column = (self.strip << self.depth) + self.down, (self.sector << self.depth) + self.across
         count = per_row[self.strip]
         sought = []
         for side, step in ((0, -1), (1, 1)):
@@ -101,9 +101,6 @@ class Cells:
                 place = (4 * column[here] + quarter) * there // (4 * count[here])
                 sought.append(_key(other, (place + beyond * there // 2) % there))
         return np.isin(_key(row, column), np.concatenate(sought))
-
-    def _row_and_column(self) -> tuple[Indices, Indices]:
-        return (self.strip << self.depth) + self.down, (self.sector << self.depth) + self.across
 
     def theta(self, at: Array) -> Array:
         """Angles to +z at places `at` (k,), 0 to 1 downwards: (n, k)."""

@@ -8,15 +8,19 @@ drawn, and for comparison with everything else that is known of the function.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
-from shviewer.harmonics.quadrature import ProductRule, Radiance, column_azimuths, directions_from_angles, gauss_legendre
+from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.quadrature import (
+    Radiance,
+    clenshaw_curtis_rows,
+    column_azimuths,
+    directions_from_angles,
+    gauss_legendre,
+)
 
 LOOK_ROWS, LOOK_COLUMNS = 513, 1024
 """Rows from pole to pole, and columns where they are most."""
@@ -90,8 +94,8 @@ class Watched:
         return np.concatenate(self.points), np.concatenate(self.values)
 
 
-def strides() -> NDArray[np.int64]:
-    """Every how manieth column of the grid each strip has, (N_STRIPS,): powers of two."""
+def strides() -> Indices:
+    """How many columns of the grid lie between those of each strip, (N_STRIPS,): powers of two."""
     edges = np.sin(np.pi * np.arange(N_STRIPS + 1) / N_STRIPS)
     widest = np.maximum(edges[:-1], edges[1:])
     return np.asarray(2 ** np.floor(np.log2(1 / widest)).astype(np.int64))
@@ -102,12 +106,12 @@ def look(radiance: Radiance) -> tuple[NDArray[np.float32], Integrals]:
     texels = np.empty((LOOK_ROWS, LOOK_COLUMNS, 3), dtype=np.float32)
     found = Integrals(moments=np.zeros((1, 3)))
     found.add(AXES, radiance(AXES), np.zeros(len(AXES)))
+    theta, row_weights = clenshaw_curtis_rows(LOOK_ROWS)
     for rows, stride in _row_groups():
         phi = column_azimuths(LOOK_COLUMNS)[::stride]
         step = max(1, BLOCK // len(phi))
         for start in range(rows.start, rows.stop, step):
             part = slice(start, min(start + step, rows.stop))
-            theta, row_weights = _clenshaw_curtis(LOOK_ROWS)
             directions = directions_from_angles(theta[part, None], phi).reshape(-1, 3)
             values = radiance(directions)
             found.add(directions, values, np.repeat(row_weights[part] * (2 * np.pi / len(phi)), len(phi)))
@@ -120,27 +124,20 @@ def turned(radiance: Radiance) -> tuple[Integrals, Array, Array]:
     rule = gauss_legendre(2 * TURNED_ROWS**2)
     found = Integrals()
     directions, values = np.empty((2, 2 * TURNED_ROWS**2, 3))
-    for rows in blocks(rule):
-        points = rule.direction_set(rows)
-        part = slice(rows.start * rule.n_columns, rows.start * rule.n_columns + len(points.weights))
+    step = max(1, BLOCK // rule.n_columns)
+    for start in range(0, len(rule.theta), step):
+        points = rule.direction_set(slice(start, start + step))
+        part = slice(start * rule.n_columns, start * rule.n_columns + len(points.weights))
         np.matmul(points.directions, TURN, out=directions[part])
         values[part] = radiance(directions[part])
         found.add(directions[part], values[part], points.weights)
     return found, directions, values
 
 
-def blocks(rule: ProductRule) -> Iterator[slice]:
-    """The rows of a rule, in blocks of about BLOCK points."""
-    step = max(1, BLOCK // rule.n_columns)
-    return (slice(start, start + step) for start in range(0, len(rule.theta), step))
-
-
 def _row_groups() -> list[tuple[slice, int]]:
     """Successive rows with the same stride. A row between two strips has the columns of the one that has more."""
-    per_strip = strides()
-    per_row = np.minimum(
-        np.r_[per_strip[0], np.repeat(per_strip, STRIP_ROWS)], np.r_[np.repeat(per_strip, STRIP_ROWS), 2**9]
-    )
+    between = np.pad(np.repeat(strides(), STRIP_ROWS), 1, mode="edge")
+    per_row = np.minimum(between[:-1], between[1:])
     starts = np.flatnonzero(np.r_[True, np.diff(per_row) != 0])
     return [(slice(int(a), int(b)), int(per_row[a])) for a, b in zip(starts, [*starts[1:], len(per_row)], strict=True)]
 
@@ -152,18 +149,3 @@ def _widen(values: Array, stride: int, texels: NDArray[np.float32]) -> None:
     for between in range(1, stride):
         share = between / stride
         texels[:, between::stride] = (1 - share) * values + share * following
-
-
-@lru_cache(maxsize=1)
-def _clenshaw_curtis(rows: int) -> tuple[Array, Array]:
-    """Angles from pole to pole, an odd number, and their weights (rows,), sum 2, exact up to degree rows - 1 in cos(theta).
-
-    [J. Waldvogel, "Fast construction of the Fejer and Clenshaw-Curtis quadrature rules", BIT 46, 195 (2006), (2.4)]
-    """
-    n = rows - 1
-    theta = np.linspace(0, np.pi, rows)
-    k = np.arange(1, n // 2 + 1)
-    share = np.where(k == n // 2, 1, 2) / (4 * k**2 - 1)
-    weights = (1 - np.cos(np.outer(theta, 2 * k)) @ share) * 2 / n
-    weights[[0, -1]] /= 2
-    return theta, weights

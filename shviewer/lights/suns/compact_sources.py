@@ -109,8 +109,7 @@ class CompactSources:
         self.pixels = self._given = pixels
         self._layout = layout
         self._solid_angles = layout.solid_angles().astype(np.float32)
-        self._mean: NDArray[np.float32] = self.pixels @ np.full(3, 1 / 3, dtype=np.float32)
-        self._mean *= self._solid_angles > 0
+        self._mean = self._mean_of_channels()
         self._caps = Caps(layout, *self.pixels.shape[:2])
         self._plateau = self._highest()
         self._axes: list[Array] = []
@@ -124,16 +123,22 @@ class CompactSources:
             if not found or len(sources) == MOST:
                 return sources, why
 
-    def keep(self, pixels: NDArray[np.float32], taken: list[int]) -> list[Sun]:
+    def keep(self, taken: list[int]) -> list[Sun]:
         """Take only some of the sources that were found, by their indices, out of the image as it was; return them."""
-        self.pixels[:] = pixels
-        self._mean[:] = (pixels @ np.full(3, 1 / 3, dtype=np.float32)) * (self._solid_angles > 0)
+        self.pixels = self._given
+        self._mean = self._mean_of_channels()
         suns = []
         for i in taken:
             excess = self._excess(self._axes[i])
             suns.append(replace(self._disc(excess), clipped=self._clipped(excess)))
             self._remove(excess)
         return suns
+
+    def _mean_of_channels(self) -> NDArray[np.float32]:
+        """(height, width), 0 for a texel that shows nothing."""
+        mean: NDArray[np.float32] = self.pixels @ np.full(3, 1 / 3, dtype=np.float32)
+        mean *= self._solid_angles > 0
+        return mean
 
     def _highest(self) -> Texels | None:
         """The texels at the highest value of a channel, if there are so few and so many that they can be a clipped sun."""
@@ -167,7 +172,7 @@ class CompactSources:
             shares = float(weights @ mean) / flux, float(weights @ mean**2) / squares
             clipped = self._clipped(excess)
             wrong = (
-                refusal(excess.core[0], np.inf, 1.0, 1.0 if shares[1] >= CLIPPED_ENERGY else shares[1])
+                refusal(excess.core[0], np.inf, 1.0, shares[1], CLIPPED_ENERGY)
                 if clipped
                 else refusal(0.0, excess.contrast, *shares)
             ) or excess.goes_on * "its brightest spot is part of something larger"

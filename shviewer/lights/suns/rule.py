@@ -67,13 +67,13 @@ class Found:
         return ""
 
 
-def refusal(half_angle: float, contrast: float, flux: float, energy: float) -> str:
+def refusal(half_angle: float, contrast: float, flux: float, energy: float, least_energy: float = ENERGY) -> str:
     """Why the brightest spot is not compact, in words; "" if it is. Flux and energy are shares of the whole."""
     if not contrast >= CONTRAST:
         return f"its brightest spot is only {contrast:.2g} times as bright as what surrounds it"
     if not half_angle <= WIDEST:
         return f"its brightest spot is {2 * np.degrees(half_angle):.2g} degrees wide"
-    if not energy >= ENERGY:
+    if not energy >= least_energy:
         return f"its brightest spot holds only {100 * energy:.2g} % of the squared norm"
     if not flux >= FLUX:
         return f"its brightest spot holds only {100 * flux:.2g} % of the flux"
