@@ -16,11 +16,12 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.benchmark.hard_cases.evaluation import towards
 from shviewer.benchmark.hard_cases.shader import in_blocks
 from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.row import Row, not_measured
 from shviewer.benchmark.timing import Timing, Work, time_interleaved, wall_milliseconds
-from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.harmonics.basis import Array, evaluate_basis, normalise
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import camera
@@ -138,8 +139,7 @@ class _Stage:
         self.truncation = float(measured.truncation[n_bands - 1])
         self.rms = float(np.sqrt(np.trace(light.products()) / (4 * np.pi)))
         count = min(MOST_DIRECTIONS, MOST_VALUES // self.n_bands**2)
-        vectors = np.random.default_rng(SEED).normal(size=(count, 3))
-        self.directions = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+        self.directions = normalise(np.random.default_rng(SEED).normal(size=(count, 3)))
 
     def map(self) -> NDArray[np.float32]:
         return self.synthesis.pole_to_pole(*MAP_SIZE)
@@ -181,9 +181,7 @@ class _Stage:
         random = np.random.default_rng(SEED)
         rows = np.rint(np.arccos(random.uniform(-1, 1, CHECKED)) * (MAP_SIZE[0] - 1) / np.pi).astype(np.int64)
         columns = random.integers(0, MAP_SIZE[1], CHECKED)
-        theta = rows * (np.pi / (MAP_SIZE[0] - 1))
-        phi = np.pi * (1 - 2 * (columns + 0.5) / MAP_SIZE[1])
-        directions = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+        directions = towards(rows * (np.pi / (MAP_SIZE[0] - 1)), np.pi * (1 - 2 * (columns + 0.5) / MAP_SIZE[1]))
         return float(((exact[rows, columns] - self.sum_by_basis(directions)) ** 2).sum(axis=1).mean())
 
     def works(self) -> dict[str, Work]:

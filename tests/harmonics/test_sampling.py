@@ -11,7 +11,7 @@ from scipy.special import eval_legendre
 
 from shviewer.harmonics.sampling.cells import NODES, POINTS, Cells, gauss, locate, project, sectors, shares, to_nodes
 from shviewer.harmonics.sampling.look import LOOK_COLUMNS, LOOK_ROWS, SEEN_DEGREES, look, turned
-from shviewer.harmonics.sampling.sampled import sample
+from shviewer.harmonics.sampling.sampled import Sampled, sample
 
 
 def grey(values: np.ndarray) -> np.ndarray:
@@ -128,10 +128,11 @@ def test_cells_beside_a_marked_side_are_those_just_across_it(depth: int) -> None
 def test_a_small_disc_does_not_cost_a_dense_sphere() -> None:
     axis = np.array([0.48, -0.6, 0.64])
     chord = 2 * np.sin(np.radians(0.27) / 2)
-    counts = []
-    for radiance in (0.0, 1e6):
-        found = sample(lambda d, r=radiance: grey(0.1 + r * (np.linalg.norm(d - axis, axis=1) < chord)), 128)  # type: ignore[misc]
-        counts.append(found.evaluations)
+
+    def sampled(radiance: float) -> Sampled:
+        return sample(lambda d: grey(0.1 + radiance * (np.linalg.norm(d - axis, axis=1) < chord)), 128)
+
+    found = sampled(1e6)
     base = 512**2 // 8 * 12.7 + 2 * 320**2  # the roots, and the rule that was tried in vain
-    assert counts[1] - counts[0] < base + 200_000  # a dense sphere of the finest cells has 1e11
+    assert found.evaluations - sampled(0.0).evaluations < base + 200_000  # a dense sphere of the finest cells has 1e11
     assert found.places[0] @ axis > np.cos(np.radians(0.27))

@@ -112,14 +112,12 @@ def zonal(
     """g(d . axis), by Gauss-Legendre in x between the knots with so many points that nothing is left to chance."""
     x, w = RULES[nodes]
     ends = [-1.0, *knots, 1.0]
-    x, w = (
-        np.concatenate([(a + b) / 2 + (b - a) / 2 * x for a, b in pairwise(ends)]),
-        np.concatenate([(b - a) / 2 * w for a, b in pairwise(ends)]),
-    )
-    values = g(x)
-    flux, magnitude, energy = (2 * np.pi * float(w @ part) for part in (values, np.abs(values), values**2))
+    places = np.concatenate([(a + b) / 2 + (b - a) / 2 * x for a, b in pairwise(ends)])
+    weights = np.concatenate([(b - a) / 2 * w for a, b in pairwise(ends)])
+    values = g(places)
+    flux, magnitude, energy = (2 * np.pi * float(weights @ part) for part in (values, np.abs(values), values**2))
     l = np.arange(max(BANDS))
-    power = (2 * l + 1) * np.pi * ((w * values) @ np.polynomial.legendre.legvander(x, l[-1])) ** 2
+    power = (2 * l + 1) * np.pi * ((weights * values) @ np.polynomial.legendre.legvander(places, l[-1])) ** 2
     kept = np.cumsum(power)
     errors = {n: float(np.sqrt(max(0.0, 1 - kept[n - 1] / energy))) for n in BANDS}
     return Case(name, lambda d: g(np.clip(d @ axis, -1, 1)), flux, magnitude, energy, errors, **about)  # type: ignore[arg-type]
@@ -135,6 +133,48 @@ def azimuth(d: np.ndarray) -> np.ndarray:
 
 def turned(rng: np.random.Generator) -> np.ndarray:
     return np.linalg.qr(rng.standard_normal((3, 3)))[0]
+
+
+def step(at: float) -> Function:
+    return lambda x: (x > at) * 1.0
+
+
+def lobe(sharpness: float) -> Function:
+    return lambda x: np.exp(sharpness * (x - 1))
+
+
+def clamped(power: float) -> Function:
+    return lambda x: np.maximum(x, 0) ** power
+
+
+def sine(k: int) -> Function:
+    return lambda x: np.sin(k * x) + 0.3
+
+
+def disc_in_lobe(edge: float, sharpness: float) -> Function:
+    return lambda x: np.exp(sharpness * (x - 1)) + 1e3 * (x > edge)
+
+
+def wave(k: int) -> Function:
+    return lambda d: 1 + np.cos(k * azimuth(d))
+
+
+def sectoral(k: int, power: int) -> Function:
+    return lambda d: np.hypot(d[:, 0], d[:, 1]) ** power * np.cos(k * azimuth(d))
+
+
+def board(frame: np.ndarray, across: int, down: int) -> Function:
+    def function(d: np.ndarray) -> np.ndarray:
+        e = d @ frame
+        column = np.floor(azimuth(e) * across / np.pi)
+        row = np.floor(np.arccos(np.clip(e[:, 2], -1, 1)) * down / np.pi)
+        return 1.0 * ((column + row) % 2 == 0)
+
+    return function
+
+
+WAVES = "1 2 3 5 8 16 31 64 100 128 160 200 320 333 512 640 777 1000 1024 1280 1500 1920 2000"
+BOARDS = "2x2 4x3 9x4 16x16 30x15 45x20 64x64 100x50 180x90 500x250"
 
 
 def suite(seed: int = 0) -> Iterator[Case]:
@@ -158,89 +198,36 @@ def suite(seed: int = 0) -> Iterator[Case]:
             yield discs(f"ring {width} degrees wide", 0.5, *ring, narrowest=width)
     for _ in range(12):
         at = rng.uniform(-0.9, 0.9)
-        yield zonal("slanted edge", direction(rng), lambda x, at=at: (x > at) * 1.0, knots=(at,))  # type: ignore[misc]
+        yield zonal("slanted edge", direction(rng), step(at), knots=(at,))
     for at in (-0.3, 0.0, 0.1, 0.5):
         for axis in np.eye(3):
-            yield zonal(f"edge at {at} along {axis}", axis, lambda x, at=at: (x > at) * 1.0, knots=(at,))  # type: ignore[misc]
+            yield zonal(f"edge at {at} along {axis}", axis, step(at), knots=(at,))
     for sharpness in (0.5, 1, 2, 5, 10, 30, 100, 300, 1000, 3000, 1e4, 1e5):
-        g = lambda x, k=sharpness: np.exp(k * (x - 1))  # noqa: E731
-        smooth = sharpness <= 1000
-        yield zonal(
-            f"lobe of sharpness {sharpness:g}", direction(rng), g, knots=(1 - min(1.9, 40 / sharpness),), smooth=smooth
-        )
+        name, knots = f"lobe of sharpness {sharpness:g}", (1 - min(1.9, 40 / sharpness),)
+        yield zonal(name, direction(rng), lobe(sharpness), knots=knots, smooth=sharpness <= 1000)
     for power in (0.5, 1, 2, 3, 5):
         for _ in range(2):
-            g = lambda x, p=power: np.maximum(x, 0) ** p  # noqa: E731
-            yield zonal(f"clamped cosine to the {power}", direction(rng), g, knots=(0.0, 1e-3))
+            yield zonal(f"clamped cosine to the {power}", direction(rng), clamped(power), knots=(0.0, 1e-3))
     for k in (3, 10, 40, 100, 200, 500, 1000, 2000):
-        g = lambda x, k=k: np.sin(k * x) + 0.3  # noqa: E731
-        yield zonal(f"sin({k} x)", direction(rng), g, nodes=2500, narrowest=180 / k, smooth=k <= 40)
-    for k in (
-        1,
-        2,
-        3,
-        5,
-        8,
-        16,
-        31,
-        64,
-        100,
-        128,
-        160,
-        200,
-        320,
-        333,
-        512,
-        640,
-        777,
-        1000,
-        1024,
-        1280,
-        1500,
-        1920,
-        2000,
-    ):
-        yield integrals(f"1 + cos({k} phi)", lambda d, k=k: 1 + np.cos(k * azimuth(d)), 4 * np.pi, 4 * np.pi, 6 * np.pi)  # type: ignore[misc]
+        yield zonal(f"sin({k} x)", direction(rng), sine(k), nodes=2500, narrowest=180 / k, smooth=k <= 40)
+    for k in map(int, WAVES.split()):
+        yield integrals(f"1 + cos({k} phi)", wave(k), 4 * np.pi, 4 * np.pi, 6 * np.pi)
     for k, p in ((2, 4), (8, 8), (30, 30), (64, 3), (128, 1), (500, 2), (640, 1), (2000, 4)):
         # the square of sin(theta)^p integrates to 2 pi B(p + 1, 1/2), and half of that with cos(k phi)^2
         energy = float(np.pi * beta(p + 1, 0.5))
-        function = lambda d, k=k, p=p: np.hypot(d[:, 0], d[:, 1]) ** p * np.cos(k * azimuth(d))  # noqa: E731
-        yield integrals(f"sin^{p} cos({k} phi)", function, 0.0, 4 * float(beta(p / 2 + 1, 0.5)), energy)
-    for across, down in (
-        (2, 2),
-        (4, 3),
-        (9, 4),
-        (16, 16),
-        (30, 15),
-        (45, 20),
-        (64, 64),
-        (100, 50),
-        (180, 90),
-        (500, 250),
-    ):
+        yield integrals(f"sin^{p} cos({k} phi)", sectoral(k, p), 0.0, 4 * float(beta(p / 2 + 1, 0.5)), energy)
+    for text in BOARDS.split():
+        across, down = map(int, text.split("x"))
         for frame in (np.eye(3), turned(rng)):
-
-            def board(d: np.ndarray, frame: np.ndarray = frame, n: int = across, k: int = down) -> np.ndarray:
-                e = d @ frame
-                return 1.0 * (
-                    (np.floor(azimuth(e) * n / np.pi) + np.floor(np.arccos(np.clip(e[:, 2], -1, 1)) * k / np.pi)) % 2
-                    == 0
-                )
-
-            yield integrals(f"checkerboard {2 * across} x {down}", board, 2 * np.pi, 2 * np.pi, 2 * np.pi)
+            function = board(frame, across, down)
+            yield integrals(f"checkerboard {2 * across} x {down}", function, 2 * np.pi, 2 * np.pi, 2 * np.pi)
     for powers in ((2, 0, 0), (2, 2, 2), (4, 2, 0), (10, 6, 2), (20, 20, 20), (40, 2, 40)):
         yield integrals(f"x^{powers[0]} y^{powers[1]} z^{powers[2]}", *monomial(powers), smooth=True)
     for half_angle, sharpness in ((0.27, 2), (0.27, 30), (1, 5), (3, 2), (0.5, 200)):
         for _ in range(2):
-            edge = float(np.cos(np.radians(half_angle)))
-            g = lambda x, e=edge, k=sharpness: np.exp(k * (x - 1)) + 1e3 * (x > e)  # noqa: E731
-            yield zonal(
-                f"disc of {half_angle} in a lobe of {sharpness}",
-                direction(rng),
-                g,
-                knots=(edge,),
-                narrowest=2 * half_angle,
-            )
+            name, edge = f"disc of {half_angle} in a lobe of {sharpness}", float(np.cos(np.radians(half_angle)))
+            function = disc_in_lobe(edge, sharpness)
+            yield zonal(name, direction(rng), function, knots=(edge,), narrowest=2 * half_angle)
 
 
 def monomial(powers: tuple[int, ...]) -> tuple[Function, float, float, float]:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from shviewer.benchmark.hard_cases import exact
 from shviewer.benchmark.hard_cases.outcome import Case, largest
@@ -46,6 +47,12 @@ def generic(count: int) -> Array:
     vectors = np.random.default_rng(SEED).normal(size=(count, 3))
     vectors[0, 2] = 0
     return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+
+
+def towards(theta: ArrayLike, phi: ArrayLike) -> Array:
+    """Unit directions (..., 3) of angles, broadcast; written out, so that references share nothing with harmonics/."""
+    parts = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
 
 def against_exact(
@@ -122,8 +129,7 @@ def near_poles(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
     Bound: rounding(33), a quarter of the plain recurrence's error, and DEGREE_1024.
     """
     theta = np.array(NEAR)
-    phi = np.arange(len(theta)) * 2.4
-    near = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+    near = towards(theta, np.arange(len(theta)) * 2.4)
     orders = [m for m in (0, 1, -1, 2, -2, 3, -5, 8, 12, -20, 31) if abs(m) < n_bands]
     return against_exact(evaluate, np.concatenate([near, near * [1, 1, -1]]), n_bands, orders)
 

@@ -6,22 +6,23 @@ The light is a + b x times a colour, x = direction . axis: its mean square is a^
 from __future__ import annotations
 
 from math import log10, pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shviewer.analysis.figures import Figures, reconstruct
+from shviewer.analysis.projections import BEST, project
+from shviewer.analysis.recipe import Shown
 from shviewer.benchmark.hard_cases.evaluation import generic
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.benchmark.hard_cases.shader import SUN_AXIS
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count, split_half_estimate
+from shviewer.harmonics.overlap import inner_product
+from shviewer.harmonics.zonal import ClampedLinear, Disc, Gaussian, Profile
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
-
-if TYPE_CHECKING:
-    from shviewer.analysis.figures import Figures
 
 COLOUR = np.array([1.0, 0.25, 3.0])
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # ITU-R BT.709-6, item 3.2
@@ -38,10 +39,6 @@ def two_bands(a: float, b: float, axis: tuple[float, float, float]) -> Coefficie
 
 def shown_as(light: Light, n_bands: int, muted: tuple[int, ...] = ()) -> Figures:
     """The figures of a light shown with its first bands, some of them muted."""
-    from shviewer.analysis.figures import reconstruct
-    from shviewer.analysis.projections import BEST, project
-    from shviewer.analysis.recipe import Shown
-
     return reconstruct(light, project(light, *BEST, 32), Shown(n_bands, muted))[1]
 
 
@@ -54,21 +51,16 @@ def error_figures() -> float:
     light = two_bands(a, b, SUN_AXIS)
     share = sqrt(b * b / 3 / (a * a + b * b / 3))
     worst = 0.0
+    squares = {"all": float((COLOUR**2).mean()), "green": COLOUR[1] ** 2, "luminance": float(LUMINANCE @ COLOUR) ** 2}
     for n_bands, muted, parts in ((1, (), (share, 0.0)), (2, (1,), (0.0, share))):
         figures = shown_as(light, n_bands, muted)
         extremes = figures.extremes
-        squares = {
-            "all": float((COLOUR**2).mean()),
-            "green": COLOUR[1] ** 2,
-            "luminance": float(LUMINANCE @ COLOUR) ** 2,
-        }
         for name, square in squares.items():
             found = figures.channels[name]
             decibels = 10 * log10((extremes.peak / b) ** 2 * 3 / square)
             wanted = share, *parts, decibels
-            worst = max(
-                worst, largest(np.subtract((found.relative_l2, found.left_out, found.added, found.psnr), wanted))
-            )
+            shown = found.relative_l2, found.left_out, found.added, found.psnr
+            worst = max(worst, largest(np.subtract(shown, wanted)))
         lit, kept = COLOUR.max(), COLOUR.min()
         worst = max(worst, abs(extremes.max_error / (b * lit) - 1), abs(extremes.minimum / (a * kept) - 1))
         worst = max(worst, abs(abs(np.dot(extremes.max_error_direction, SUN_AXIS)) - 1))
@@ -123,9 +115,8 @@ def band_counts() -> float:
     worst = largest(errors - 0.5 ** (l + 1.0))
     halved = errors_by_band_count(products, exact, exact / 2)
     worst = max(worst, largest(halved - np.sqrt(0.25 + 0.75 * 0.25 ** (l + 1.0))))
-    worst = max(
-        worst, abs((smallest_band_count(errors, 0.0626) or 0) - 4), abs((smallest_band_count(errors, 0.0624) or 0) - 5)
-    )
+    counts = [smallest_band_count(errors, tolerance) or 0 for tolerance in (0.0626, 0.0624)]
+    worst = max(worst, largest(np.subtract(counts, (4, 5))))
     noise = np.random.default_rng(7).normal(size=(2, n * n, 3)) * 0.02 * (exact == 0)  # its squares pass for band 4
     halves = exact + noise
     estimate = split_half_estimate(halves[0], halves[1], 4.0, 1e-4, 0.05)
@@ -138,9 +129,6 @@ def products_of_lobes() -> float:
     A disc has its solid angle; a clamped cosine 2 pi/3; a disc above the horizon of a cosine pi sin(a)^2 cos(angle); two
     Gaussians 2 pi (1 - exp(-4 k)) / 2 k about one axis and 4 pi exp(-2 k) about opposite ones. Bound: 1e-13.
     """
-    from shviewer.harmonics.overlap import inner_product
-    from shviewer.harmonics.zonal import ClampedLinear, Disc, Gaussian, Profile
-
     cosine, k = ClampedLinear(), 3.0
     cases: list[tuple[Profile, Profile, float, float]] = [
         (Disc(0.4), Disc(0.4), 0.0, 4 * pi * np.sin(0.2) ** 2),
@@ -165,8 +153,6 @@ def lit_from_a_disc() -> float:
 
     Bound: 1e-6 of pi, a table that is linear between its nodes.
     """
-    from shviewer.harmonics.zonal import Disc
-
     axis = np.array(SUN_AXIS)
     light = LobeLight((Lobe(Disc(0.5), axis, np.ones(3)),))
     normals = generic(200)

@@ -21,7 +21,11 @@ def not_unit(evaluate: Evaluate = evaluate_basis) -> float:
 
     Unnormalised it is off by 2l|r-1| to l^2|r-1|/3.
     """
-    return max(addition_theorem(65, lambda d, n, r=r: evaluate(d * r, n)) for r in (1.001, 1 + 1e-7, 0.3))  # type: ignore[misc]
+
+    def stretched(length: float) -> Evaluate:
+        return lambda directions, n_bands: evaluate(directions * length, n_bands)
+
+    return max(addition_theorem(65, stretched(length)) for length in (1.001, 1 + 1e-7, 0.3))
 
 
 def addition_theorem(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:

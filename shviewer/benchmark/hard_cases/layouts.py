@@ -6,18 +6,13 @@ from math import atan, atan2, pi, sqrt
 
 import numpy as np
 
+from shviewer.benchmark.hard_cases.evaluation import towards
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.harmonics.basis import Array
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.layouts import cube
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import (
-    HORIZONTAL_CROSS,
-    HORIZONTAL_STRIP,
-    OPENEXR,
-    VERTICAL_CROSS,
-    VERTICAL_STRIP,
-    CubeLayout,
-)
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
@@ -26,20 +21,13 @@ FACE_FLUX = 4 / sqrt(2) * atan(1 / sqrt(2))
 """The integral of x over the directions of a cube's face +x: that of (1 + u^2 + v^2)^-2 over the square."""
 
 MIDDLES = {
-    VERTICAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
-    HORIZONTAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
-    OPENEXR: ((0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
-    VERTICAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (0, 0, -1), (-1, 0, 0)),
-    HORIZONTAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (-1, 0, 0), (0, 0, -1)),
+    cube.VERTICAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
+    cube.HORIZONTAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
+    cube.OPENEXR: ((0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
+    cube.VERTICAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (0, 0, -1), (-1, 0, 0)),
+    cube.HORIZONTAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (-1, 0, 0), (0, 0, -1)),
 }
 """Where the faces look, row by row."""
-
-
-def shape_of(layout: Layout) -> tuple[int, int]:
-    if isinstance(layout, LatLongLayout):
-        return layout.height, layout.width
-    height, width = layout.solid_angles().shape
-    return height, width
 
 
 def constants() -> float:
@@ -56,18 +44,15 @@ def constants() -> float:
     )
     worst = 0.0
     for layout in layouts:
-        shape = shape_of(layout)
+        shape = (layout.height, layout.width) if isinstance(layout, LatLongLayout) else layout.solid_angles().shape
         found = layout.project(np.ones((*shape, 3), np.float32), 4)[:, 0] / sqrt(4 * pi)
         found[0] -= 1
         angles = np.broadcast_to(layout.solid_angles(), shape)
         rows, columns = np.nonzero(angles > 0)
-        there = layout.nearest(layout.centres(rows, columns))
-        moved = (
-            0.0
-            if isinstance(layout, (AngularLayout, MirrorBallLayout))
-            else largest(np.subtract(there, (rows, columns)))
-        )
-        worst = max(worst, largest(found), abs(angles.sum() / (4 * pi) - 1), moved)
+        worst = max(worst, largest(found), abs(angles.sum() / (4 * pi) - 1))
+        if not isinstance(layout, AngularLayout | MirrorBallLayout):  # where centres may lie outside of the disc
+            there = layout.nearest(layout.centres(rows, columns))
+            worst = max(worst, largest(np.subtract(there, (rows, columns))))
     return worst
 
 
@@ -79,17 +64,14 @@ def faces() -> float:
     worst = 0.0
     for arrangement, middles in MIDDLES.items():
         layout = CubeLayout(arrangement, 4)
-        cells = [
-            (face.row, face.column) for face in sorted(arrangement.faces, key=lambda face: (face.row, face.column))
-        ]
+        cells = sorted((face.row, face.column) for face in arrangement.faces)
         for (row, column), middle in zip(cells, middles, strict=True):
-            image = np.zeros((*shape_of(layout), 3), np.float32)
+            image = np.zeros((*layout.solid_angles().shape, 3), np.float32)
             image[4 * row : 4 * row + 4, 4 * column : 4 * column + 4] = 1
             c = layout.project(image, 2)[:, 0]
             flux = sqrt(4 * pi / 3) * np.array([-c[3], -c[1], c[2]])
-            worst = max(
-                worst, abs(c[0] * sqrt(4 * pi) / (4 * pi / 6) - 1), largest(flux - FACE_FLUX * np.array(middle))
-            )
+            area = c[0] * sqrt(4 * pi)
+            worst = max(worst, abs(area / (4 * pi / 6) - 1), largest(flux - FACE_FLUX * np.array(middle)))
             angle = layout.solid_angles()[4 * row, 4 * column]
             corner = atan2(1, sqrt(3)) - 2 * atan2(0.5, sqrt(2.25)) + atan2(0.25, sqrt(1.5))
             worst = max(worst, abs(angle / corner - 1))
@@ -107,10 +89,8 @@ def places() -> float:
         image[row, column] = 1
         c = LatLongLayout(6, 12).project(image, 2)[:, 0]
         low, high = pi * row / 6, pi * (row + 1) / 6
-        area, across = (
-            (np.cos(low) - np.cos(high)) * pi / 6,
-            (high - low - (np.sin(2 * high) - np.sin(2 * low)) / 2) / 2,
-        )
+        area = (np.cos(low) - np.cos(high)) * pi / 6
+        across = (high - low - (np.sin(2 * high) - np.sin(2 * low)) / 2) / 2
         left, right = pi * (1 - column / 6), pi * (1 - (column + 1) / 6)
         flux = [
             across * (np.sin(left) - np.sin(right)),
@@ -132,8 +112,7 @@ def between() -> float:
     pixels = random.random((6, 12, 3)).astype(np.float32)
 
     def direction(row: float, column: float, rows: int = 6, offset: float = 0.5) -> Array:
-        theta, phi = pi * (row + offset) / rows, pi * (1 - 2 * (column + 0.5) / 12)
-        return np.array([[np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)]])
+        return towards(pi * (row + offset) / rows, pi * (1 - 2 * (column + 0.5) / 12))[None]
 
     worst = 0.0
     for on_poles, place in ((False, 6), (True, 5)):
@@ -142,13 +121,12 @@ def between() -> float:
             up, low = (pixels[r, column] * (2 / 3) + pixels[r, (column + 1) % 12] / 3 for r in (row, row + 1))
             found = read.sample(direction(row + 0.25, column + 1 / 3, place, 0.0 if on_poles else 0.5))[0]
             worst = max(worst, largest(found - (0.75 * up + 0.25 * low)))
-    cube, face = CubeLayout(VERTICAL_STRIP, 4), random.random((24, 4, 3)).astype(np.float32)
+    layout, face = CubeLayout(cube.VERTICAL_STRIP, 4), random.random((24, 4, 3)).astype(np.float32)
     u, v = (2 * (1 + 1 / 3 + 0.5) / 4 - 1, 2 * (2 + 0.25 + 0.5) / 4 - 1)
-    forward = np.array([[1.0, -u, -v]]) / sqrt(
-        1 + u * u + v * v
-    )  # right is -y, down is -z; the front is the fifth face
+    # right is -y, down is -z; the front is the fifth face
+    forward = np.array([[1.0, -u, -v]]) / sqrt(1 + u * u + v * v)
     up, low = (face[16 + r, 1] * (2 / 3) + face[16 + r, 2] / 3 for r in (2, 3))
-    return max(worst, largest(cube.sample(face, forward)[0] - (0.75 * up + 0.25 * low)))
+    return max(worst, largest(layout.sample(face, forward)[0] - (0.75 * up + 0.25 * low)))
 
 
 CLOSED = "closed form"

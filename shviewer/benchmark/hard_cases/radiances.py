@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shviewer.analysis.recipe import Shown
+from shviewer.benchmark.hard_cases.figures import shown_as
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.benchmark.hard_cases.projecting import ProjectImage
 from shviewer.benchmark.hard_cases.shader import SEED, SUN_AXIS
@@ -44,10 +44,7 @@ def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
 
 def figures_of(light: Light) -> list[float]:
     """Figures that a picture of 5 bands shows: the relative L2 error, and the energy of each band."""
-    from shviewer.analysis.figures import reconstruct
-    from shviewer.analysis.projections import BEST, project
-
-    figures = reconstruct(light, project(light, *BEST, 32), Shown(5))[1]
+    figures = shown_as(light, 5)
     return [figures.relative_l2, *figures.energy_share]
 
 

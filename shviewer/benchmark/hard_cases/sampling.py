@@ -11,9 +11,9 @@ from math import pi, sqrt
 import numpy as np
 
 from shviewer.benchmark.hard_cases import exact
-from shviewer.benchmark.hard_cases.evaluation import generic
+from shviewer.benchmark.hard_cases.evaluation import generic, towards
 from shviewer.benchmark.hard_cases.outcome import Case, largest
-from shviewer.harmonics.basis import evaluate_basis
+from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.filters import window
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import DirectionSet, fejer, fibonacci, gauss_legendre, jittered, uniform_random
@@ -86,18 +86,20 @@ def rules() -> float:
     return worst
 
 
+def rough(directions: Array) -> Array:
+    return np.asarray(np.sin(40 * directions) + 0.3)
+
+
 def scattered(n_bands: int) -> float:
-    """12 347 samples everywhere, of random weights and colours, against the plain sum with `evaluate_basis`.
+    """12 347 samples everywhere, of random weights and a rough radiance, against the plain sum with `evaluate_basis`.
 
     Relative to the sum of magnitudes. Bound: 1e-13, that of `project_samples`. There are blocks, and the last is not full.
     """
-    random = np.random.default_rng(5)
     directions = generic(12_347)
-    values, weights = random.random((len(directions), 3)) - 0.3, random.random(len(directions))
-    numbers = iter(np.split(values, [len(values) // 2 + 1])) if len(values) > 10_000 else iter([values])
-    found = project_samples(lambda _: next(numbers), DirectionSet(directions, weights), n_bands)
-    plain = evaluate_basis(directions, n_bands).T @ (weights[:, None] * values)
-    return largest(found - plain) / float(np.abs(weights[:, None] * values).sum())
+    weights = np.random.default_rng(5).random(len(directions))
+    found = project_samples(rough, DirectionSet(directions, weights), n_bands)
+    plain = evaluate_basis(directions, n_bands).T @ (weights[:, None] * rough(directions))
+    return largest(found - plain) / float(np.abs(weights[:, None] * rough(directions)).sum())
 
 
 def projected_on_rules() -> float:
@@ -105,19 +107,20 @@ def projected_on_rules() -> float:
 
     Bound: 1e-12, rounding of sums over up to 12 000 points.
     """
+    return max(_projected_on_rules(9), _projected_on_rules(40))
+
+
+def _projected_on_rules(n: int) -> float:
+    coefficients = np.random.default_rng(8).normal(size=(n * n, 3))
     worst = 0.0
-    for n in (9, 40):
-        coefficients = np.random.default_rng(8).normal(size=(n * n, 3))
-        for rule in (
-            gauss_legendre(2 * n**2),
-            gauss_legendre(2 * (n + 1) ** 2),
-            fejer(2 * (2 * n - 1) ** 2),
-            fejer(8 * n**2),
-        ):
-            found, products = project_product(lambda d, c=coefficients, n=n: evaluate_basis(d, n) @ c, rule, n)  # type: ignore[misc]
-            worst = max(
-                worst, largest(found - coefficients), largest(products / n**2 - coefficients.T @ coefficients / n**2)
-            )
+    for rule in (
+        gauss_legendre(2 * n**2),
+        gauss_legendre(2 * (n + 1) ** 2),
+        fejer(2 * (2 * n - 1) ** 2),
+        fejer(8 * n**2),
+    ):
+        found, products = project_product(lambda d: evaluate_basis(d, n) @ coefficients, rule, n)
+        worst = max(worst, largest(found - coefficients), largest(products - coefficients.T @ coefficients) / n**2)
     return worst
 
 
@@ -127,12 +130,7 @@ def sums_on_rows() -> float:
     synthesis = Synthesis(coefficients)
     theta, columns = np.array([0.0, 1e-9, 0.3, 1.5, 3.0, pi]), 97
     phi = pi * (1 - (2 * np.arange(columns) + 1) / columns)
-    places = np.stack(
-        np.broadcast_arrays(
-            np.sin(theta)[:, None] * np.cos(phi), np.sin(theta)[:, None] * np.sin(phi), np.cos(theta)[:, None]
-        ),
-        axis=-1,
-    )
+    places = towards(theta[:, None], phi)
     wanted = evaluate_basis(places, 40) @ coefficients
     on_rows = synthesis.on_rows(theta, columns).transpose(0, 2, 1)
     apart = synthesis.in_directions(places.reshape(-1, 3)).reshape(wanted.shape)
@@ -174,9 +172,8 @@ def clamped_linear() -> float:
         for l, polynomial in enumerate(polynomials):
             none = Fraction(0)
             terms = enumerate(zip([*polynomial, none], [none, *polynomial], strict=True))
-            wanted = sum(
-                (rise - e * flat) * (1 - start ** (k + 1)) / (k + 1) for k, (flat, rise) in terms
-            )  # of x^k: the coefficient of x P(l), and -e times that of P(l)
+            # of x^k: the coefficient of x P(l), and -e times that of P(l)
+            wanted = sum((rise - e * flat) * (1 - start ** (k + 1)) / (k + 1) for k, (flat, rise) in terms)
             worst = max(worst, abs(float(found[l]) - 2 * pi * float(wanted)))
     return worst / pi
 

@@ -10,6 +10,7 @@ import io
 import math
 import statistics
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -82,12 +83,12 @@ def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
     for light, stem in zip(lights, time_error_stems(lights), strict=True):
         curves = time_error_curves(rows, light)
         if curves:
-            plots[stem] = lambda figure, light=light, curves=curves: draw_time_error(figure, light, curves)  # type: ignore[misc]
+            plots[stem] = partial(draw_time_error, light=light, curves=curves)
     errors, frames = error_curves(rows), frame_curves(rows)
     if errors:
-        plots[ERROR_BANDS] = lambda figure: draw_errors(figure, errors)
+        plots[ERROR_BANDS] = partial(draw_errors, curves=errors)
     if frames:
-        plots[FRAME_TIME] = lambda figure: draw_frames(figure, frames)
+        plots[FRAME_TIME] = partial(draw_frames, curves=frames)
     return plots
 
 

@@ -7,13 +7,10 @@ from collections.abc import Callable, Sequence
 from shviewer.benchmark.experiments import METHODS
 from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error_of, milliseconds, table, time_of, words_of
-from shviewer.benchmark.projection_rows import SECTION
 from shviewer.benchmark.row import Row
 from shviewer.words import counted, grouped
 
 Experiment = tuple[str, int | None]
-
-__all__ = ["SECTION", "lines"]
 
 
 def lines(lights: Sequence[MeasuredLight], rows: Sequence[Row]) -> list[str]:

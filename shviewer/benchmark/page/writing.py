@@ -13,6 +13,7 @@ from shviewer.benchmark.measured_lights import MeasuredLight
 from shviewer.benchmark.page import projection_tables
 from shviewer.benchmark.page.document import Report
 from shviewer.benchmark.page.tables import bullet, error, milliseconds, table
+from shviewer.benchmark.projection_rows import SECTION as PROJECTION
 from shviewer.benchmark.row import COLUMNS, Row
 from shviewer.errors import OutputError
 from shviewer.outputs import write_atomically
@@ -81,7 +82,7 @@ def as_csv(rows: Sequence[Row]) -> str:
 
 def as_markdown(report: Report, page: Page) -> str:
     """The page; the advice on what to use comes first."""
-    projections = report.measured(projection_tables.SECTION)
+    projections = report.measured(PROJECTION)
     lines = ["# Speed against error", ""]
     if not report.complete:
         lines += [

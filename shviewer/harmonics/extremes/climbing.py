@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +43,10 @@ def valleys(
     n_rows = max(32, 6 * count_bands(coefficients))
     theta, phi = row_angles(n_rows), column_azimuths(2 * n_rows)
     grid = synthesis.on_rows(theta, len(phi))
+
+    def negated(directions: Array, channel: int) -> Array:
+        return -synthesis.in_directions(directions)[:, channel]
+
     found: list[tuple[Array, Array, NDArray[np.int64]]] = []
     for channel in range(3):
         if any(np.array_equal(coefficients[:, channel], coefficients[:, earlier]) for earlier in range(channel)):
@@ -49,13 +54,8 @@ def valleys(
         rows, columns, depth = _grid_valleys(grid[:, channel])
         candidates = directions_from_angles(theta[rows], phi[columns])
         starts = candidates[_spread_out(candidates, depth, np.pi / synthesis.n_bands, most)]
-        negated, places = climb(
-            lambda d, channel=channel: -synthesis.in_directions(d)[:, channel],  # type: ignore[misc]
-            starts,
-            float(np.pi / n_rows),
-            rounds,
-        )
-        found.append((-negated, places, np.full(len(places), channel)))
+        heights, places = climb(partial(negated, channel=channel), starts, float(np.pi / n_rows), rounds)
+        found.append((-heights, places, np.full(len(places), channel)))
     values, places, channels = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return values, places, channels
 
