@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import NoReturn, TypeVar
 
 import pytest
@@ -34,6 +36,21 @@ def hear_signals() -> None:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) == signal.SIG_IGN:
             signal.signal(number, lambda *_: None)
+
+
+def ended(number: int, patience: float = 10.0) -> bool:
+    """Whether a process has ended, or does so within `patience` seconds."""
+    deadline = time.monotonic() + patience
+    while time.monotonic() < deadline:
+        try:
+            os.kill(number, 0)
+            stat = Path(f"/proc/{number}/stat")
+            if stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z":
+                return True  # nobody in a container may bury it
+        except (ProcessLookupError, FileNotFoundError):
+            return True
+        time.sleep(0.02)
+    return False
 
 
 def picture_of(light: str | Light = "green", **changes: object) -> Picture:

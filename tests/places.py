@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
 ASSETS = ROOT / "assets"
 DATA = ROOT / "tests" / "data"
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
+"""That of a process that a test starts: it imports this checkout."""
 
 
 def hard_cases() -> Any:

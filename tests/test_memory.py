@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from helpers import frame_of, picture_of
 from PIL import Image
-from places import ROOT
+from places import ENVIRONMENT
 
 from shviewer import memory
 from shviewer.analysis.subjects import MEMORY
@@ -108,7 +108,7 @@ def in_a_process(code: str, *arguments: str, address_space: int = 0) -> subproce
         f"import resource; resource.setrlimit(resource.RLIMIT_AS, ({address_space},) * 2)\n" if address_space else ""
     )
     command = [sys.executable, "-c", f"{bound}import sys\nfrom shviewer.cli.main import main\n{code}", *arguments]
-    return subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
+    return subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
 
 
 PEAK = """

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from places import ENVIRONMENT
 
 import shviewer
 from shviewer.benchmark import run as run_of_report
@@ -26,7 +27,6 @@ from shviewer.errors import LightError, OutputError
 from shviewer.outputs import Replacing, write_atomically
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="modes, links and pipes as POSIX has them")
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(shviewer.__file__).parents[1])}
 
 
 def run(command: list[str]) -> int:
@@ -147,7 +147,8 @@ def test_a_full_device_is_one_line(capfd: pytest.CaptureFixture[str]) -> None:
         write_atomically(Path("/dev/full"), b"anything")
     assert stat.S_ISCHR(os.stat("/dev/full").st_mode)
     with open("/dev/full", "wb") as full:
-        done = subprocess.run([sys.executable, "-m", "shviewer", "--list-lights"], stdout=full, stderr=subprocess.PIPE)
+        command = [sys.executable, "-m", "shviewer", "--list-lights"]
+        done = subprocess.run(command, env=ENVIRONMENT, stdout=full, stderr=subprocess.PIPE)
     assert done.returncode == OutputError.exit_code
     assert done.stderr.decode().startswith("shviewer: stdout cannot be written: No space left")
     assert done.stderr.count(b"\n") == 1

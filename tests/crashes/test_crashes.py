@@ -12,14 +12,14 @@ from pathlib import Path
 
 import moments
 import pytest
-from places import ROOT
+from helpers import ended
+from places import ENVIRONMENT
 
 from shviewer import ending
 from shviewer.children import LEASH, leash
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="processes, signals and limits as POSIX has them")
 
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 VICTIM = Path(__file__).with_name("victim.py")
 
 DECODES_FOR_EVER = """
@@ -31,21 +31,6 @@ isolated._CHILD = (
 )
 isolated.decode_isolated(b"any bytes")
 """
-
-
-def dead(number: int, patience: float = 10.0) -> bool:
-    """Whether a process has ended, or does so soon."""
-    deadline = time.monotonic() + patience
-    while time.monotonic() < deadline:
-        try:
-            os.kill(number, 0)
-        except ProcessLookupError:
-            return True
-        stat = Path(f"/proc/{number}/stat")
-        if stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z":
-            return True  # nobody in a container may bury it
-        time.sleep(0.02)
-    return False
 
 
 def test_a_file_that_fails_or_is_killed_at_any_step_is_old_or_new_and_never_torn(tmp_path: Path) -> None:
@@ -71,9 +56,9 @@ def test_the_process_that_decodes_an_exr_dies_with_its_parent(tmp_path: Path, nu
             assert parent.poll() is None
             time.sleep(0.02)
         child = int(names[0])
-        assert not dead(child, 0.1)
+        assert not ended(child, 0.1)
         parent.send_signal(number)
-    assert dead(child)
+    assert ended(child)
 
 
 def test_a_child_on_a_leash_ends_when_it_is_let_go() -> None:
