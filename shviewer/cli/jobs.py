@@ -31,6 +31,9 @@ PROCESS_BYTES = 2**29
 AHEAD = 2
 """Lights given out for each process, so that none waits for the next one."""
 
+UNSAID = "ignore:resource_tracker"
+"""Python's warning of the semaphores that it takes away itself after a process that a signal has ended."""
+
 
 def in_order(work: Callable[[str], T], lights: Sequence[str], jobs: int | None) -> Iterator[T | ShviewerError]:
     """work(light) for every light, in their order, or the error that it ended with: none stops the others.
@@ -67,6 +70,7 @@ def _most() -> int:
 
 
 def _spread(work: Callable[[str], T], lights: deque[str], jobs: int) -> Iterator[T | LightError]:
+    os.environ.setdefault("PYTHONWARNINGS", UNSAID)
     while lights:
         yield from _pool(work, lights, jobs)
         if lights:  # a process was killed: by the first light that has no result, or by one beside it

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -16,6 +17,7 @@ from places import ENVIRONMENT
 from shviewer.cli import jobs
 from shviewer.cli.jobs import in_order
 from shviewer.errors import LightError
+from shviewer.limits import Limits
 
 LIGHTS = """
 import os, signal, time
@@ -61,6 +63,16 @@ def test_results_come_in_the_order_of_the_lights_from_other_processes() -> None:
     assert str(os.getpid()) not in {words[2] for words in found}
 
 
+def most_memory(light: str) -> int:
+    return Limits().most_memory or 0
+
+
+def test_processes_share_the_memory_that_a_file_may_take() -> None:
+    """Two have half each; what is available changes by less than that meanwhile."""
+    alone = most_memory("")
+    assert all(isinstance(found, int) and found <= 0.7 * alone for found in in_order(most_memory, ["a", "b"], 2))
+
+
 def test_a_batch_that_is_soon_done_starts_no_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jobs, "_most", lambda: 2)
     lights = ["a", "b", "c"]
@@ -97,18 +109,24 @@ def test_a_light_that_kills_its_process_fails_alone(folder: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="children are found through /proc")
-@pytest.mark.parametrize("signal", ["TERM", "KILL", "INT"])
-def test_no_process_outlives_the_one_that_started_it(folder: Path, signal: str) -> None:
+@pytest.mark.parametrize("name", ["TERM", "KILL", "INT"])
+def test_no_process_outlives_the_one_that_started_it(folder: Path, name: str) -> None:
+    """INT goes to all of them, as Ctrl+C in a terminal sends it, and none but the first says or does anything about it."""
     command = [sys.executable, "-m", "shviewer", "info", "lights.py:slow", "lights.py:slow", "--jobs", "2"]
-    silent = subprocess.DEVNULL
-    with subprocess.Popen(command, cwd=folder, env=ENVIRONMENT, stderr=silent, stdout=silent) as parent:
+    with (
+        open(folder / "said", "w") as said,
+        subprocess.Popen(
+            command, cwd=folder, env=ENVIRONMENT, stderr=said, stdout=said, start_new_session=True
+        ) as parent,
+    ):
         children = Path(f"/proc/{parent.pid}/task/{parent.pid}/children")
         end = time.monotonic() + 60
         while len(children.read_text().split()) < 3 and time.monotonic() < end:  # the resource tracker and two workers
             time.sleep(0.05)
         started = [int(pid) for pid in children.read_text().split()]
         time.sleep(0.5)
-        subprocess.run(["kill", f"-{signal}", str(parent.pid)], check=True)
+        (os.killpg if name == "INT" else os.kill)(parent.pid, signal.Signals[f"SIG{name}"])
         parent.wait(60)
     assert len(started) >= 2
     assert all(ended(pid, 60) for pid in started)
+    assert (folder / "said").read_text() == ""
