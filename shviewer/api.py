@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from shviewer.analysis.options import options_of, whole
+from shviewer.analysis.options import options_of, taken, whole
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.harmonics import basis, synthesis
@@ -149,11 +149,6 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
         recipe = _comparing(recipe, given)
         recipe, _ = as_the_file_holds(recipe, quantity="quantity" not in options, bands=bands is None)
     return recipe
-
-
-def taken(options: dict[str, Any], holder: type) -> dict[str, Any]:
-    """The options that belong to a dataclass, as it holds them. UsageError for a value of another type."""
-    return {name: row.kind.taken(name, options[name]) for name, row in options_of(holder).items() if name in options}
 
 
 def _comparing(recipe: Recipe, given: LightLike) -> Recipe:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.analysis.options import whole
+from shviewer.analysis.options import taken, whole
 from shviewer.analysis.recipe import Recipe
-from shviewer.api import LightLike, recipe_of, taken, with_options
+from shviewer.api import LightLike, recipe_of, with_options
 from shviewer.errors import UsageError
 from shviewer.viewer import screenshot as offscreen
 from shviewer.viewer.composition import compose

@@ -19,8 +19,7 @@ from coefficients.found_lists import table as found_lists
 from documents import PAGES
 from lights.found_images import table as found_images
 
-from shviewer.cli.main import PARSERS
-from shviewer.cli.options import EXIT_CODES, view_parser
+from shviewer.cli.options import EXIT_CODES, PARSERS, view_parser
 from shviewer.viewer.keys import key_table
 
 MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)

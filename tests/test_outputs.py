@@ -76,11 +76,12 @@ def test_the_inputs_of_a_batch_are_looked_at_once(tmp_path: Path, monkeypatch: p
     assert looks < 200 * 5
 
 
-def test_a_picture_is_not_written_over_the_light_or_the_reference(nine: Path) -> None:
+@pytest.mark.parametrize("force", [[], ["--force"]])
+def test_a_picture_is_not_written_over_the_light_or_the_reference(nine: Path, force: list[str]) -> None:
     (nine.parent / "sky.png").write_bytes(b"anything")
     (nine.parent / "r-difference.png").write_bytes(b"anything")
-    assert main(["screenshot", "sky.png", "sky.png"]) == OutputError.exit_code
-    assert main(["screenshot", "r.png", "--reference", "r-difference.png"]) == OutputError.exit_code
+    assert main(["screenshot", "sky.png", "sky.png", *force]) == OutputError.exit_code
+    assert main(["screenshot", "r.png", "--reference", "r-difference.png", *force]) == OutputError.exit_code
     assert (nine.parent / "sky.png").read_bytes() == (nine.parent / "r-difference.png").read_bytes() == b"anything"
 
 

@@ -59,6 +59,11 @@ def options_of(*holders: type) -> dict[str, Option]:
     }
 
 
+def taken(options: dict[str, Any], holder: type) -> dict[str, Any]:
+    """The options that belong to a dataclass, as it holds them. UsageError for a value of another type."""
+    return {name: row.kind.taken(name, options[name]) for name, row in options_of(holder).items() if name in options}
+
+
 def check_options(held: object) -> None:
     """UsageError unless every option of a dataclass is within its range."""
     for name, row in options_of(type(held)).items():

@@ -125,13 +125,9 @@ def _dynamic_range(values: Values) -> list[tuple[str, str]]:
 
 
 def _bytes(count: int) -> str:
-    return (
-        f"{count} bytes"
-        if count < 2**10
-        else f"{count / 2**10:.1f} KiB"
-        if count < 2**20
-        else f"{count / 2**20:.1f} MiB"
-    )
+    if count < 2**10:
+        return f"{count} bytes"
+    return f"{count / 2**10:.1f} KiB" if count < 2**20 else f"{count / 2**20:.1f} MiB"
 
 
 def _number(value: float) -> str:

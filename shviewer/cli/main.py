@@ -13,14 +13,7 @@ from collections.abc import Sequence
 from importlib import import_module
 
 from shviewer.children import follow_parent
-from shviewer.cli.options import (
-    info_parser,
-    project_parser,
-    report_parser,
-    screenshot_parser,
-    sweep_parser,
-    view_parser,
-)
+from shviewer.cli.options import PARSERS
 from shviewer.errors import OutputError, ShviewerError, UsageError, within_memory
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
@@ -65,16 +58,6 @@ def _silence_stdout() -> None:
     """Point stdout nowhere, so that what it still holds troubles nobody at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
-
-PARSERS = {
-    "view": view_parser,
-    "screenshot": screenshot_parser,
-    "sweep": sweep_parser,
-    "info": info_parser,
-    "project": project_parser,
-    "report": report_parser,
-}
-"""Mode -> its parser. The mode's code is the function `run` in the file of its name."""
 
 MODES = tuple(mode for mode in PARSERS if mode != "view")
 

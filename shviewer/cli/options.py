@@ -209,3 +209,14 @@ def report_parser() -> OneLineParser:
     add_force(parser)
     add_reading_options(parser)
     return parser
+
+
+PARSERS = {
+    "view": view_parser,
+    "screenshot": screenshot_parser,
+    "sweep": sweep_parser,
+    "info": info_parser,
+    "project": project_parser,
+    "report": report_parser,
+}
+"""Mode -> its parser. The mode's code is the function `run` in the file of its name."""

@@ -39,7 +39,8 @@ from shviewer.benchmark.page.document import read_report
 from shviewer.cli import info
 from shviewer.cli.from_options import reading_from, recipe_from, state_from
 from shviewer.cli.info import as_text
-from shviewer.cli.main import MODES, PARSERS, _meant
+from shviewer.cli.main import MODES, _meant
+from shviewer.cli.options import PARSERS
 from shviewer.cli.project import wanted_convention
 from shviewer.cli.sweep import _check_sweep
 from shviewer.coefficients.programs import CONVENTIONS

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import asdict, fields
 from typing import Any
 
-from shviewer.analysis.options import Flag, Kind, Number, Whole, options_of, whole
+from shviewer.analysis.options import Flag, Kind, Number, Whole, taken, whole
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -223,8 +223,8 @@ def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """The values of recipe and view; fields that a later version may have added are left out."""
     recipe = {part.name: said["recipe"][part.name] for part in fields(Recipe) if part.name in said["recipe"]}
     view = {part.name: said["view"][part.name] for part in fields(View) if part.name in said["view"]}
-    recipe |= _taken(recipe, Recipe) | {"reading": _told_reading(recipe["reading"])}
-    view |= _taken(view, View) | {"light_rotation": _told_rotation(view["light_rotation"])}
+    recipe |= taken(recipe, Recipe) | {"reading": _told_reading(recipe["reading"])}
+    view |= taken(view, View) | {"light_rotation": _told_rotation(view["light_rotation"])}
     for name, kind in BESIDE.items():
         if view[name] is not None or name != "sweep_to":
             view[name] = kind.taken(name, view[name])
@@ -255,15 +255,9 @@ def _told_rotation(said: list[Any]) -> Quaternion:
 
 def _told_before_schemas(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     told = {name: make(said[key]) for key, (name, make) in BEFORE_SCHEMAS.items() if said.get(key) is not None}
-    recipe, view = _taken(told, Recipe), _taken(told, View)
+    recipe, view = taken(told, Recipe), taken(told, View)
     reading = Reading(sanitize=bool(said.get("sanitize", False)), layout=str(said.get("layout", "auto")))
     light = said.get("light_argument")
     if not isinstance(light, str | None) or reading.layout not in LAYOUT_CHOICES:
         raise ValueError("a light or a layout that there is not")
     return {"light": light, "reading": reading, **recipe}, view
-
-
-def _taken(values: dict[str, Any], holder: type) -> dict[str, Any]:
-    """The values that belong to options of a dataclass, as the dataclass holds them."""
-    rows = options_of(holder)
-    return {name: rows[name].kind.taken(name, value) for name, value in values.items() if name in rows}

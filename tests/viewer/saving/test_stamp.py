@@ -12,8 +12,8 @@ from helpers import frame_of, picture_of
 from PIL import Image
 from places import DATA
 
+from shviewer.analysis.options import taken
 from shviewer.analysis.recipe import Recipe
-from shviewer.api import taken
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.reading import Reading
