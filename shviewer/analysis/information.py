@@ -150,7 +150,7 @@ def describe(text: str, reading: Reading) -> Information:
     try:
         return _describe(text, reading)
     except LightError as refusal:
-        if reading.sanitize or split_light(text)[0].suffix.lower() not in IMAGE_SUFFIXES:
+        if reading.sanitize or split_light(text)[0].suffix.lower() not in (*IMAGE_SUFFIXES, ".npy"):
             raise
         try:
             return replace(_describe(text, replace(reading, sanitize=True)), refused=str(refusal))

@@ -155,6 +155,14 @@ def test_an_image_with_nan_is_described_as_it_would_be_repaired_and_the_refusal_
     assert describe(text, Reading(sanitize=True)).refused is None
 
 
+def test_an_array_with_nan_is_described_as_any_other_image(tmp_path: Path, pixels: Pixels) -> None:
+    pixels[2, 3, 0] = np.nan
+    np.save(tmp_path / "sky.npy", pixels.astype(np.float32))
+    found = describe(str(tmp_path / "sky.npy"), DEFAULT_READING)
+    assert "1 NaN" in (found.refused or "")
+    assert any("1 NaN -> 0" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -1.0])
 def test_what_was_repaired_is_not_said_never_to_have_been(tmp_path: Path, pixels: Pixels, bad: float) -> None:
     clean, mended = write_exr(tmp_path / "clean.exr", pixels), tmp_path / "mended.exr"

@@ -153,9 +153,8 @@ class _Settings:
         return (*notes, *self.said)
 
 
-@np.errstate(
-    over="ignore", under="ignore", divide="ignore"
-)  # an exposure that overflows is refused, and so is infinite radiance
+# An exposure that overflows is refused, and so is infinite radiance.
+@np.errstate(over="ignore", under="ignore", divide="ignore")
 def decode_rgbe(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     """The radiance in a .hdr file, with notes for the user.
 

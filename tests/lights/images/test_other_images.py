@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import os
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -194,6 +195,12 @@ def test_a_cube_of_direct3d_stands_as_direct3d_has_it(data, dtype, tmp_path):
     # within a face: the upper left of the front is up and to the left; up meets the front at its lower edge
     np.testing.assert_array_equal(light.integrand(np.array([[1, 0.9, 0.9]]))[0], expected[4, 0, 0, :3])
     np.testing.assert_array_equal(light.integrand(np.array([[0.9, 0.9, 1]]))[0], expected[2, 3, 0, :3])
+
+
+def test_the_smallest_dds_are_read(tmp_path):
+    """Their texels are fewer bytes than the longer of the two headers adds."""
+    half = np.ones((1, 1, 4), np.float16)
+    assert read(tmp_path / "a.dds", dds_file([half], 113, caps=0)).pixels.shape == (1, 1, 3)
 
 
 def test_an_image_in_a_dds_is_lat_long(tmp_path):
@@ -408,6 +415,15 @@ def test_a_text_of_no_known_encoding_in_a_tiff_harms_nothing(tmp_path):
 )
 def test_a_broken_or_strange_tiff_is_one_line(make, says, tmp_path):
     assert says in refusal(tmp_path / "a.tif", make())
+
+
+def test_a_refusal_names_no_file_but_that_of_the_user(tmp_path):
+    pytest.importorskip("OpenImageIO")
+    rows_per_strip = struct.pack("<HHI", 278, 4, 1)
+    data = tiff_file(CODES).replace(rows_per_strip + struct.pack("<I", 8), rows_per_strip + bytes(4))
+    said = refusal(tmp_path / "a.tif", data)
+    assert "Could not open file" in said
+    assert "image.tiff" not in said
 
 
 def test_a_child_decodes_them_unless_told_otherwise_and_leaves_no_file_behind(tmp_path, monkeypatch):

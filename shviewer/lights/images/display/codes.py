@@ -58,7 +58,7 @@ class Codes(NamedTuple):
 
     def notes(self) -> tuple[str, ...]:
         """What is not in the values any more, for the user."""
-        turned = [f"turned upright: its EXIF orientation is {self.orientation}"] if self.orientation in TURNS else []
+        turned = [f"turned upright: its EXIF orientation is {self.orientation}"] if self.orientation != 1 else []
         return (*turned, *(["alpha dropped"] if self.alpha else []))
 
 

@@ -17,6 +17,7 @@ from shviewer.limits import DEFAULT_LIMITS, Limits
 _FORMATS: dict[int, tuple[type[np.floating], int]] = {113: (np.float16, 4), 116: (np.float32, 4)}
 _DXGI: dict[int, tuple[type[np.floating], int]] = {2: (np.float32, 4), 6: (np.float32, 3), 10: (np.float16, 4)}
 _CUBE, _VOLUME, _ALL_FACES = 0x200, 0x200000, 0xFC00
+_HEADER, _DX10_HEADER = 128, 148  # bytes
 _DX10 = int.from_bytes(b"DX10", "little")
 
 
@@ -25,16 +26,16 @@ def decode_float_dds(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded | 
 
     LightError if it is damaged, too large, or neither a whole cube nor one image.
     """
-    if len(data) < 148:
+    if len(data) < (_DX10_HEADER if data.startswith(b"DX10", 84) else _HEADER):
         raise LightError(f"{len(data)} bytes, which no DDS has; fetch or export it again")
     height, width, _, _, levels = struct.unpack_from("<5I", data, 12)
     flags, code = struct.unpack_from("<II", data, 80)
     (caps,) = struct.unpack_from("<I", data, 112)
-    start, faces, surfaces = 128, 6 if caps & _CUBE else 1, 1
+    start, faces, surfaces = _HEADER, 6 if caps & _CUBE else 1, 1
     found = _FORMATS.get(code) if flags & 4 else None
     if flags & 4 and code == _DX10:
-        form, _, misc, surfaces = struct.unpack_from("<4I", data, 128)
-        start, faces, found = 148, 6 if misc & 4 else faces, _DXGI.get(form)
+        form, _, misc, surfaces = struct.unpack_from("<4I", data, _HEADER)
+        start, faces, found = _DX10_HEADER, 6 if misc & 4 else faces, _DXGI.get(form)
     if caps & _VOLUME or surfaces > 1:
         raise LightError("a volume, or several textures; one image or one cube is read: export that alone")
     if faces == 6 and caps & _CUBE and (caps & _ALL_FACES) != _ALL_FACES:

@@ -62,7 +62,7 @@ def _decoded(library: Any, name: str, limits: Limits, kind: str) -> Decoded:
     wanted["oiio:UnassociatedAlpha"] = 1
     file = library.ImageInput.open(name, wanted)
     if file is None:
-        raise _damaged(library.geterror())
+        raise _damaged(library.geterror().replace(f": {name}", ""))  # which is none that the user knows
     try:
         if file.format_name() != kind.lower():
             raise _damaged(f"it passes for {file.format_name()}")
