@@ -111,7 +111,14 @@ def test_both_ways_to_say_it_are_one_light_and_iso_comes_first(read):
     )
 
 
-@pytest.mark.parametrize("between", [b"", b"\0" * 1000, saved_by_pillow(PICTURE[:16, :16].copy(), "JPEG")])
+BETWEEN = {
+    "zeros": bytes(1000),
+    "a preview": saved_by_pillow(PICTURE[:16, :16].copy(), "JPEG"),
+    "what begins like a picture": b"\xff\xd8\xff\xe0\xff\xff",
+}
+
+
+@pytest.mark.parametrize("between", BETWEEN.values(), ids=BETWEEN)
 def test_the_map_is_found_wherever_it_follows(read, between):
     plain = ultra_hdr(jpeg(PICTURE), jpeg(MAP), gain_map_xmp(**ONE))
     found = read(ultra_hdr(jpeg(PICTURE), jpeg(MAP), gain_map_xmp(**ONE), between), "light.jpg")

@@ -20,6 +20,7 @@ WAYS = {
     "fine chroma": {"subsampling": 0, "quality": 95},
     "restarts": {"restart_marker_rows": 1},
     "progressive": {"progressive": True},
+    "progressive with restarts": {"progressive": True, "restart_marker_rows": 1},
 }
 END = b"\xff\xd9"
 
@@ -58,7 +59,7 @@ def test_what_is_cut_short_is_refused_whatever_stands_at_its_end(refusal, monkey
     monkeypatch.setattr(ImageFile, "LOAD_TRUNCATED_IMAGES", lenient)
     data = jpeg(way)
     step = 11 if not lenient and end == END else 97
-    for length in [*range(data.index(b"\xff\xda"), len(data) - 2, step), *range(len(data) - 10, len(data) - 2)]:
+    for length in [*range(data.index(b"\xff\xda"), len(data) - 2, step), *range(len(data) - 20, len(data) - 2)]:
         assert "cut short" in refusal(data[:length] + end, "light.jpg")
 
 
@@ -107,9 +108,7 @@ def test_a_scan_header_that_is_nonsense_in_a_baseline_picture_is_no_reason_to_re
 
 def test_more_scans_than_any_picture_needs_are_refused(refusal):
     data = jpeg("progressive")
-    first, last = data.index(b"\xff\xda"), data.rfind(b"\xff\xc4")
     assert "more than 100 scans" in refusal(data[:-2] + data[data.rfind(b"\xff\xda") : -2] * 100 + END, "light.jpg")
-    assert first < last
 
 
 def test_a_turned_picture_with_a_trailer_stands_upright(read):

@@ -58,7 +58,7 @@ def test_channels_that_are_no_light_are_not_taken_for_one(refusal, names):
 
 
 def test_the_names_of_the_format_come_first(read):
-    other = dict.fromkeys(("r", "g", "b", ".R", ".G", ".B", "L"), 9 * PICTURE[..., 0])
+    other = dict.fromkeys(("r", "g", "b", ".R", ".G", ".B", "[R]", "[G]", "[B]", "L"), 9 * PICTURE[..., 0])
     assert_same(read(exr_file({**channels("R", "G", "B"), **other}), "light.exr").pixels, PICTURE)
     layers = {
         **channels("beauty.R", "beauty.G", "beauty.B"),
@@ -91,25 +91,30 @@ CODECS = ("NO", "ZIP", "PIZ", "DWAA")
 
 @pytest.mark.parametrize("codec", CODECS)
 def test_strings_that_are_no_utf8_are_no_reason_to_refuse(read, codec):
-    """An owner in Latin-1, a filler of 0xff, the name of an attribute: the texels are those of the same file without."""
+    """An owner in Latin-1, a filler of 0xff, one of several texts, a name that outgrows 31 bytes: the texels stay."""
     compression = getattr(OpenEXR, f"{codec}_COMPRESSION")
     plain = exr_file({"RGB": PICTURE}, compression=compression)
-    data = exr_file({"RGB": PICTURE}, compression=compression, owner="QQ M", comments="z" * 300, attribut="x")
+    long = {"a" * 31: "x", "texts": ["QQ N", "R"]}
+    data = exr_file({"RGB": PICTURE}, compression=compression, owner="QQ M", comments="z" * 300, **long)
     data = in_latin1(data, b"QQ M", b"\xa9 M\xfc")
     data = in_latin1(data, b"z" * 300, b"\xff" * 300)
-    data = in_latin1(data, b"attribut\0", b"attrib\xfct\0")
+    data = in_latin1(data, b"QQ N", b"\xa9 N\xfc")
+    data = in_latin1(data, b"a" * 31 + b"\0", b"a" * 30 + b"\xfc\0")
     assert_same(read(data, "light.exr").pixels, read(plain, "light.exr").pixels)
 
 
 @pytest.mark.parametrize("codec", CODECS)
 def test_channels_whose_names_are_no_utf8_keep_their_order_and_their_texels(read, codec):
-    """As every codec but the lossless ones treats R, G and B in a way of their own, what ends their names stays."""
+    """As every codec but the lossless ones treats R, G and B in a way of their own, what ends their names stays.
+
+    Where one name is no UTF-8 none is taken for it: two letters of Latin-1 may be one of UTF-8.
+    """
     compression = getattr(OpenEXR, f"{codec}_COMPRESSION")
-    names = [f"{layer}.{c}" for layer in ("aa", "zy", "zz") for c in "RGB"]
+    names = [f"{layer}.{c}" for layer in ("aa", "zyz", "zz") for c in "RGB"]
     layers = {name: (PICTURE[..., "RGB".index(name[-1])] + i // 3).astype(np.float16) for i, name in enumerate(names)}
     data = exr_file(layers, compression=compression)
-    data = in_latin1(in_latin1(data, b"zy.", b"\xe8z."), b"zz.", b"\xe9z.")
-    for layer, label in (("aa", "aa"), ("zy", "èz"), ("zz", "éz")):
+    data = in_latin1(in_latin1(data, b"zyz.", "èz.".encode()), b"zz.", b"\xe8z.")
+    for layer, label in (("aa", "aa"), ("zyz", "Ã¨z"), ("zz", "èz")):
         expected = decode_openexr(exr_file(layers, compression=compression), layer=layer).pixels
         assert_same(read(data, "light.exr", label).pixels, expected)
 

@@ -24,7 +24,6 @@ import shviewer
 from shviewer.errors import LightError
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
-from shviewer.lights.images.isolated import decode_isolated
 from shviewer.lights.images.radiance_files import decode_radiance_image
 from shviewer.lights.reading import Reading
 from shviewer.limits import Limits
@@ -121,6 +120,7 @@ def test_an_array_in_a_file_is_the_light_that_it_is_in_python(dtype, tmp_path):
     light = read(tmp_path / "image.npy", npy_file(array))
     given = shviewer.find_light(np.ascontiguousarray(array, np.float32))
     np.testing.assert_array_equal(light.coefficients(5), given.coefficients(5))
+    assert light.pixels.flags.c_contiguous
     assert light.notes == ()
     assert light.layout.name == "lat-long"
 
@@ -417,27 +417,44 @@ def test_a_broken_or_strange_tiff_is_one_line(make, says, tmp_path):
     assert says in refusal(tmp_path / "a.tif", make())
 
 
-def test_a_refusal_names_no_file_but_that_of_the_user(tmp_path):
+ROWS_PER_STRIP = struct.pack("<HHI", 278, 4, 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "says"),
+    [
+        (
+            "a.tif",
+            tiff_file(CODES).replace(ROWS_PER_STRIP + b"\x08", ROWS_PER_STRIP + b"\0"),
+            "Could not open file: Bad value 0",
+        ),
+        ("a.psd", b"8BPS" + bytes(100), "invalid version failed to open: failed load_header"),
+    ],
+)
+def test_a_refusal_names_no_file_but_that_of_the_user(name, data, says, tmp_path):
     pytest.importorskip("OpenImageIO")
-    rows_per_strip = struct.pack("<HHI", 278, 4, 1)
-    data = tiff_file(CODES).replace(rows_per_strip + struct.pack("<I", 8), rows_per_strip + bytes(4))
-    said = refusal(tmp_path / "a.tif", data)
-    assert "Could not open file" in said
-    assert "image.tiff" not in said
+    assert says in refusal(tmp_path / name, data)
+
+
+def test_a_part_larger_than_the_full_image_is_checked_too(tmp_path):
+    data = written("a.tif", IMAGE, full_width=8, full_height=8)
+    small = Reading(isolated=False, limits=Limits(side=8))
+    assert "16 x 8 texels; a side must be 1 to 8" in refusal(tmp_path / "a.tif", data, small)
 
 
 def test_a_child_decodes_them_unless_told_otherwise_and_leaves_no_file_behind(tmp_path, monkeypatch):
-    """Also one that dies: the folder is the parent's."""
+    """Also one that dies with its file open: the folder is the parent's."""
     data = written("a.tif", CODES)
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
     here = decode_radiance_image(data, "a.tif", HERE)
     there = decode_radiance_image(data, "a.tif")
     np.testing.assert_array_equal(there.pixels, here.pixels)
     assert (there.encoding, there.notes) == (here.encoding, here.notes)
-    (tmp_path / "OpenImageIO.py").write_text("import os\nos.abort()")
+    (tmp_path / "OpenImageIO.py").write_text("from os import abort as ImageSpec\ndef attribute(*_): ...")
     monkeypatch.syspath_prepend(str(tmp_path))
     with pytest.raises(LightError, match=r"crashed \(SIGABRT\)"):
-        decode_isolated(data, kind="TIFF")
+        decode_radiance_image(data, "a.tif")
     assert not list(tmp_path.glob("shviewer-*"))
 
 

@@ -47,7 +47,7 @@ def colour_of_profile(profile: bytes) -> Colour:
         curves, matrix = _curves_and_matrix(profile[16:20], tags)
         steps = np.linspace(0.0, 1.0, 1025)
         light = [curve(steps) for curve in curves]
-        if not all(np.all(np.isfinite(values)) and values[-1] > values[0] for values in light):
+        if not all(values[-1] > values[0] for values in light):
             raise LightError("its curve does not rise")
     except LightError as reason:
         return Colour(notes=(f"{shown} is ignored ({reason}), sRGB assumed",))
@@ -150,7 +150,7 @@ def _parametric(p: dict[str, float]) -> Curve:
         above = below = p.get("c", 0.0)
 
     def curve(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
-        with np.errstate(all="ignore"):  # what is not finite is refused
+        with np.errstate(all="ignore"):  # what is infinite becomes 1
             upper = np.maximum(a * encoded + b, 0.0) ** g + above
         light: NDArray[np.float64] = np.clip(np.where(encoded >= start, upper, slope * encoded + below), 0.0, 1.0)
         return light

@@ -9,6 +9,7 @@ file to all others; orientation and full size are told, not applied; CMYK is con
 
 from __future__ import annotations
 
+import re
 from importlib.util import find_spec
 from typing import Any
 
@@ -40,7 +41,6 @@ def decode_openimageio(data: bytes, limits: Limits = DEFAULT_LIMITS, kind: str =
     data: the whole file, which goes through a temporary one.
     LightError, without the name of the file, if it is damaged, too large, or neither RGB nor grey. Raises MemoryError.
     """
-    check_installed(kind)
     import OpenImageIO as library
 
     library.attribute("threads", 1)
@@ -52,7 +52,7 @@ def decode_openimageio(data: bytes, limits: Limits = DEFAULT_LIMITS, kind: str =
 
 
 def check_installed(kind: str) -> None:
-    """LightError if OpenImageIO is missing, before anything is done for a file of this kind."""
+    """LightError if OpenImageIO is missing; asked before anything is done for a file of this kind."""
     if find_spec("OpenImageIO") is None:
         raise LightError(f"{kind} is read with an extra: {EXTRA}, or convert it to .hdr or .exr")
 
@@ -62,7 +62,8 @@ def _decoded(library: Any, name: str, limits: Limits, kind: str) -> Decoded:
     wanted["oiio:UnassociatedAlpha"] = 1
     file = library.ImageInput.open(name, wanted)
     if file is None:
-        raise _damaged(library.geterror().replace(f": {name}", ""))  # which is none that the user knows
+        # what it says names a file that the user does not know
+        raise _damaged(re.sub(rf'[: ]+"?{re.escape(name)}"?', "", library.geterror()))
     try:
         if file.format_name() != kind.lower():
             raise _damaged(f"it passes for {file.format_name()}")
