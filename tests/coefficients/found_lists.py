@@ -35,6 +35,7 @@ SHTOOLS = [
 BY_BAND = [lines([ROWS[l * l : (l + 1) ** 2, 0]]) for l in range(3)]
 WITH_PLACES = np.column_stack([np.array(PLACES), ROWS])
 LIST = ", ".join(map(vector, ROWS))
+COLOURS = list(enumerate(("red", "green", "blue")))
 
 OF_THREE = "three rows of 9: taken as red, green and blue, one after the other"
 IN_TURN = "27 numbers in one list: taken as red, green and blue in turn"
@@ -51,12 +52,17 @@ COLOURED = {
     "tabs.csv": (lines(ROWS.T, "\t"), OF_THREE),
     "spaces.csv": (lines(ROWS.T), OF_THREE),
     "trailing.csv": (lines(ROWS.T, ",", ",\n"), OF_THREE),
+    "trailing-header.csv": ("red,green,blue,\n" + lines(ROWS, ",", ",\n"), ""),
     "braces.h": ("{{" + "},\n{".join(", ".join(f"{x:g}f" for x in row) for row in ROWS.T) + "}}", OF_THREE),
     "lists.h": (
         "\n".join(f"float sh{c}[9] = {{{', '.join(f'{x:g}F' for x in ROWS[:, i])}}};" for i, c in enumerate("RGB")),
         OF_THREE,
     ),
-    "channels.json": (json.dumps({c: ROWS[:, i].tolist() for i, c in enumerate(("red", "green", "blue"))}), OF_THREE),
+    "words.h": (
+        "\n".join(f"float sh_{c}[9] = {{{', '.join(f'{x:g}h' for x in ROWS[:, i])}}};" for i, c in COLOURS[::-1]),
+        OF_THREE,
+    ),
+    "channels.json": (json.dumps({c: ROWS[:, i].tolist() for i, c in COLOURS}), OF_THREE),
     # lists that are merely wrapped
     **{
         f"wrapped-{k}.txt": ("\n".join(lines([ROWS.ravel()[i : i + k]])[:-1] for i in range(0, 27, k)), IN_TURN)
@@ -64,16 +70,29 @@ COLOURED = {
     },
     # red, green, blue and something
     "alpha.txt": (lines(np.c_[ROWS, np.ones(9)]), "the fourth of its columns, 1 throughout, is dropped"),
+    "alpha-objects.txt": (
+        ",".join(f"{{alpha: 1, red: {r}, green: {g}, blue: {b}}}" for r, g, b in ROWS),
+        "the fourth of its columns, 1 throughout, is dropped",
+    ),
     "std140.glsl": (
         ",\n".join(vector([*row, 0], "vec4") for row in ROWS),
         "the fourth of its columns, 0 throughout, is dropped",
     ),
     "index.txt": (lines(np.c_[np.arange(9), ROWS]), "the first of its columns is the index of the row"),
     "index-from-1.csv": (lines(np.c_[np.arange(1, 10), ROWS], ","), "the first of its columns is the index of the row"),
+    "index.h": (
+        "{" + ",\n".join(f"{i}, {{{lines([row], ',')}}}" for i, row in enumerate(ROWS)) + "}",
+        "the first of its columns is the index of the row",
+    ),
     "places.txt": (lines(WITH_PLACES[::-1]), "the first two of its columns are l and m"),
     "places.csv": ("l,m,R,G,B\n" + lines(WITH_PLACES[::-1], ","), ""),
     "count.txt": ("9\n" + lines(ROWS), COUNTED),
     "count.glsl": ("9\n" + LIST, COUNTED),
+    "count-alpha.txt": (
+        "9\n" + lines(np.c_[ROWS, np.ones(9)]),
+        f"{COUNTED}; the fourth of its columns, 1 throughout, is dropped",
+    ),
+    "count-of-all.txt": ("27\n" + lines(ROWS), COUNTED.replace("9", "27")),
     # shaders and other source code
     "array.glsl": (f"vec3[9](\n{LIST});", ""),
     "declared.glsl": (f"const vec3 sh[9] = vec3[]({LIST});", ""),
@@ -102,9 +121,20 @@ COLOURED = {
         "",
     ),
     "objects.json": (json.dumps([{"b": b, "r": r, "g": g} for r, g, b in ROWS]), ""),
+    "bands.glsl": (
+        "".join(f"{{{', '.join(f'{x:g}' for x in ROWS[l * l : (l + 1) ** 2].ravel())}}}" for l in range(3)),
+        IN_TURN,
+    ),
+    "members.txt": ("\n".join(f"c{i}.b = {b}; c{i}.r = {r}; c{i}.g = {g};" for i, (r, g, b) in enumerate(ROWS)), ""),
+    "named-objects.txt": (
+        "\n".join(
+            f"L{l}{m}: {{r: {r}, g: {g}, b: {b}}}" for (l, m), (r, g, b) in list(zip(PLACES, ROWS, strict=True))[::-1]
+        ),
+        "",
+    ),
     "objects.txt": ("[" + ",\n".join(f"{{r: {r}, g: {g}, b: {b}}}" for r, g, b in ROWS) + "]", ""),
     # the numbers themselves
-    "unicode.txt": (lines(ROWS).replace("-", "\u2212").replace(" ", "\u00a0"), ""),
+    "unicode.txt": (lines(ROWS).replace("-", "\u2212").replace(" ", "\u00a0\u2009\u202f"), ""),
     "decimal-commas.csv": (lines(ROWS, ";").replace(".", ","), COMMAS),
     "decimal-commas.txt": (lines(ROWS, "  ").replace(".", ","), COMMAS),
     "spreadsheet.csv": ("red;green;blue\n" + lines(ROWS, ";").replace(".", ","), COMMAS),
@@ -120,6 +150,8 @@ GREYS = [
         ("index.txt", lines(np.c_[np.arange(9), ROWS[:, 0]]), "the first of its columns is the index of the row"),
         ("shtools.txt", lines(SHTOOLS, ", "), OF_SHTOOLS),
         ("errors.txt", lines(np.c_[np.array(SHTOOLS), np.ones((6, 2))]), OF_SHTOOLS),
+        ("header.txt", "gray\n" + lines(ROWS[:, :1]), ""),
+        ("header-of-shtools.txt", "l m C S\n" + lines(SHTOOLS), OF_SHTOOLS),
         ("shtools.csv", "l,m,C,S\n" + lines(SHTOOLS, ","), OF_SHTOOLS),
 ]  # fmt: skip
 
@@ -138,6 +170,16 @@ REFUSED = [
         ("a.csv", "red;green;blue\n1,234;0;1", "1,234, which may be 1.234 or, with a comma between thousands, 1234"),
         ("a.txt", f"float bright = 2.0;\nvec3 sh[9] = {{{LIST}}};", "2 lists of numbers, with the names bright, sh; keep"),
         ("a.txt", named(lambda l, m: f"L{l}{abs(m)} ="), "9 lists of numbers, with the names L00, L11, L10, L11"),
+        ("a.txt", named(lambda l, m: "L12:" if (l, m) == (2, -2) else f"L{l}{m}:"), "9 lists of numbers, with the names L00"),
+        ("a.txt", named(lambda l, m: f"sh[{l}] ="), "9 lists of numbers, with the names sh, sh, sh, sh"),
+        ("a.txt", named(lambda l, m: f"{'abc'[l]}[{l * (l + 1) + m}] ="), "9 lists of numbers, with the names a, b, b, b"),
+        ("a.txt", "L00\n1 2 3", "'L00' in line 1 is no number"),
+        ("a.txt", "6\n1 2 3\n4 5 6", "7 numbers: n bands have n^2 rows"),
+        ("a.txt", "1 -inf 3", "number 1 (from 0) is not finite"),
+        ("a.glsl", "vec3(scale) (1, 2, 3)", "'scale' in line 1 is no number"),
+        ("a.csv", "r\tg\tb\n1\t\t3\n", "row 1 lacks a number"),
+        ("a.csv", "nan,nan,inf\n", "is not finite"),
+        ("a.csv", "x,y,z\n1,2,3\n", "no column red and no column green"),
         ("a.glsl", "vec3(1, 2, 3), vec4(1, 2, 3, 4)", "brackets with 3 numbers and with 4; rows are equally long"),
         ("a.glsl", "vec3(0.5 * 2.0, 1, 1)", "'*' in line 1 is no number"),
         ("a.csv", "l,m,r,g,b\n0,0,1,2,3\n1,0,1,2,3\n1,1,1,2,3\n1,1,1,2,3\n", "columns l and m that do not name every"),
@@ -147,6 +189,8 @@ REFUSED = [
         ("a.json", json.dumps([{"irradianceCoefficients": ROWS.tolist()}] * 2), "2 lights with coefficients in it; keep one"),
         ("a.json", json.dumps({"type": "LightProbe", "sh": [1] * 27, "intensity": [1]}), "its intensity is no number"),
         ("a.json", json.dumps([{"r": 1, "g": 2}] * 9), "rows of three numbers each"),
+        ("a.json", "[[1, 2, true]]", "true or false among the coefficients"),
+        ("a.json", json.dumps([dict.fromkeys("rgbRGB", 1)] * 9), "rows of three numbers each"),
         ("a.json", json.dumps([{"r": 1, "R": 2, "g": 3, "b": 4}] * 9), "rows of three numbers each"),
         ("a.json", json.dumps({"a": 1}), "is that of three.js or glTF"),
         ("a.json", json.dumps({"shviewer-coefficients": None, "coefficients": [[1, 1, 1]] * 9}), "version reads schema 1"),

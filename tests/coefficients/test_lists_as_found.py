@@ -18,6 +18,7 @@ from coefficients.found_lists import (
     ROWS,
     cases,
     lines,
+    vector,
 )
 
 from shviewer.errors import LightError
@@ -52,14 +53,14 @@ def test_a_list_as_it_is_found_is_read_and_what_was_assumed_is_said(name: str, t
     text, note = COLOURED[name]
     light = read(tmp_path / name, text)
     np.testing.assert_array_equal(light.given, ROWS)
-    assert light.notes == ((note,) if note else ())
+    assert "; ".join(light.notes) == note
 
 
 @pytest.mark.parametrize(("name", "text", "note"), GREYS)
 def test_a_grey_list_is_told_from_a_coloured_one(name: str, text: str, note: str, tmp_path: Path) -> None:
     light = read(tmp_path / name, text)
     np.testing.assert_array_equal(light.given, GREY)
-    assert light.notes == ((note,) if note else ())
+    assert "; ".join(light.notes) == note
 
 
 def test_a_table_of_shtools_is_that_of_shtools(tmp_path: Path) -> None:
@@ -96,6 +97,33 @@ def test_a_convention_that_the_file_implies_is_taken_and_said_unless_another_is_
     assert implied.file.implied
     np.testing.assert_array_equal(read(tmp_path / name, text).given, ROWS)
     assert not any(note in said for said in read(tmp_path / name, text).notes)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [("0,125 0 2,500", [[0.125, 0, 2.5]]), ("1,2 3,4 5,6 7,8 9", np.arange(1, 10)[:, None] * [1, 1, 1])],
+)
+def test_commas_are_decimal_ones_only_where_they_can_be_nothing_else(
+    text: str, wanted: np.ndarray, tmp_path: Path
+) -> None:
+    np.testing.assert_array_equal(numbers(tmp_path / "a.txt", text), wanted)
+
+
+def test_one_band_has_an_l_and_m_too(tmp_path: Path) -> None:
+    for end in ("", "\n", "\n\n"):
+        assert numbers(tmp_path / "a.csv", "l,m,r,g,b\n0,0,1,2,3" + end).tolist() == [[1, 2, 3]]
+
+
+def test_a_first_number_among_others_is_no_count(tmp_path: Path) -> None:
+    rows = np.vstack([[8, 1, 2], ROWS[1:]])
+    light = read(tmp_path / "a.glsl", ", ".join(map(vector, rows)))
+    np.testing.assert_array_equal(light.given, rows)
+    assert not light.notes
+
+
+def test_a_table_of_cmgen_that_is_no_irradiance_implies_nothing(tmp_path: Path) -> None:
+    text = IMPLIED["sh.txt"][0].replace("irradiance, ", "")
+    assert "a bare list of numbers" in refusal(tmp_path / "sh.txt", text, "")
 
 
 def test_what_is_beside_the_coefficients_of_a_light_is_applied_or_said_not_to_be(tmp_path: Path) -> None:

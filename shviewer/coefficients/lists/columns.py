@@ -41,18 +41,19 @@ def read_columns(separator: str, names: list[str], lines: list[str], sort: bool)
         wanted = ["c", "s"] if harmonics else ["grey"]
     elif missing := [name for name in CHANNELS if name not in names]:
         raise LightError(f"no column {' and no column '.join(missing)}; the header must name red, green and blue")
+    lines = [line for line in lines if line.strip()]
+    if not lines:
+        raise LightError("a header and no rows; a list has n^2 rows of red, green, blue")
+    if len(lines) > MAX_BANDS**2:
+        raise LightError(f"more than {MAX_BANDS**2} rows, which {MAX_BANDS} bands have, the most that are read")
     sort = sort and {"l", "m"} <= set(names) and len(lines) > 1
     columns = [names.index(name) for name in [*(["l", "m"] if sort else []), *wanted]]
     rows = []
-    for row, line in enumerate(filter(str.strip, lines), 1):
-        if row > MAX_BANDS**2:
-            raise LightError(f"more than {MAX_BANDS**2} rows, which {MAX_BANDS} bands have, the most that are read")
+    for row, line in enumerate(lines, 1):
         cells = _cells(line, separator)
         if len(cells) != len(names):
             raise LightError(f"row {row} has {len(cells)} cells, the header {len(names)}: complete it")
         rows.append([cells[column] for column in columns])
-    if not rows:
-        raise LightError("a header and no rows; a list has n^2 rows of red, green, blue")
     notes: tuple[str, ...] = ()
     if separator != "," and has_decimal_commas(chain(*rows)):
         notes, rows = (DECIMAL_COMMAS,), [[with_point(cell) for cell in cells] for cells in rows]

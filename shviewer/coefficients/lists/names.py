@@ -19,7 +19,7 @@ def channel_order(names: Sequence[str]) -> list[int] | None:
     words = [name.strip("_").lower() for name in names]
     for channels in (3, 4):
         first = words[:channels]
-        if len(set(first)) == channels and words == first * (len(words) // channels):
+        if words == first * (len(words) // channels):
             for known in _CHANNELS:
                 if set(first) == set(known[:channels]):
                     return [first.index(name) for name in known[:channels]]
