@@ -62,7 +62,7 @@ def arranged(numbers: Numbers, *, wrapped: bool = False) -> Listed:
         if columns == 4 and (last := numbers[0, 3]) in (0, 1) and (numbers[:, 3] == last).all():
             return Listed(numbers[:, :3], notes=(f"the fourth of its columns, {last:g} throughout, is dropped",))
     if wrapped and columns != 3:
-        if not _is_square(rows) or (columns % 3 == 0 and columns > 6 and _is_square(numbers.size // 3)):
+        if not _is_square(rows) or (columns % 3 == 0 and _is_square(numbers.size // 3)):
             return _in_one_list(numbers.reshape(-1))
         if columns not in (2, 6):  # real and imaginary parts, if the convention is complex
             raise LightError(

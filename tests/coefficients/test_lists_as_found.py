@@ -109,6 +109,18 @@ def test_commas_are_decimal_ones_only_where_they_can_be_nothing_else(
     np.testing.assert_array_equal(numbers(tmp_path / "a.txt", text), wanted)
 
 
+@pytest.mark.parametrize("shape", [(12, 4), (6, 8), (4, 12)])
+def test_lines_that_cannot_be_rows_are_one_list(shape: tuple[int, int], tmp_path: Path) -> None:
+    text = lines(np.arange(48).reshape(shape))
+    np.testing.assert_array_equal(numbers(tmp_path / "a.txt", text), np.arange(48).reshape(16, 3))
+
+
+def test_a_grey_list_that_could_be_rows_of_four_says_so(tmp_path: Path) -> None:
+    assert read(tmp_path / "a.txt", "1 2 3 4").notes == ("4 numbers in one list: taken as 2 grey bands",)
+    (note,) = read(tmp_path / "a.txt", "1 " * 16).notes
+    assert note == "16 numbers in one list: taken as 4 grey bands, not as 4 rows of four"
+
+
 def test_one_band_has_an_l_and_m_too(tmp_path: Path) -> None:
     for end in ("", "\n", "\n\n"):
         assert numbers(tmp_path / "a.csv", "l,m,r,g,b\n0,0,1,2,3" + end).tolist() == [[1, 2, 3]]
@@ -132,15 +144,20 @@ def test_what_is_beside_the_coefficients_of_a_light_is_applied_or_said_not_to_be
     assert probe.notes == ("multiplied by its intensity, 2",)
     light = {"irradianceCoefficients": ROWS.tolist(), "intensity": 2, "rotation": [0, 1, 0, 0]}
     assert "its intensity and rotation are not applied" in read(tmp_path / "b.json", json.dumps(light)).notes
+    plain = light | {"intensity": 1, "rotation": [0, 0, 0, 1]}
+    assert not any("applied" in note for note in read(tmp_path / "c.json", json.dumps(plain)).notes)
 
 
 def test_complex_numbers_of_which_each_is_a_pair_are_no_rgb_and_something(tmp_path: Path) -> None:
     from shviewer.coefficients.programs import CONVENTIONS
     from shviewer.coefficients.writing import real_columns
 
-    pairs = real_columns(CONVENTIONS["scipy"].from_ours(ROWS))
-    for text in (lines(pairs), lines([pairs.ravel()])):
-        np.testing.assert_allclose(read(tmp_path / "a.txt", text, "scipy").given, ROWS, rtol=0, atol=1e-5)  # six digits
+    for rows, columns in ((ROWS, 6), (GREY, 2)):
+        pairs = real_columns(CONVENTIONS["scipy"].from_ours(rows))[:, :columns]
+        for text in (lines(pairs), lines([pairs.ravel()])):
+            np.testing.assert_allclose(
+                read(tmp_path / "a.txt", text, "scipy").given, rows, rtol=0, atol=1e-5
+            )  # six digits
 
 
 def test_every_row_of_the_guide_is_a_case_of_these_tests() -> None:
