@@ -77,7 +77,11 @@ def test_the_inputs_of_a_batch_are_looked_at_once(tmp_path: Path, monkeypatch: p
 
 
 @pytest.mark.parametrize("force", [[], ["--force"]])
-def test_a_picture_is_not_written_over_the_light_or_the_reference(nine: Path, force: list[str]) -> None:
+def test_a_picture_is_not_written_over_what_it_is_made_of(nine: Path, force: list[str]) -> None:
+    before = nine.read_bytes()
+    (nine.parent / "link.png").symlink_to(nine)
+    assert main(["screenshot", "link.png", "--compare", "nine.json", *force]) == OutputError.exit_code
+    assert nine.read_bytes() == before
     (nine.parent / "sky.png").write_bytes(b"anything")
     (nine.parent / "r-difference.png").write_bytes(b"anything")
     assert main(["screenshot", "sky.png", "sky.png", *force]) == OutputError.exit_code
@@ -112,12 +116,28 @@ def test_a_file_of_somebody_else_is_replaced_only_by_force_and_one_of_ours_at_on
 def test_a_link_is_followed_and_its_target_keeps_its_mode(tmp_path: Path) -> None:
     target, link = tmp_path / "private.json", tmp_path / "link.json"
     target.write_bytes(b"old")
-    target.chmod(0o600)
+    target.chmod(0o640)
     link.symlink_to(target)
     write_atomically(link, b"new")
     assert link.is_symlink()
     assert target.read_bytes() == b"new"
-    assert stat.S_IMODE(target.stat().st_mode) == 0o600
+    assert stat.S_IMODE(target.stat().st_mode) == 0o640
+
+
+@POSIX
+def test_the_owner_stays_and_nobody_else_reads_what_is_not_yet_in_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "shared.json"
+    path.write_bytes(b"old")
+    owner = path.stat().st_uid, path.stat().st_gid
+    modes: list[int] = []
+    owners: list[tuple[int, int]] = []
+    monkeypatch.setattr(os, "fsync", lambda number: modes.append(stat.S_IMODE(os.fstat(number).st_mode)))
+    monkeypatch.setattr(os, "chown", lambda path, *ids: owners.append(ids))
+    write_atomically(path, b"new")
+    assert modes == [0o600]
+    assert owners == [owner]
 
 
 @POSIX
