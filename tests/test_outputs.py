@@ -185,9 +185,15 @@ def test_stdout_can_be_named_as_a_file(tmp_path: Path) -> None:
 
 
 @POSIX
-def test_the_stamp_of_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "pipe.json")
-    Replacing().check(tmp_path / "pipe.json")
+def test_the_stamp_of_a_pipe_is_neither_waited_for_nor_taken_out_of_it(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.json"
+    os.mkfifo(pipe)
+    Replacing().check(pipe)
+    held = os.open(pipe, os.O_RDWR | os.O_NONBLOCK)
+    os.write(held, b"for somebody else")
+    Replacing().check(pipe)
+    assert os.read(held, 100) == b"for somebody else"
+    os.close(held)
 
 
 def test_a_new_file_is_whole_where_there_are_no_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
