@@ -63,9 +63,8 @@ class FunctionLight(RadianceLight):
     @property
     def best_method(self) -> str:
         sampled = self._sampled
-        rule, points = "Gauss-Legendre", 2 * (sampled.rows or 0) ** 2
-        if sampled.rows is None:
-            rule, points = "adaptive cells", sampled.evaluations
+        rows, evaluations = sampled.rows, sampled.evaluations
+        rule, points = ("Gauss-Legendre", 2 * rows**2) if rows else ("adaptive cells", evaluations)
         return f"{rule}, {grouped(points)} points; {self._missed}"
 
     @property

@@ -157,20 +157,11 @@ class LobeIrradiance(IrradianceLight):
     """The irradiance of a sum of lobes, in closed form."""
 
     def radiance(self, directions: Array) -> Array:
-        total = np.zeros((len(directions), 3))
-        for lobe, (angles, values) in zip(self.source.lobes, self._tables, strict=True):
-            half_chord = np.linalg.norm(directions - lobe.axis, axis=1) / 2
-            total += np.interp(2 * np.arcsin(np.minimum(half_chord, 1)), angles, values)[:, None] * lobe.radiance
-        return total
+        return self.form.values(directions)
 
     @cached_property
     def form(self) -> Lobes:
-        shades = [_Shade(lobe.profile, *table) for lobe, table in zip(self.source.lobes, self._tables, strict=True)]
-        return lobes_form(shades, self.source.lobes)
-
-    @cached_property
-    def _tables(self) -> list[tuple[Array, Array]]:
-        return [_table(lobe) for lobe in self.source.lobes]
+        return lobes_form([_Shade(lobe.profile, *_table(lobe)) for lobe in self.source.lobes], self.source.lobes)
 
     @cached_property
     def _products(self) -> Array:

@@ -12,7 +12,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.extremes.zonal_table import around_edge
 from shviewer.harmonics.overlap import inner_product
-from shviewer.harmonics.zonal import Constant, Disc, orient
+from shviewer.harmonics.zonal import Constant, Disc
 from shviewer.lights.irradiance import UP, LobeIrradiance, RadianceLight
 from shviewer.lights.light import Light, Split
 from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
@@ -37,20 +37,13 @@ class LobeLight(RadianceLight):
     def __post_init__(self) -> None:
         if not 1 <= len(self.lobes) <= MAX_LOBES:
             raise ValueError(f"{len(self.lobes)} lobes: there must be 1 to {MAX_LOBES}")
-        axes = np.stack([lobe.axis for lobe in self.lobes])
-        check_brightness(float(np.abs(self.radiance(axes)).max()), self.name)
+        check_brightness(float(np.abs(self.radiance(self.form.axes)).max()), self.name)
 
     def radiance(self, directions: Array) -> Array:
-        total = np.zeros((len(directions), 3))
-        for lobe in self.lobes:
-            chord = directions - lobe.axis
-            total += lobe.profile.value((chord * chord).sum(axis=1))[:, None] * lobe.radiance
-        return total
+        return self.form.values(directions)
 
     def coefficients(self, n_bands: int) -> Array:
-        zonal = np.stack([lobe.profile.zonal(n_bands) for lobe in self.lobes])
-        oriented = orient(zonal, np.stack([lobe.axis for lobe in self.lobes]))
-        return np.asarray(oriented.T @ np.stack([lobe.radiance for lobe in self.lobes]))
+        return self.form.coefficients(self.form.zonal(n_bands))
 
     def products(self) -> Array:
         return self._products

@@ -76,7 +76,10 @@ class _Found(NamedTuple):
 
     value: float
     direction: Array
-    bound: float
+    bound: float = np.inf
+
+    def or_larger(self, other: _Found) -> _Found:
+        return other if other.value > self.value else self
 
 
 class ErrorGrid:
@@ -142,10 +145,10 @@ class ErrorGrid:
         """What is no longer told apart in a reconstruction."""
         return NEGLIGIBLE * float(max(seen.waves.high.max(), -seen.waves.low.min()))
 
-    def _best(self, objective: Objective, starts: Array, bound: float = np.inf) -> _Found:
+    def _best(self, objective: Objective, starts: Array) -> _Found:
         """The best of directions (k, 3), climbed from."""
         values, places = climb(objective, starts[[int(objective(starts).argmax())]], self._step / 2, DISPLAY_ROUNDS)
-        return _Found(float(values[0]), places[0], bound)
+        return _Found(float(values[0]), places[0])
 
     def _lowest(self, seen: _Seen) -> _Found:
         def depth(directions: Array) -> Array:
@@ -183,7 +186,7 @@ class ErrorGrid:
         around = lobes.rings(RING_POINTS * seen.synthesis.n_bands)
         starts = np.concatenate([places, around])
         starts = starts[np.argsort(-self._error(seen, starts))[:BLOCKS]]
-        return max(found, self._climbed(seen, starts), key=lambda one: one.value)._replace(bound=found.bound)
+        return found.or_larger(self._climbed(seen, starts))._replace(bound=found.bound)
 
     def _error_of_raster(self, seen: _Seen, raster: Raster) -> _Found:
         negligible = NEGLIGIBLE * self.peak
@@ -192,7 +195,7 @@ class ErrorGrid:
         found = _Found(float(self._error(seen, direction)[0]), direction[0], error.bound)
         if error.bound <= found.value * (1 + 2 * TOLERANCE):
             return found
-        return max(found, self._climbed(seen), key=lambda one: one.value)._replace(bound=error.bound)
+        return found.or_larger(self._climbed(seen))._replace(bound=error.bound)
 
     def _error_of_bands(self, seen: _Seen, bands: Bands, found: _Found) -> _Found:
         difference, left_out = bands.less(seen.shown, TOLERANCE / 4 * found.value)
@@ -204,7 +207,7 @@ class ErrorGrid:
         deepest = min(sides, key=lambda side: side.lowest)
         if -deepest.lowest > found.value + tolerance / 2:
             start = directions_from_angles(np.array([deepest.theta]), np.array([deepest.phi]))
-            found = max(found, self._best(partial(self._error, seen), start), key=lambda one: one.value)
+            found = found.or_larger(self._best(partial(self._error, seen), start))
         return found._replace(bound=left_out - min(side.bound for side in sides))
 
     def _error(self, seen: _Seen, directions: Array) -> Array:
@@ -218,11 +221,11 @@ class ErrorGrid:
         if others is not None:
             starts = np.concatenate([starts, others])
         errors, places = climb(partial(self._error, seen), starts, self._step, DISPLAY_ROUNDS)
-        best = _Found(float(errors.max()), places[int(errors.argmax())], np.inf)
+        best = _Found(float(errors.max()), places[int(errors.argmax())])
         if len(self.landmarks):
             there = np.abs(seen.synthesis.in_directions(self.landmarks) - self.landmark_radiance).max(axis=1)
             highest = int(there.argmax())
-            best = max(best, _Found(float(there[highest]), self.landmarks[highest], np.inf), key=lambda one: one.value)
+            best = best.or_larger(_Found(float(there[highest]), self.landmarks[highest]))
         return best
 
     def _negative_energy(self, values: Array, shown: Array) -> float:

@@ -44,13 +44,29 @@ class Lobes:
     axes: Array
     radiance: Array
 
+    def values(self, directions: Array) -> Array:
+        """The light in unit directions (k, 3): (k, 3)."""
+        total = np.zeros((len(directions), 3))
+        for profile, axis, radiance in zip(self.profiles, self.axes, self.radiance, strict=True):
+            chord = directions - axis
+            total += profile.value((chord * chord).sum(axis=1))[:, None] * radiance
+        return total
+
+    def zonal(self, n_bands: int) -> Array:
+        """lambda(l) of the profiles, (lobes, n_bands)."""
+        return np.stack([profile.zonal(n_bands) for profile in self.profiles])
+
+    def coefficients(self, zonal: Array) -> Array:
+        """Coefficients (n**2, 3) of a sum about the same axes with lambda(l) (lobes, n)."""
+        return np.asarray(orient(zonal, self.axes).T @ self.radiance)
+
     def factors(self, shown: Array) -> tuple[Array, float]:
         """Coefficients shown (n**2, 3) as a factor a band times the light's own, and a rest.
 
         Returns lambda(l) of the profiles times those factors, (lobes, n), and a bound of the rest's values.
         """
-        zonal = np.stack([profile.zonal(count_bands(shown)) for profile in self.profiles])
-        exact = orient(zonal, self.axes).T @ self.radiance
+        zonal = self.zonal(count_bands(shown))
+        exact = self.coefficients(zonal)
         first = np.arange(zonal.shape[1]) ** 2
         power, along = (np.add.reduceat((exact * other).sum(axis=1), first) for other in (exact, shown))
         kept = power > NOTHING * power.sum()
