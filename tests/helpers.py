@@ -12,7 +12,8 @@ from typing import NoReturn, TypeVar
 import pytest
 
 from shviewer.lights.light import Light
-from shviewer.viewer.composition import Box, Composition, compose
+from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import state_of
 

@@ -3,60 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+
+from shviewer.viewer.panes import Box, Pane, Sphere, WholeSphere
 
 MIN_SIDE, MAX_SIDE = 64, 8192
 """Frames smaller or larger than this are refused."""
 
 DESIGN_WIDTH, DESIGN_HEIGHT = 1280, 640
-
-
-class Box(NamedTuple):
-    """A rectangle of pixels: columns left to right and rows top to bottom, without the last ones."""
-
-    left: float
-    top: float
-    right: float
-    bottom: float
-
-    def contains(self, x: float, y: float) -> bool:
-        return self.left <= x < self.right and self.top <= y < self.bottom
-
-    def overlaps(self, other: Box) -> bool:
-        across = self.left < other.right and other.left < self.right
-        return across and self.top < other.bottom and other.top < self.bottom
-
-
-class Sphere(NamedTuple):
-    """Centre and radius, the box it is cut to when zoomed in, and how high its caption stands."""
-
-    x: float
-    y: float
-    radius: float
-    clip: Box
-    caption_y: float = 0.0
-
-    def touches(self, box: Box) -> bool:
-        """Whether any visible part of the sphere lies in the box."""
-        left, right = max(box.left, self.clip.left), min(box.right, self.clip.right)
-        top, bottom = max(box.top, self.clip.top), min(box.bottom, self.clip.bottom)
-        if left >= right or top >= bottom:
-            return False
-        across = self.x - min(max(self.x, left), right)
-        down = self.y - min(max(self.y, top), bottom)
-        return across * across + down * down < self.radius * self.radius
-
-    @property
-    def visible_area(self) -> float:
-        """The area in pixels of the sphere's square within its clip."""
-        wide = min(self.x + self.radius, self.clip.right) - max(self.x - self.radius, self.clip.left)
-        high = min(self.y + self.radius, self.clip.bottom) - max(self.y - self.radius, self.clip.top)
-        return max(wide, 0.0) * max(high, 0.0)
-
-    def position(self, x: float, y: float) -> tuple[float, float] | None:
-        """The place of a pixel in radii, right and up from the centre; None outside the sphere or where it is cut."""
-        right, up = (x - self.x) / self.radius, (self.y - y) / self.radius
-        return (right, up) if self.clip.contains(x, y) and right * right + up * up < 1 else None
 
 
 @dataclass(frozen=True)
@@ -73,6 +26,13 @@ class Composition:
     hairline_y: float
     colour_bar: Box | None = None
     """Room for the colour bar and its numbers, under the error's sphere."""
+    maps: tuple[WholeSphere, ...] = ()
+    """The panes of the whole sphere, where that is shown in place of the spheres."""
+
+    @property
+    def panes(self) -> tuple[Pane, ...]:
+        """The panes of the original, the reconstruction and perhaps the error."""
+        return self.maps or self.spheres
 
     def px(self, length: float) -> float:
         """A length of the 1280 x 640 design in pixels of this frame."""

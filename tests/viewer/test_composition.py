@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from shviewer.viewer.composition import Box, Composition, Sphere, compose
+from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.panes import Box, Sphere
 
 SIZES = [(320, 160), (400, 300), (640, 320), (700, 400), (1280, 640), (2560, 1280), (900, 1200), (3000, 500)]
 FRAMES = [(*size, scale) for size in SIZES for scale in (1.0, 2.0)]

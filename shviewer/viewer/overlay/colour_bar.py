@@ -9,9 +9,10 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from shviewer.viewer import colour_maps
-from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.composition import Composition
 from shviewer.viewer.drawn import Surfaces
 from shviewer.viewer.overlay.lettering import GREY, MIN_TYPE, font
+from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from shviewer.viewer.composition import Box
 from shviewer.viewer.overlay.band_axis import band_slots, band_step
 from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, INK, NEGATIVE, RULE, UNUSED
 from shviewer.viewer.overlay.painter import Painter
+from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 from shviewer.words import percent, radiance, whole_percent
 

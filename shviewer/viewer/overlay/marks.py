@@ -13,9 +13,10 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from shviewer.harmonics.basis import Array
-from shviewer.viewer.composition import Box, Composition, Sphere
+from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import GREY, INK, MIN_TYPE, Ink, font
+from shviewer.viewer.panes import Box, Sphere
 from shviewer.viewer.picture import Picture
 from shviewer.words import percent, radiance
 

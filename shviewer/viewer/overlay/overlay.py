@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from shviewer.analysis.comparison import agrees
-from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.captions import write_captions
 from shviewer.viewer.overlay.colour_bar import draw_colour_bar
 from shviewer.viewer.overlay.figure_strip import write_figures
@@ -24,6 +24,7 @@ from shviewer.viewer.overlay.painter import Painter
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.convergence import Convergence, draw_convergence
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
+from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_exposure
 from shviewer.words import radiance, theta_phi_degrees

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 from PIL import ImageDraw, ImageFont
 
-from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.lettering import MIN_TYPE, Ink, font
+from shviewer.viewer.panes import Box
 
 
 class Painter:

@@ -12,13 +12,14 @@ from itertools import chain
 
 from PIL import Image
 
-from shviewer.viewer.composition import Box, Composition
+from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.band_axis import BandAxis
 from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, INK, RULE, Ink
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.log_axis import Axis, padded_axis
 from shviewer.viewer.overlay.plots.markers import LOOKS, Place
 from shviewer.viewer.overlay.plots.sheet import Entry, Sheet, Size, place
+from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_muted, describe_window
 from shviewer.words import counted, percent, round_percent, short_count

@@ -15,7 +15,7 @@ from shviewer.analysis.projections import BEST
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.actions import with_bands
-from shviewer.viewer.composition import Box, Composition, Sphere, compose
+from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.overlay.lettering import ACCENT
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.plots import band_series as numbers
@@ -24,6 +24,7 @@ from shviewer.viewer.overlay.plots.convergence import EXACT, LEAST, LEFT_OUT, MO
 from shviewer.viewer.overlay.plots.log_axis import Axis
 from shviewer.viewer.overlay.plots.markers import LOOKS
 from shviewer.viewer.overlay.plots.sheet import place
+from shviewer.viewer.panes import Box, Sphere
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import changed, state_of
 from shviewer.words import percent, round_percent, short_count
