@@ -23,6 +23,7 @@ from measure import cpu_milliseconds, machine
 
 from shviewer.analysis.figures import grid_rows
 from shviewer.harmonics.extremes.error_grid import ErrorGrid
+from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.light import Light
 
@@ -61,8 +62,9 @@ def least(candidates: dict[str, Callable[[], object]]) -> dict[str, float]:
 
 def fresh(light: Light) -> None:
     """Forget what a light keeps for its bounds."""
-    for known in (light.map, light):
-        vars(known or light).pop("_ranges" if known is light.map else "form", None)
+    vars(light).pop("form", None)
+    for kept in (light.map._ranges, light.map._bends) if isinstance(light, EnvironmentLight) else ():
+        kept.clear()
 
 
 def _first_before(old: ModuleType, light: Light, rows: int, shown: object) -> object:

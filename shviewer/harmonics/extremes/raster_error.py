@@ -24,8 +24,11 @@ TEXELS_READ = 2**18
 MOST_CELLS = 1024
 """The most cells that are looked into: what the others may hold stays in the bound."""
 
-MOST_BOXES, EVALUATIONS = 64, 1024
+MOST_BOXES, EVALUATIONS = 64, 4096
 """The most boxes in one round, and how often the reconstruction is evaluated before the search for a closer bound ends."""
+
+BENT_CELLS = 256
+"""With more open cells than this, all are bounded anew by how the reconstruction bends."""
 
 FEW_TEXELS = 1.5
 """Up to so many texels a side, the corners of a cell may bound the error in it better than its range does."""
@@ -92,39 +95,50 @@ class Search:
         return self.best.largest + max(self.tolerance * self.best.largest, self.negligible)
 
     def run(self) -> Error:
-        bounds = self._cell_bounds().reshape(-1)
-        cells, unseen = np.flatnonzero(bounds > self.enough), 0.0
+        bounds = self._ranges()
+        highest = float(bounds.max())
+        boxes = [self._highest_cells(bounds)]
+        if np.count_nonzero(bounds > self.enough) > BENT_CELLS:
+            bounds = np.minimum(bounds, self._bends(), out=bounds)
+            highest = max(float(bounds.max()), float(boxes[0].bounds.max(initial=0)))
+            boxes.append(self._highest_cells(bounds))
+        open_ = bounds.reshape(-1)
+        cells, unseen = np.flatnonzero(open_ > self.enough), 0.0
         if len(cells) > MOST_CELLS:
-            cells = cells[np.argpartition(-bounds[cells], MOST_CELLS)]
-            unseen = float(bounds[cells[MOST_CELLS]])
-        cells = cells[:MOST_CELLS][np.argsort(-bounds[cells[:MOST_CELLS]])]
+            cells = cells[np.argpartition(-open_[cells], MOST_CELLS)]
+            unseen = float(open_[cells[MOST_CELLS]])
+        cells = cells[:MOST_CELLS]
         texels = int(np.prod([np.ceil(side) + 2 for side in self.per_cell]))
-        boxes: list[_Boxes] = []
-        start, block = 0, FIRST_CELLS
-        while start < len(cells):
-            part = cells[start : start + block]
-            part = part[bounds[part] > self.enough]
-            found = self._boxes(part // self.waves.columns, part % self.waves.columns)
-            if start == 0:
-                self._evaluate(found.highest(MOST_BOXES)[0], 1)
-            boxes.append(found)
-            start, block = start + block, max(FIRST_CELLS, TEXELS_READ // texels)
-        bound = self._refine(_join(*boxes)) if boxes else 0.0
-        bound = max(bound, unseen if unseen > self.enough else 0.0)
-        return self.best._replace(bound=max(self.best.largest, min(float(bounds.max()), max(bound, self.enough))))
+        block = max(FIRST_CELLS, TEXELS_READ // texels)
+        boxes += [self._boxes(cells[start : start + block]) for start in range(0, len(cells), block)]
+        bound = max(self._refine(_join(*boxes)), unseen, self.enough)
+        return self.best._replace(bound=max(self.best.largest, min(highest, bound)))
 
-    def _cell_bounds(self) -> Array:
-        """Bounds of the error in each cell of the grid, (rows + 1, columns), closer ones if many cells are open."""
+    def _highest_cells(self, bounds: Array) -> _Boxes:
+        """Evaluate the error in the cells with the highest bounds, and set these to 0; their boxes."""
+        cells = np.argpartition(-bounds.reshape(-1), FIRST_CELLS)[:FIRST_CELLS]
+        bounds.reshape(-1)[cells] = 0
+        boxes = self._boxes(cells)
+        self._evaluate(boxes.highest(MOST_BOXES)[0], 1)
+        return boxes
+
+    def _ranges(self) -> Array:
+        """Bounds of the error in each cell of the grid, (rows + 1, columns), by the texels and the corners in it."""
         waves = self.waves
         low, high = self.raster.ranges(waves.rows)
         above = high - waves.corners_low
         np.maximum(above, waves.corners_high - low, out=above)
         above += waves.slack[:, None]
-        bounds = np.asarray(above.max(axis=1))
-        if np.count_nonzero(bounds > self.enough) <= MOST_CELLS:
-            return bounds
+        return np.asarray(above.max(axis=1))
+
+    def _bends(self) -> Array:
+        """Closer bounds, which take longer: by how the reconstruction bends in each cell, and the raster in small cells."""
+        waves = self.waves
+        low, high = self.raster.ranges(waves.rows)
         bends = waves.bends()
-        above += bends - waves.slack[:, None]
+        above = high - waves.corners_low
+        np.maximum(above, waves.corners_high - low, out=above)
+        above += bends
         if max(self.per_cell) <= FEW_TEXELS:
             corners = waves.corners(np.maximum, np.abs(waves.values - self.original))
             corners += bends
@@ -148,9 +162,10 @@ class Search:
             waiting, ready = (part.take(part.bounds > self.enough) for part in (waiting, ready))
         return float(np.append(waiting.bounds, ready.bounds).max(initial=0.0))
 
-    def _boxes(self, row: Indices, column: Indices) -> _Boxes:
+    def _boxes(self, cells: Indices) -> _Boxes:
         """The parts of texel cells in cells of the grid (k,) that may hold a larger error than is found."""
         raster, waves = self.raster, self.waves
+        row, column = np.divmod(cells, waves.columns)
         firsts = (row - 0.5) * self.per_cell[0] + raster.row_scale_offset[1], (column + 0.5) * self.per_cell[1] - 0.5
         rows, columns = (
             np.clip(
