@@ -1,4 +1,4 @@
-"""Write the tables of the guide anew: python tests/guide.py
+"""Write the tables of the guide anew, and what shells and man are told of the options: python tests/guide.py
 
 In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT --> and <!-- end -->. WHAT is one of
 
@@ -18,6 +18,7 @@ import re
 from coefficients.found_lists import table as found_lists
 from documents import PAGES
 from lights.found_images import table as found_images
+from shell_files import write_shell_files
 
 from shviewer.cli.options import EXIT_CODES, PARSERS, view_parser
 from shviewer.viewer.keys import key_table
@@ -75,3 +76,4 @@ def row(action: argparse.Action) -> str:
 if __name__ == "__main__":
     for page in PAGES:
         page.write_text(written_anew(page.read_text(encoding="utf-8")), encoding="utf-8")
+    write_shell_files()

@@ -26,7 +26,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.environ.setdefault(name, "1")
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
-        arguments = _meant(arguments)
+        if arguments[:1] == ["help"]:
+            return int(import_module("shviewer.cli.help").run(arguments[1:]))
+        _check_first(arguments)
         mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
         options = PARSERS[mode]().parse_intermixed_args(rest)
         with within_memory():
@@ -62,14 +64,11 @@ def _silence_stdout() -> None:
 MODES = tuple(mode for mode in PARSERS if mode != "view")
 
 
-def _meant(arguments: list[str]) -> list[str]:
-    """The arguments, "help" as --help. UsageError if the first is nearly the name of a mode, and no file."""
+def _check_first(arguments: list[str]) -> None:
+    """UsageError if the first argument is nearly the name of a mode, and no file."""
     first = arguments[0] if arguments else ""
-    if first == "help":
-        return ["--help", *arguments[1:]]
     if first and not first.startswith("-") and first not in MODES and not os.path.exists(first):
         import difflib
 
         if near := difflib.get_close_matches(first, MODES, n=1, cutoff=0.75):
             raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {near[0]}?")
-    return arguments

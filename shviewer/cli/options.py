@@ -46,19 +46,27 @@ def view_parser() -> OneLineParser:
         "\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
         "\nanimations: shviewer sweep --help"
         "\nwhat a light is, in figures: shviewer info --help"
-        "\nits coefficients as a file: shviewer project --help",
+        "\nits coefficients as a file: shviewer project --help"
+        "\nthe guide, a page for each question: shviewer help TOPIC",
         usage="shviewer [LIGHT] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
         "       shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]\n"
         "       shviewer info LIGHT [LIGHT ...] [options]\n"
         "       shviewer project [LIGHT ...] -o FILE [options]\n"
-        "       shviewer report [LIGHT ...] [-o DIR] [options]",
+        "       shviewer report [LIGHT ...] [-o DIR] [options]\n"
+        "       shviewer help [TOPIC]",
     )
     add_view_options(parser)
     parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
     parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
     parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")
     parser.add_argument("--list-lights", action="store_true", help="print the built-in lights and exit")
+    parser.add_argument(
+        "--print-completion",
+        metavar="SHELL",
+        choices=("bash", "zsh", "fish"),
+        help="print what bash, zsh or fish needs to complete this command line, and exit",
+    )
     parser.add_argument("--version", action="version", version=f"shviewer {__version__}")
     return parser
 

@@ -19,6 +19,11 @@ def run(options: argparse.Namespace) -> int:
 
         print(key_table())
         return 0
+    if options.print_completion:
+        from shviewer.cli.completion import completion
+
+        print(completion(options.print_completion), end="")
+        return 0
     if options.list_lights:
         from shviewer.lights.find import built_in_lights, find_light
 

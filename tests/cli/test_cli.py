@@ -643,7 +643,3 @@ def test_a_misspelt_mode_is_no_light(capsys: pytest.CaptureFixture[str]) -> None
         2,
         "shviewer: 'screnshot' is neither a mode nor a light; did you mean shviewer screenshot?",
     )
-    with pytest.raises(SystemExit) as stopped:
-        main(["help"])
-    assert stopped.value.code == 0
-    assert "shviewer sweep OUT" in capsys.readouterr().out

@@ -47,6 +47,8 @@ def test_an_installed_wheel_draws_every_kind_of_built_in_light_from_another_fold
     place = run(programs / "python", "-c", "import shviewer; print(shviewer.__path__[0])", cwd=tmp_path).stdout.strip()
     pages = {path.name: path.read_bytes() for path in (ROOT / "assets" / "guide").iterdir()}
     assert {path.name: path.read_bytes() for path in (Path(place) / "assets" / "guide").iterdir()} == pages
+    for name in ("man/man1/shviewer.1", "bash-completion/completions/shviewer", "zsh/site-functions/_shviewer"):
+        assert (tmp_path / "empty" / "share" / name).stat().st_size > 1000
     listed = run(programs / "shviewer", "--list-lights", cwd=tmp_path).stdout
     lights = [path.stem for kind in ("scenes", "environments") for path in (ROOT / "assets" / kind).glob("*.*")]
     assert set(lights) == {line.split()[0] for line in listed.splitlines()}

@@ -1,0 +1,138 @@
+"""`shviewer --print-completion SHELL`: what a shell needs to complete modes, options, their words and built-in lights."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from shviewer.analysis.options import Choice, WholeOr, options_of
+from shviewer.analysis.recipe import Recipe
+from shviewer.cli.options import PARSERS
+from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.writing import FORMATS
+from shviewer.lights.find import built_in_lights
+from shviewer.lights.reading import LAYOUT_CHOICES
+from shviewer.viewer.view import View
+
+MODES = tuple(mode for mode in PARSERS if mode != "view")
+
+WORDS = {
+    "convention": tuple(CONVENTIONS),
+    "input_convention": tuple(CONVENTIONS),
+    "format": FORMATS,
+    "layout": LAYOUT_CHOICES,
+}
+"""What may be given with options that no dataclass holds, by their places."""
+
+
+class _Flag(NamedTuple):
+    """An option of a mode: its names, whether a value follows, the words that this may be, and a line of help."""
+
+    names: tuple[str, ...]
+    takes_value: bool
+    words: tuple[str, ...]
+    help: str
+
+
+def completion(shell: str) -> str:
+    """The script of a shell: "bash", "zsh" or "fish"."""
+    return {"bash": _bash, "zsh": _zsh, "fish": _fish}[shell]()
+
+
+def _flags(mode: str) -> list[_Flag]:
+    kinds = {name: row.kind for name, row in options_of(Recipe, View).items()}
+    found = []
+    for action in PARSERS[mode]()._actions:
+        kind = kinds.get(action.dest)
+        words: Iterable[str] = action.choices or WORDS.get(action.dest, ())
+        if isinstance(kind, Choice | WholeOr):
+            words = kind.choices if isinstance(kind, Choice) else kind.words
+        help_line = re.sub(r"\s+", " ", (action.help or "").replace("%%", "%"))
+        if action.option_strings and action.help != argparse.SUPPRESS:
+            found.append(
+                _Flag(tuple(action.option_strings), action.nargs != 0, tuple(filter(None, map(str, words))), help_line)
+            )
+    return found
+
+
+def _bash() -> str:
+    cases, names = [], []
+    for mode in PARSERS:
+        flags = _flags(mode)
+        names.append(f"    {mode}) options='{' '.join(name for flag in flags for name in flag.names)}' ;;")
+        cases += [(f"{'|'.join(flag.names)}", " ".join(flag.words)) for flag in flags if flag.words]
+    words = "\n".join(
+        f"    {names}) COMPREPLY=($(compgen -W '{words}' -- \"$current\")); return ;;"
+        for names, words in dict.fromkeys(cases)
+    )
+    return f"""# bash completion of shviewer: shviewer --print-completion bash
+_shviewer() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} mode=view options
+  case ${{COMP_WORDS[1]}} in {"|".join(MODES)}) mode=${{COMP_WORDS[1]}} ;; esac
+  case $before in
+{words}
+  esac
+  case $mode in
+{chr(10).join(names)}
+  esac
+  if [[ $current == -* ]]; then
+    COMPREPLY=($(compgen -W "$options" -- "$current"))
+  else
+    local lights='{" ".join(built_in_lights())}'
+    ((COMP_CWORD > 1)) || lights+=' {" ".join((*MODES, "help"))}'
+    COMPREPLY=($(compgen -W "$lights" -- "$current") $(compgen -f -- "$current"))
+  fi
+}}
+complete -o filenames -F _shviewer shviewer
+"""
+
+
+def _zsh() -> str:
+    def spec(flag: _Flag) -> str:
+        says = re.sub(r"([\[\]:'])", lambda found: "'\\''" if found[1] == "'" else "\\" + found[1], flag.help)
+        names = flag.names[0] if len(flag.names) == 1 else "{" + ",".join(flag.names) + "}"
+        value = f":value:({' '.join(flag.words)})" if flag.words else ":value:_files" if flag.takes_value else ""
+        return f"{names}'[{says}]{value}'" if len(flag.names) > 1 else f"'{names}[{says}]{value}'"
+
+    modes = "\n".join(
+        f"    {mode}) options=(\n      {(chr(10) + '      ').join(map(spec, _flags(mode)))}\n    ) ;;"
+        for mode in PARSERS
+    )
+    return f"""#compdef shviewer
+# zsh completion of shviewer: shviewer --print-completion zsh
+_shviewer_files() {{
+  local -a lights=({" ".join(built_in_lights())})
+  (( CURRENT > 2 )) || lights+=({" ".join((*MODES, "help"))})
+  compadd -- $lights
+  _files
+}}
+_shviewer() {{
+  local mode=view
+  local -a options
+  case $words[2] in {"|".join(MODES)}) mode=$words[2] ;; esac
+  case $mode in
+{modes}
+  esac
+  _arguments -s $options '*:light:_shviewer_files'
+}}
+_shviewer "$@"
+"""
+
+
+def _fish() -> str:
+    modes = " ".join(MODES)
+    lines = [
+        "# fish completion of shviewer: shviewer --print-completion fish",
+        f"complete -c shviewer -n 'not __fish_seen_subcommand_from {modes}' -a '{modes} help'",
+        f"complete -c shviewer -a '{' '.join(built_in_lights())}'",
+    ]
+    for mode in PARSERS:
+        seen = f"not __fish_seen_subcommand_from {modes}" if mode == "view" else f"__fish_seen_subcommand_from {mode}"
+        for flag in _flags(mode):
+            names = " ".join(f"-l {name[2:]}" if name.startswith("--") else f"-s {name[1:]}" for name in flag.names)
+            value = f" -x -a '{' '.join(flag.words)}'" if flag.words else " -r" if flag.takes_value else ""
+            says = flag.help.replace("\\", "\\\\").replace("'", "\\'")
+            lines.append(f"complete -c shviewer -n '{seen}' {names}{value} -d '{says}'")
+    return "\n".join(lines) + "\n"
