@@ -58,7 +58,13 @@ class View:
         "--error-range",
         "R",
     )
-    marks: bool = option(True, Flag(), "do not mark the minimum and the largest error", "--no-marks", const=False)
+    marks: bool = option(
+        True,
+        Flag(),
+        "no rings at the minimum and the largest error, and no lines over what is negative",
+        "--no-marks",
+        const=False,
+    )
     lobe_view: bool = option(
         False, Flag(), "surfaces in place of spheres: radius is magnitude, colour is sign", "--lobes", const=True
     )

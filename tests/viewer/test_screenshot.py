@@ -179,7 +179,8 @@ def test_no_overlay_leaves_the_spheres_alone(tmp_path: Path, renderer: Renderer)
     assert screenshot("a.png", "--no-overlay", "--size", 640, 320, cwd=tmp_path).returncode == 0
     with Image.open(tmp_path / "a.png") as image:
         np.testing.assert_array_equal(np.asarray(image), plain)
-    changed = (plain != full).any(axis=2)
+    bare = render_rgb(renderer, picture_of("green", marks=False), frame, overlay=False)
+    changed = (bare != full).any(axis=2)
     assert changed.any()
     top, bottom = frame.spheres[0].y - frame.spheres[0].radius, frame.spheres[0].y + frame.spheres[0].radius
     inside = changed[int(top) + 25 : int(bottom) - 25]
@@ -353,7 +354,7 @@ def draw_anew(renderer: Renderer) -> None:
     ("file", "old", "new"),
     [
         ("sh.glsl", "int i = 0;", "int i = oops;"),
-        ("display.glsl", "return clamp(luminance", "return luminance +"),
+        ("display.glsl", "return clamp(light", "return light +"),
         ("sphere.frag", "colour = vec4(encode", "color = vec4(encode"),
         ("screen.vert", "gl_Position = ", "gl_Place = "),
         ("layer.frag", "texelFetch(", "texelFish("),

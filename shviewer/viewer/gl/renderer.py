@@ -26,7 +26,7 @@ from shviewer.viewer.gl.shared import (
 from shviewer.viewer.gl.surface_renderer import SurfaceRenderer
 from shviewer.viewer.gl.textures import ArrayTexture
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.panes import Sphere
+from shviewer.viewer.panes import Pane, Sphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.view import ERRORS
 
@@ -42,7 +42,7 @@ class Renderer:
 
     def __init__(self, context: moderngl.Context) -> None:
         self.context = context
-        self.programs: dict[tuple[str, str, str, str, int], Program] = {}
+        self.programs: dict[tuple[str, str, str, str, str, int], Program] = {}
         """Programs of sphere.frag, by the choices they were made for."""
         self.layer_program = Program(context, "layer.frag")
         self.surfaces: SurfaceRenderer | None = None
@@ -106,7 +106,7 @@ class Renderer:
         *,
         linear: bool = False,
     ) -> None:
-        """Draw the picture last shown, and layers over it. linear: the spheres' radiance alone; ValueError for surfaces."""
+        """Draw the picture last shown, and layers over it. linear: the radiance alone; ValueError for surfaces."""
         picture = self.picture
         if picture is None:
             raise ValueError("nothing to draw: show a picture first")
@@ -116,7 +116,7 @@ class Renderer:
         if isinstance(picture.drawn, Surfaces):
             self._draw_surfaces(target, composition, picture.drawn, picture.light_from_world @ picture.world_from_view)
         else:
-            self._draw_spheres(target, composition, picture, linear)
+            self._draw_panes(target, composition, picture, linear)
         target.viewport = (0, 0, composition.width, composition.height)
         if not linear:
             self._draw_layers(target, composition, layers)
@@ -163,31 +163,31 @@ class Renderer:
         for sphere, surface in zip(composition.spheres, drawn.shown, strict=False):
             self.surfaces.draw(target, sphere, composition.height, surface, light_from_view)
 
-    def _draw_spheres(
+    def _draw_panes(
         self, target: moderngl.Framebuffer, composition: Composition, picture: Picture, linear: bool
     ) -> None:
         self.sh_buffer.bind_to_uniform_block(BLOCKS["ShBlock"])
         self.lobe_buffer.bind_to_uniform_block(BLOCKS["LobeBlock"])
         self.reconstruction_map.use(SAMPLERS["reconstruction_map"])
         self.colour_map.use(SAMPLERS["colour_map"])
-        for shown, sphere in zip(CHOICES["SHOWN"], composition.spheres, strict=False):
+        for shown, pane in zip(CHOICES["SHOWN"], composition.panes, strict=False):
             if shown == "ERROR" and picture.error_scale is None:
                 continue
-            self._draw_sphere(target, composition, picture, shown, sphere, linear)
+            self._draw_pane(target, composition, picture, shown, pane, linear)
 
-    def _draw_sphere(
+    def _draw_pane(
         self,
         target: moderngl.Framebuffer,
         composition: Composition,
         picture: Picture,
         shown: str,
-        sphere: Sphere,
+        pane: Pane,
         linear: bool,
     ) -> None:
-        box = _pixel_box(sphere, composition.height)
+        box = _pixel_box(pane, composition.height)
         if box[2] <= 0 or box[3] <= 0:
             return
-        program = self._program(picture, shown)
+        program = self._program(picture, shown, pane)
         ends = np.cumsum([0, len(picture.original.lobes), len(picture.compared.lobes), len(picture.suns)]).tolist()
         source, lobes, suns = picture.original, tuple(ends[0:2]), tuple(ends[2:4])
         map_texture = self.original_map
@@ -195,13 +195,20 @@ class Renderer:
             source, lobes, suns = picture.compared, tuple(ends[1:3]), (0, 0)
             map_texture = self.original_map if source.map is picture.original.map else self.compared_map
         map_texture.use(SAMPLERS["original_map"])
+        light_from_pane = picture.light_from_world
+        if isinstance(pane, Sphere):
+            light_from_pane = light_from_pane @ picture.world_from_view
+            program.set(radius=pane.radius)
+        else:
+            program.set(turn=pane.width)
         program.set(
-            centre=(sphere.x, composition.height - sphere.y),
-            radius=sphere.radius,
-            light_from_view=tuple((picture.light_from_world @ picture.world_from_view).T.ravel()),
+            centre=(pane.x, composition.height - pane.y),
+            light_from_pane=tuple(light_from_pane.T.ravel()),
             linear_output=linear,
             soft_edges=not linear,
             exposure=2.0**picture.exposure_stops,
+            scale=max(composition.scale, 1.0),
+            lines=float(picture.state.view.marks),
             n_bands=count_bands(picture.coefficients),
             original_lobes=lobes,
             sun_lobes=suns,
@@ -213,17 +220,18 @@ class Renderer:
         target.viewport = box
         program.draw()
 
-    def _program(self, picture: Picture, shown: str) -> Program:
+    def _program(self, picture: Picture, shown: str, pane: Pane) -> Program:
         """The program that draws `shown`, compiled when first wanted. Choices that it does not read make no new one."""
         original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
         reconstruction = "MAP" if isinstance(picture.drawn, SplineMap) and shown != "ORIGINAL" else "SUM"
         tone = "NONE" if shown == "ERROR" else picture.state.view.tone.upper()
+        form = "SPHERE" if isinstance(pane, Sphere) else "MAP"
         lobes = {
             "ORIGINAL": picture.original.lobes,
             "RECONSTRUCTION": picture.suns,
             "ERROR": picture.compared.lobes,
         }[shown]
-        key = shown, original, reconstruction, tone, profile_bits(lobes)
+        key = shown, original, reconstruction, tone, form, profile_bits(lobes)
         if key not in self.programs:
             chosen: dict[str, str | int] = dict(zip((*CHOICES, "PROFILES"), key, strict=True))
             self.programs[key] = Program(self.context, "sphere.frag", chosen)
@@ -258,11 +266,9 @@ class Renderer:
         return self.colours[name]
 
 
-def _pixel_box(sphere: Sphere, height: int) -> tuple[int, int, int, int]:
-    """The viewport (x, y from the bottom, width, height) of a sphere with its soft edge, cut to its clip."""
-    reach = sphere.radius + 1
-    left, right = max(sphere.x - reach, sphere.clip.left), min(sphere.x + reach, sphere.clip.right)
-    top, bottom = max(sphere.y - reach, sphere.clip.top), min(sphere.y + reach, sphere.clip.bottom)
+def _pixel_box(pane: Pane, height: int) -> tuple[int, int, int, int]:
+    """The viewport (x, y from the bottom, width, height) of what is seen of a pane."""
+    left, top, right, bottom = pane.outline
     x, y = int(np.floor(left)), int(np.floor(height - bottom))
     return x, y, int(np.ceil(right)) - x, int(np.ceil(height - top)) - y
 

@@ -23,11 +23,12 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "ORIGINAL": ("LOBES", "MAP"),
     "RECONSTRUCTION": ("SUM", "MAP"),
     "TONE": tuple(tone.upper() for tone in TONES),
+    "PANE": ("SPHERE", "MAP"),
 }
 """The choices that a program of shaders/sphere.frag is compiled for: one of each, and PROFILES."""
 
 BACKGROUND = (0.0203, 0.0203, 0.0232)
-"""Linear RGB around the spheres: a little above black, so that an unlit sphere is still seen."""
+"""Linear RGB around the panes: a little above black, so that an unlit sphere is still seen."""
 
 NEGATIVE_HUE = (0.06, 0.40, 1.0)
 """Linear RGB that negative luminance tends to."""
@@ -35,11 +36,54 @@ NEGATIVE_HUE = (0.06, 0.40, 1.0)
 NEGATIVE_KNEE = 0.3
 """The magnitude of negative luminance, in units of white, that goes half-way to that colour."""
 
+NEGATIVE_FILL = 0.34
+"""How much of that colour a negative area has, so that its lines stand out."""
+
+BARELY = 0.5 / 255
+"""Half a step of white: what is closer to zero is neither negative nor light to the eye."""
+
+RISING_INK, EDGE_INK, DARK_INK = (0.188, 0.402, 1.0), (0.434, 0.617, 1.0), (0.0212, 0.0212, 0.0252)
+"""Linear RGB of the lines over what is negative, along its edge, and over what is beyond white or merely light."""
+
+LINES = {
+    "LIGHT_GROUND": 0.18,
+    "RISING_PITCH": 5.0,
+    "RISING_FAINT": 0.26,
+    "RISING_GROWTH": 0.62,
+    "RISING_DARK": 0.45,
+    "EDGE_WIDTH": 1.1,
+    "EDGE_STRENGTH": 0.9,
+    "EDGE_FADE": 2.5,
+    "BEYOND_PITCH": 6.0,
+    "BEYOND_WIDTH": 1.1,
+    "BEYOND_STRENGTH": 0.75,
+    "BEYOND_RISE": 0.02,
+}
+"""The lines: pitch and width in pixels of the design, strength from 0 to 1.
+
+Rising ones are RISING_FAINT where a channel is negative alone, and grow with the magnitude of a negative luminance. Over a
+colour lighter than LIGHT_GROUND, where they would not be seen, they are dark, with RISING_DARK. The line of the edge fades
+within EDGE_FADE pixels of a sphere's limb. The lines beyond white have their strength from BEYOND_RISE above it.
+"""
+
 SH_TERMS = MAX_DIRECT_BANDS**2
 LOBE_SLOTS = 2 * MAX_LOBES + MAX_SUNS
 ERROR_KINDS = tuple(kind.upper() for kind in ERRORS[1:])
-FLOATS = {"NEGATIVE_KNEE": NEGATIVE_KNEE, "LOG_RANGE": LOG_RANGE, "BRIGHTEST_EXPOSED": BRIGHTEST_EXPOSED}
-VECTORS = {"BACKGROUND": BACKGROUND, "NEGATIVE_HUE": NEGATIVE_HUE}
+FLOATS = {
+    "NEGATIVE_KNEE": NEGATIVE_KNEE,
+    "NEGATIVE_FILL": NEGATIVE_FILL,
+    "BARELY": BARELY,
+    **LINES,
+    "LOG_RANGE": LOG_RANGE,
+    "BRIGHTEST_EXPOSED": BRIGHTEST_EXPOSED,
+}
+VECTORS = {
+    "BACKGROUND": BACKGROUND,
+    "NEGATIVE_HUE": NEGATIVE_HUE,
+    "RISING_INK": RISING_INK,
+    "EDGE_INK": EDGE_INK,
+    "DARK_INK": DARK_INK,
+}
 
 
 def glsl_constants(chosen: Mapping[str, str | int] = MappingProxyType({})) -> str:

@@ -13,7 +13,7 @@ from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.drawn import DirectSum, SplineMap
-from shviewer.viewer.panes import Box, Sphere
+from shviewer.viewer.panes import Box, Sphere, whole_sphere
 from shviewer.viewer.picture import Picture
 
 SIDE = 128
@@ -87,3 +87,22 @@ def sum_of_harmonics(directions: Array, coefficients: Array) -> Array:
     n_bands = count_bands(coefficients)
     blocks = np.array_split(directions, 1 + len(directions) * n_bands**2 // 2**25)
     return np.concatenate([evaluate_basis(block, n_bands) @ coefficients for block in blocks])
+
+
+def map_frame(
+    width: int = 2 * SIDE, zoom: float = 1.0, centre: tuple[float, float] = (0.0, 0.0), count: int = 2
+) -> Composition:
+    """Maps of the whole sphere beside each other, each `width` pixels wide."""
+    boxes = (Box(number * width, 0, (number + 1) * width, width // 2) for number in range(count))
+    maps = tuple(whole_sphere(box, zoom, centre) for box in boxes)
+    return Composition(count * width, width // 2, 1.0, (), 0.0, width // 2, maps=maps)
+
+
+def map_directions(composition: Composition, side: int) -> tuple[slice, Array]:
+    """The columns of a map in the frame, and the world direction of each of its pixels (height, width, 3)."""
+    pane = composition.maps[side]
+    columns = slice(round(pane.clip.left), round(pane.clip.right))
+    azimuth = (pane.x - np.arange(columns.start, columns.stop) - 0.5) * 2 * np.pi / pane.width
+    elevation = ((pane.y - np.arange(composition.height) - 0.5) * 2 * np.pi / pane.width)[:, None]
+    flat = np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth)
+    return columns, np.stack([*flat, np.broadcast_to(np.sin(elevation), flat[0].shape)], axis=-1)

@@ -193,7 +193,7 @@ def test_a_map_of_noise_is_as_close(renderer: Renderer) -> None:
 def test_every_sphere_shows_the_curve_of_the_cpu_at_one_exposure(renderer: Renderer, tone: str) -> None:
     """Bytes of sRGB [IEC 61966-2-1] of the curve of the exposed linear picture, where nothing is negative."""
     frame = three_spheres()
-    picture = picture_of("studio", n_bands=12, tone=tone)
+    picture = picture_of("studio", n_bands=12, tone=tone, marks=False)
     linear = render_linear(renderer, picture, frame).astype(np.float64)
     drawn = render_rgb(renderer, picture, frame, overlay=False).astype(int)
     for side in (ORIGINAL, RECONSTRUCTION):
@@ -227,7 +227,7 @@ def test_no_exposure_makes_anything_but_black_or_white_of_a_grey_light(
     renderer: Renderer, tone: str, stops: float
 ) -> None:
     frame = three_spheres()
-    picture = picture_of("constant", tone=tone, exposure_stops=stops)
+    picture = picture_of("constant", tone=tone, exposure_stops=stops, marks=False)
     seen = picture_view(frame, ORIGINAL, picture)
     drawn = render_rgb(renderer, picture, frame, overlay=False)[seen.mask][seen.facing > 0.2]
     assert (drawn == (255 if stops > 0 else 0)).all()
@@ -241,7 +241,7 @@ def test_the_border_of_what_is_negative_is_black_on_both_sides(renderer: Rendere
         red = (luminance - 0.7152 * 0.1 - 0.0722 * 0.1) / 0.2126
         colour = np.array([red, 0.1, 0.1])
         light = FunctionLight(lambda directions, colour=colour: np.tile(colour, (len(directions), 1)), "border")
-        picture = picture_of(light, tone=tone, exposure_stops=0.0)
+        picture = picture_of(light, tone=tone, exposure_stops=0.0, marks=False)
         seen = picture_view(frame, ORIGINAL, picture)
         drawn = render_rgb(renderer, picture, frame, overlay=False)[seen.mask][seen.facing > 0.2]
         assert drawn.max() < 40

@@ -40,6 +40,7 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.shared import (
     BACKGROUND,
     LOBE_SLOTS,
+    NEGATIVE_FILL,
     NEGATIVE_HUE,
     NEGATIVE_KNEE,
     SH_TERMS,
@@ -314,7 +315,7 @@ def test_what_is_seen_is_the_standards_srgb_of_the_linear_picture(renderer: Rend
     light = FunctionLight(
         lambda d: np.stack([0.6 + 0.6 * d[:, 0], (1 + d[:, 1]) ** 8 / 256, 0.002 + 0 * d[:, 2]], axis=1)
     )
-    picture = picture_of(light, exposure_stops=0.25, n_bands=3)
+    picture = picture_of(light, exposure_stops=0.25, n_bands=3, marks=False)
     wanted = 255 * srgb(2**0.25 * linear(renderer, picture).astype(np.float64))
     mask = inner(square_frame(), ORIGINAL)
     difference = np.abs(seen_picture(renderer, picture)[mask] - wanted[mask])
@@ -339,23 +340,23 @@ def test_exposure_does_not_touch_the_linear_picture(renderer: Renderer) -> None:
 
 
 def test_negative_radiance_stays_negative_in_numbers_and_is_blue_to_the_eye(renderer: Renderer) -> None:
-    """From a five-hundredth of white upwards; 8 bits end there (0.002 / 0.302 of the hue is 22 of 255)."""
-    light = FunctionLight(lambda d: -(10.0 ** (3 * d[:, 2] + 0.3)))
-    picture = picture_of(light, exposure_stops=0.0, camera=(0.0, 0.0), n_bands=4)
+    """From a hundredth of white upwards; its fill has hardly any blue before."""
+    light = FunctionLight(lambda d: -(10.0 ** (2.5 * d[:, 2] + 0.5)))
+    picture = picture_of(light, exposure_stops=0.0, camera=(0.0, 0.0), n_bands=4, marks=False)
     mask = inner(square_frame(), ORIGINAL)
     radiance = linear(renderer, picture)[mask].astype(np.float64)
     assert (radiance < 0).all()
-    assert radiance.min() < -900
+    assert radiance.min() < -800
     red, green, blue = seen_picture(renderer, picture)[mask].astype(int).T
     assert (blue > green + 4).all()
     assert (green > red).all()
-    grown = radiance[:, :1] / (radiance[:, :1] - NEGATIVE_KNEE) * NEGATIVE_HUE
+    grown = radiance[:, :1] / (radiance[:, :1] - NEGATIVE_KNEE) * NEGATIVE_FILL * NEGATIVE_HUE
     np.testing.assert_allclose(np.stack([red, green, blue], axis=1), 255 * srgb(grown), rtol=0, atol=1)
 
 
 def test_a_negative_channel_under_a_positive_luminance_keeps_the_others(renderer: Renderer) -> None:
     light = lobes(Lobe(Constant(), np.array([0.0, 0.0, 1.0]), np.array([-0.1, 0.5, 0.25])))
-    picture = picture_of(light, exposure_stops=0.0)
+    picture = picture_of(light, exposure_stops=0.0, marks=False)
     np.testing.assert_allclose(linear(renderer, picture)[64, 64], [-0.1, 0.5, 0.25], rtol=0, atol=1e-7)
     np.testing.assert_allclose(
         seen_picture(renderer, picture)[64, 64], 255 * srgb(np.array([0, 0.5, 0.25])), rtol=0, atol=1
@@ -431,7 +432,7 @@ def test_zoomed_spheres_do_not_cross_the_middle_or_the_captions(renderer: Render
 
 def test_the_uniform_blocks_are_as_large_as_the_arrays_that_fill_them(renderer: Renderer) -> None:
     linear(renderer, picture_of("green"))
-    program = renderer.programs["RECONSTRUCTION", "LOBES", "SUM", "NONE", 0].program
+    program = renderer.programs["RECONSTRUCTION", "LOBES", "SUM", "NONE", "SPHERE", 0].program
     assert program["ShBlock"].size == pack_coefficients(noise(5)).nbytes == renderer.sh_buffer.size  # type: ignore[union-attr]
     block = pack_lobes((Lobe(Constant(), OFF_AXIS, np.ones(3)),))
     assert program["LobeBlock"].size == block.nbytes == renderer.lobe_buffer.size  # type: ignore[union-attr]
