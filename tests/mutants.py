@@ -122,10 +122,20 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
     "coefficients/convention.py": (
         (
             "phase kept for programs without",
-            "            found = found * alternating(orders(n_bands))\n        found = found * SCALES",
-            "            found = found * 1.0\n        found = found * SCALES",
+            "            found = found * alternating(orders(n_bands))\n        found = found * self",
+            "            found = found * 1.0\n        found = found * self",
         ),
-        ("1/pi forgotten", "np.pi if held == OVER_PI else 1 / np.pi", "np.pi if held == OVER_PI else 1"),
+        (
+            "rows in the inverse order",
+            "found = found[self.rows(n_bands)]",
+            "found = found[np.argsort(self.rows(n_bands))]",
+        ),
+        ("the mean not shifted", "found[0] -= self._shift", "found[0] -= 0"),
+    ),
+    "coefficients/parts/quantities.py": (
+        ("1/pi forgotten", "np.pi if is_over_pi(held) else 1 / np.pi", "np.pi if is_over_pi(held) else 1"),
+    ),
+    "coefficients/parts/scales.py": (
         (
             "SN3D the other way",
             "np.sqrt(4 * np.pi / (2 * degrees(n_bands) + 1))",
@@ -133,7 +143,7 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ),
         ("3z^2-1 without its half", "2.0, 1.0, 0.5, 1.0, 1.0", "2.0, 1.0, 1.0, 1.0, 1.0"),
     ),
-    "coefficients/axes.py": (
+    "coefficients/parts/axes.py": (
         ("axes the other way", "rotate(turned, matrix)", "rotate(turned, matrix.T)"),
         (
             "handedness by order",

@@ -24,6 +24,7 @@ from shviewer.analysis.cache import MEMORY
 from shviewer.cli.from_options import state_from
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.texts import MODIFIERS
 from shviewer.lights.find import built_in_lights
 from shviewer.lights.scene import PROFILES, read_scene
 
@@ -59,12 +60,14 @@ def test_every_option_of_a_mode_is_explained_in_a_table_that_names_the_mode(mode
 
 def test_the_table_of_conventions_is_that_of_the_code() -> None:
     text = page("coefficients")
-    rows = dict(re.findall(r"^\| `(\w+)` \| (?:kept|none) \| .* \| (.*) \|$", text, flags=re.MULTILINE))
+    rows = dict(re.findall(r"^\| `([\w-]+)` \| (?:kept|none) \| .* \| (.*) \|$", text, flags=re.MULTILINE))
     bands = {
-        name: ("1 to 3" if not convention.filled_up else "3") if convention.most_bands else "1 to 128"
+        name: f"{convention.fewest_bands} to {convention.most_bands or 128}".replace("3 to 3", "3")
         for name, convention in CONVENTIONS.items()
     }
     assert rows == bands
+    modifiers = set(re.findall(r"`([^`]+)`", text.partition("| modifier |")[2].partition("\n\n")[0]))
+    assert set(MODIFIERS) <= modifiers | {f"{quantity}-over-pi" for quantity in ("radiance", "irradiance")}
     for name, convention in CONVENTIONS.items():
         (row,) = re.findall(rf"^\| `{name}` \| (kept|none) \| ([-xyz, ]+).*$", text, flags=re.MULTILINE)
         assert row[0] == ("kept" if convention.phase else "none")

@@ -13,10 +13,11 @@ from shviewer.analysis.figures import Figures
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import Subject
-from shviewer.coefficients.convention import IRRADIANCE, Convention
-from shviewer.coefficients.programs import parse_convention
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.quantities import IRRADIANCE, whole
 from shviewer.coefficients.stamp import Value, stamp_of
 from shviewer.coefficients.suns import sun_keys
+from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import encode
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
@@ -104,7 +105,7 @@ class Projected:
     def stamp(self, convention: Convention, n_bands: int) -> dict[str, Value]:
         """The stamp of a file with these coefficients in a convention."""
         about = {**stamp_of(convention, self.quantity, n_bands), "written-by": f"shviewer {__version__}", **self.about}
-        written = str(about["quantity"]).removesuffix("-over-pi")
+        written = whole(str(about["quantity"]))
         if written != self.quantity:  # the errors of one quantity are not those of the other
             about = {key: value for key, value in about.items() if key not in ERRORS}
             if written == IRRADIANCE:

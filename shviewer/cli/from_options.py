@@ -169,8 +169,8 @@ def _binary_millions(count: float | None) -> int | None:
 
 def _check_convention(options: argparse.Namespace, convention: str) -> None:
     """UsageError for a convention of bare lists that is unknown, or if no file is given that it could apply to."""
-    from shviewer.coefficients.programs import parse_convention
     from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+    from shviewer.coefficients.texts import parse_convention
     from shviewer.lights.find import split_light
 
     try:

@@ -15,7 +15,7 @@ from shviewer.words import counted, one_line
 
 if TYPE_CHECKING:  # a picture loads nothing that writes files of coefficients
     from shviewer.analysis.projected import Projected
-    from shviewer.coefficients.axes import Axes
+    from shviewer.coefficients.parts.axes import Axes
 
 ROUNDING = 1e-6
 """A minimum below zero by no more than this share of the largest coefficient counts as zero."""

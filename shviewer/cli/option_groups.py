@@ -96,7 +96,8 @@ def add_reading_options(parser: OneLineParser, convention: str = "--convention")
         metavar="C",
         dest="input_convention",
         default="",
-        help="convention of a bare list of coefficients: shviewer, filament, three, unity, unreal, ambix, sphericart or scipy",
+        help="convention of a bare list of coefficients, such as three, unity or shviewer,y-up,no-phase: the names and"
+        " modifiers of project's --convention",
     )
     parser.add_argument(
         "--sanitize",

@@ -165,8 +165,9 @@ def project_parser() -> OneLineParser:
         "--convention",
         metavar="C",
         default="shviewer",
-        help="convention to write: shviewer (default), filament, three, unity, unreal, ambix, sphericart or scipy; after"
-        " commas what differs, such as shviewer,no-phase,4pi",
+        help="convention to write: shviewer (default), filament, three, unity, unreal, babylon, playcanvas, cesium, gltf,"
+        " godot, 3dgs, directxmath, ambix, fuma, sphericart, scipy, e3nn, shtools, spharpy, mitsuba, or webxr, arcore or arkit"
+        " with -phase or -no-phase after it; after commas what differs, such as shviewer,no-phase,4pi",
     )
     parser.add_argument(
         "--axes",

@@ -19,9 +19,11 @@ from shviewer.cli.batch import error_in_percent, project_batch
 from shviewer.cli.from_options import lights_of, recipe_from, replacing_of
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.status_line import speaking
-from shviewer.coefficients.axes import Axes
-from shviewer.coefficients.convention import OVER_PI, Convention
-from shviewer.coefficients.programs import CONVENTIONS, parse_convention
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.axes import Axes
+from shviewer.coefficients.parts.quantities import whole
+from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError
 from shviewer.outputs import Replacing, file_stem, write_atomically
@@ -34,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     """Project and write. ShviewerError for one light that fails, or arguments that fit no light."""
     convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
     if convention.quantity:
-        options.quantity = convention.quantity.removesuffix("-over-pi")
+        options.quantity = whole(convention.quantity)
     if options.n_bands is None and options.tolerance is None and convention.most_bands:
         options.n_bands = min(Recipe.n_bands, convention.most_bands)
 
@@ -64,8 +66,7 @@ def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str
         convention = parse_convention(",".join([text, *([axes] if axes else []), *(["no-phase"] if no_phase else [])]))
     except ValueError as error:
         raise UsageError(str(error)) from error
-    held = "irradiance" if convention.quantity == OVER_PI else convention.quantity
-    if held is not None and quantity not in (None, held):
+    if convention.quantity and quantity not in (None, whole(convention.quantity)):
         raise UsageError(f"--for {quantity} contradicts --convention {text}, which takes {convention.quantity}")
     own = CONVENTIONS[convention.name]
     if axes and own.axes != Axes() and convention.axes != own.axes:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shviewer.coefficients.convention import QUANTITIES, RADIANCE
+from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.numbers import Listed
+from shviewer.coefficients.parts.quantities import QUANTITIES, RADIANCE
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.reading import CoefficientFile, interpreted
 from shviewer.coefficients.suspects import (
@@ -65,7 +66,11 @@ def find_convention(numbers: Listed, exact: Array) -> Found:
 
     The programs' own conventions come first, then ours with modifiers. LightError if the numbers are no table in any of them.
     """
-    names = [*CONVENTIONS, *(f"shviewer,{quantity}" for quantity in QUANTITIES if quantity != RADIANCE)]
+    first: dict[Convention, str] = {}  # of those with the same numbers
+    for name, one in CONVENTIONS.items():
+        first.setdefault(replace(one, name="", program="", layout="", most_bands=None, fewest_bands=1), name)
+    names = list(first.values())
+    names += [f"shviewer,{quantity}" for quantity in QUANTITIES if quantity != RADIANCE]
     fits = list(_fits(numbers, exact, names))
     if not fits:
         interpreted(numbers, "shviewer")  # says what is wrong

@@ -38,6 +38,8 @@ class Listed:
     """The convention that the kind of file implies, a text for parse_convention; "" for none."""
     implied_by: str = ""
     """One line on why."""
+    placed: bool = False
+    """Whether the file names l and m, so that its rows are in our order, whichever the program has."""
 
 
 def arranged(numbers: Numbers, *, wrapped: bool = False) -> Listed:
@@ -96,7 +98,7 @@ def sorted_by_degree(numbers: Numbers) -> Listed | None:
         return None
     index = (l * (l + 1) + m).astype(np.int64)
     if _is_square(rows) and rows > 1 and np.array_equal(np.sort(index), np.arange(rows)):
-        return Listed(numbers[np.argsort(index), 2:], notes=("the first two of its columns are l and m",))
+        return Listed(numbers[np.argsort(index), 2:], notes=("the first two of its columns are l and m",), placed=True)
     n_bands = isqrt(2 * rows)
     if (
         columns not in (4, 6)
@@ -109,7 +111,8 @@ def sorted_by_degree(numbers: Numbers) -> Listed | None:
     found = np.zeros(n_bands**2)
     found[(l * (l + 1) - m).astype(np.int64)] = numbers[:, 3]
     found[index] = numbers[:, 2]
-    return Listed(found[:, None], notes=("its columns are l, m, C and S, as SHTOOLS writes them, S being that of -m",))
+    notes = ("its columns are l, m, C and S, as SHTOOLS writes them, S being that of -m",)
+    return Listed(found[:, None], notes=notes, placed=True)
 
 
 def _counts_up(numbers: Numbers) -> bool:

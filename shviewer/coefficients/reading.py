@@ -18,14 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.coefficients.array_files import read_arrays
-from shviewer.coefficients.convention import OVER_PI, RADIANCE, Convention
+from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.lists.scan import plain_numbers
 from shviewer.coefficients.lists.structures import read_structure, rows_of_numbers
 from shviewer.coefficients.lists.text import read_list
 from shviewer.coefficients.numbers import Listed, as_table
-from shviewer.coefficients.programs import CONVENTIONS, parse_convention
+from shviewer.coefficients.parts.quantities import RADIANCE, whole
+from shviewer.coefficients.parts.rows import ACN, row_order
+from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp, safe
 from shviewer.coefficients.suffixes import HOLDS
+from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError
 from shviewer.files import decoding, naming, read_bytes
 from shviewer.harmonics.basis import Array, count_bands
@@ -62,8 +65,7 @@ class CoefficientFile:
     @property
     def quantity(self) -> str:
         """The quantity of `coefficients`: "radiance" or "irradiance"."""
-        held = self.convention.quantity or RADIANCE
-        return "irradiance" if held == OVER_PI else held
+        return whole(self.convention.quantity or RADIANCE)
 
 
 def read_coefficients(path: Path, named: str = "", limits: Limits = DEFAULT_LIMITS) -> CoefficientFile:
@@ -115,6 +117,11 @@ def interpreted(listed: Listed, named: str) -> CoefficientFile:
             f"{count_bands(table)} bands, so its numbers are not those of {convention.name}, which has at most "
             f"{convention.most_bands}: name another convention"
         )
+    if listed.placed and convention.order != ACN:
+        try:
+            table = table[row_order(convention.order, count_bands(table))]
+        except ValueError as error:
+            raise LightError(f"{error}; leave {convention.order} out, its rows name their l and m") from error
     if np.abs(table).max() > LARGEST:
         raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")
     try:

@@ -6,6 +6,7 @@ every constant of the convention in place. Up to three bands the basis is a hand
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 
@@ -39,7 +40,7 @@ def c_header(name: str, comments: Sequence[str], rows: Sequence[Row]) -> str:
     symbol = identifier(name)
     size = f"[{len(rows)}][3]" + ("[2]" if len(rows[0][2]) == 6 else "")
     lines = [*comments, "", f"#ifndef {symbol.upper()}_H", f"#define {symbol.upper()}_H", ""]
-    lines += [f"enum {{ {symbol.upper()}_BANDS = {rows[-1][0] + 1}, {symbol.upper()}_ROWS = {len(rows)} }};", ""]
+    lines += [f"enum {{ {symbol.upper()}_BANDS = {math.isqrt(len(rows))}, {symbol.upper()}_ROWS = {len(rows)} }};", ""]
     lines += [f"static const double {symbol}{size} = {{", f"    // {TABLE_BEGINS}"]
     for l, m, numbers in rows:
         pairs = [f"{{{', '.join(numbers[i : i + 2])}}}" for i in range(0, 6, 2)] if len(numbers) == 6 else numbers
@@ -48,13 +49,15 @@ def c_header(name: str, comments: Sequence[str], rows: Sequence[Row]) -> str:
 
 
 def glsl_source(
-    name: str, quantity: str, comments: Sequence[str], rows: Sequence[Row], factors: Array, mirrored: bool
+    name: str, quantity: str, comments: Sequence[str], rows: Sequence[Row], factors: Array, shift: float, pole: str
 ) -> str:
     """Constants and the function `sh_NAME_QUANTITY(vec3 direction)`, GLSL 3.30 and later, without a #version line.
 
-    factors: the program's basis functions over Y(l, m), by our index. ValueError for more than MAX_GLSL_BANDS bands.
+    factors: the program's basis functions over Y(l, m), by our index; shift: what it adds to their sum;
+    pole: which components of a direction are x, y and z of the basis.
+    ValueError for more than MAX_GLSL_BANDS bands.
     """
-    n_bands, symbol = rows[-1][0] + 1, identifier(name)
+    n_bands, symbol = math.isqrt(len(rows)), identifier(name)
     if n_bands > MAX_GLSL_BANDS:
         raise ValueError(
             f"{n_bands} bands: a shader is written for 1 to {MAX_GLSL_BANDS}; use fewer, or .npz and a texture"
@@ -66,12 +69,18 @@ def glsl_source(
         lines.append(f"    vec3({', '.join(numbers)}){comma}  // l = {l}, m = {m}")
     lines += [f"    // {TABLE_ENDS}", ");", "", "// direction: unit, in the axes named above"]
     lines += [f"vec3 {symbol}_{quantity}(vec3 direction) {{"]
-    lines += ["    float x = direction.x, y = direction.y, z = direction.z;"]
+    components = zip("xyz", re.findall("..", pole), strict=True)
+    named = (f"{name} = {sign.strip('+')}direction.{axis}" for name, (sign, axis) in components)
+    lines += [f"    float {', '.join(named)};"]
+
+    at = {(l, m): number for number, (l, m, _) in enumerate(rows)}
 
     def row(l: int, m: int) -> str:
-        return f"{symbol}[{index(l, -m if mirrored else m)}]"
+        return f"{symbol}[{at[l, m]}]"
 
     body = _polynomials(row, factors, n_bands) if n_bands <= 3 else _recurrence(row, factors, n_bands)
+    if shift:
+        body[-1] = f"{body[-1].removesuffix(';')} + {shift!r};"
     return "\n".join([*lines, *body, "}", ""])
 
 

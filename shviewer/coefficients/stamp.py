@@ -4,7 +4,7 @@ Schema 1. A reader needs the first three keys; the others are for people, and mu
 
     shviewer-coefficients   1
     convention              a text for parse_convention, such as "three" or "shviewer,y-up,no-phase"
-    quantity                radiance, irradiance, or irradiance-over-pi
+    quantity                radiance or irradiance, perhaps -over-pi
     basis, phase, index, axes, normalisation, one-over-pi     what `convention` and `quantity` mean, in set words
     program, layout         the program that reads it, and how the program itself arranges the numbers
     bands, rows, columns    n, n^2, and the names of the columns
@@ -25,8 +25,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from shviewer.coefficients.convention import OVER_PI, QUANTITIES, Convention
-from shviewer.coefficients.programs import convention_text, parse_convention
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.quantities import QUANTITIES, is_over_pi
+from shviewer.coefficients.texts import convention_text, parse_convention
 from shviewer.errors import LightError
 from shviewer.words import one_line
 
@@ -63,7 +64,7 @@ def _in_words(convention: Convention, quantity: str) -> dict[str, Value]:
         "index": convention.index,
         "axes": convention.axes.words,
         "normalisation": convention.scale,
-        "one-over-pi": "divided by pi" if quantity == OVER_PI else "not divided by pi",
+        "one-over-pi": "divided by pi" if is_over_pi(quantity) else "not divided by pi",
     }
 
 

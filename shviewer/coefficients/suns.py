@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shviewer.coefficients.axes import Axes
+from shviewer.coefficients.parts.axes import Axes
 from shviewer.coefficients.stamp import SUNS_KEY, Value
 from shviewer.harmonics.basis import Array
 

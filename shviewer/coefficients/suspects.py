@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shviewer.coefficients.axes import NAMED_AXES, Axes, all_axes, alternating, mirrored_orders, orders, turn
+from shviewer.coefficients.parts.axes import NAMED_AXES, Axes, all_axes, alternating, mirrored_orders, orders, turn
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors
 

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.coefficients.axes import orders
 from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.axes import orders
 from shviewer.coefficients.source_code import c_header, glsl_source
 from shviewer.coefficients.stamp import Stamp, Value
 from shviewer.errors import UsageError
@@ -76,7 +76,9 @@ def _glsl(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Con
     factors = convention.basis_factors(count_bands(numbers))
     rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
     quantity = str(stamp["quantity"]).replace("-", "_")
-    return glsl_source(name, quantity, _comment_lines("//", stamp), rows, factors, convention.mirrored).encode()
+    return glsl_source(
+        name, quantity, _comment_lines("//", stamp), rows, factors, convention.shift, convention.pole.text
+    ).encode()
 
 
 _Encoder = Callable[[NDArray[np.generic], dict[str, Value], Convention, str], bytes]
@@ -97,5 +99,5 @@ def _comment_lines(mark: str, stamp: Stamp) -> list[str]:
 def _rows(numbers: NDArray[np.generic], convention: Convention) -> Iterable[tuple[int, int, NDArray[np.float64]]]:
     """Each row of the file as (l, m, numbers), from first to last."""
     n_bands = count_bands(numbers)
-    for index, (m, row) in enumerate(zip(orders(n_bands), real_columns(numbers), strict=True)):
-        yield int(np.sqrt(index)), int(-m if convention.mirrored else m), row
+    for index, row in zip(convention.rows(n_bands), real_columns(numbers), strict=True):
+        yield int(np.sqrt(index)), int(orders(n_bands)[index]), row

@@ -13,10 +13,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.coefficients.convention import RADIANCE, Convention, recovered_radiance
-from shviewer.coefficients.programs import CONVENTIONS, OURS, convention_text
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.quantities import RADIANCE, recovered_radiance, whole
+from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
+from shviewer.coefficients.texts import convention_text
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.irradiance import BandLimitedIrradiance, FiniteSum, RadianceLight
@@ -63,7 +65,7 @@ class CoefficientLight(FiniteSum, RadianceLight):
         cls, numbers: NDArray[np.generic], convention: Convention, name: str = "coefficients"
     ) -> CoefficientLight:
         """The light of a program's own numbers (n**2, 3). ValueError for more bands than the program has."""
-        return cls(_radiance(convention.to_ours(numbers), convention.quantity or RADIANCE), name)
+        return cls(_radiance(convention.to_ours(numbers), whole(convention.quantity or RADIANCE)), name)
 
     @property
     def n_bands(self) -> int:

@@ -19,7 +19,8 @@ from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.cli.main import main
-from shviewer.coefficients.programs import CONVENTIONS, parse_convention
+from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -282,7 +283,9 @@ def test_what_fits_alike_is_said(tmp_path: Path) -> None:
     """A constant light tells neither phases nor axes apart."""
     (tmp_path / "bare.txt").write_text("3.5449077018110318 " * 3 + "0 " * 24)
     said = compared_with(Recipe("constant"), str(tmp_path / "bare.txt"))[1]
-    others = "three, unreal, sphericart and shviewer,irradiance-over-pi"
+    others = (
+        "three, unreal, sphericart, babylon, directxmath, e3nn, mitsuba, webxr-phase and shviewer,irradiance-over-pi"
+    )
     assert said == f"bare.txt does not name its convention: shviewer fits, as {others} would"
 
 

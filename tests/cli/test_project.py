@@ -14,6 +14,7 @@ from places import ASSETS
 
 from shviewer.cli.main import main
 from shviewer.cli.status_line import StatusLine
+from shviewer.coefficients.programs import CONVENTIONS, READINGS
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
@@ -328,3 +329,12 @@ def test_suns_beside_split_sun_takes_lamps_and_never_a_light(tmp_path: Path, cap
     assert "sun left out" in capsys.readouterr().err
     assert main(["project", "--suns", "2", "film_studio", "-o", out]) == 2
     assert "it says what --split-sun takes; give that, too" in capsys.readouterr().err
+
+
+def test_the_help_names_every_program(capsys: Capture) -> None:
+    with pytest.raises(SystemExit):
+        main(["project", "--help"])
+    text = " ".join(capsys.readouterr().out.split())
+    said = set(re.findall(r"[\w-]+", re.search(r"convention to write: (.*?); after commas", text)[1]))  # type: ignore[index]
+    assert {*CONVENTIONS} - said == {f"{name}-{phase}" for name in READINGS for phase in ("phase", "no-phase")}
+    assert {*READINGS, "-phase", "-no-phase"} <= said

@@ -6,7 +6,7 @@ import numpy as np
 from coefficients import peer_evaluators as peers
 from harmonics.independent import random_directions
 
-from shviewer.coefficients.programs import parse_convention
+from shviewer.coefficients.texts import parse_convention
 from shviewer.harmonics.basis import Array
 
 PEERS = {
@@ -17,13 +17,39 @@ PEERS = {
     "ambix": (peers.ambix, 8),
     "sphericart": (peers.sphericart, 20),
     "scipy": (peers.scipy, 20),
+    "babylon": (peers.babylon, 3),
+    "playcanvas": (peers.playcanvas, 3),
+    "cesium": (peers.filament, 3),
+    "gltf": (peers.gltf, 3),
+    "godot": (peers.godot, 3),
+    "3dgs": (peers.gaussian_splatting, 4),
+    "e3nn": (peers.e3nn, 4),
+    "shtools": (peers.shtools, 8),
+    "fuma": (peers.fuma, 4),
 }
+"""An evaluator of each program's numbers in that program's axes, and how many bands it is tried with.
+
+Cesium's czm_sphericalHarmonics has Filament's nine terms.
+"""
+
+SHADED = ("filament", "unity", "babylon", "playcanvas", "cesium", "gltf", "godot")
+"""Their evaluators give the irradiance over pi, the others the radiance."""
+
+OF_IRRADIANCE = {"filament": 1, "unity": 1, "babylon": 1, "playcanvas": 1, "cesium": 1, "gltf": np.pi}
+"""What their numbers hold, over the irradiance over pi. Godot's hold radiance over pi."""
 
 THEIR_DIRECTIONS = {
     "filament": lambda x, y, z: (y, z, x),
     "three": lambda x, y, z: (x, z, -y),
     "unity": lambda x, y, z: (x, z, y),
     "unreal": lambda x, y, z: (-y, -x, z),
+    "babylon": lambda x, y, z: (-y, z, x),
+    "playcanvas": lambda x, y, z: (y, z, x),
+    "cesium": lambda x, y, z: (x, z, -y),
+    "gltf": lambda x, y, z: (-y, z, x),
+    "godot": lambda x, y, z: (y, z, x),
+    "directxmath": lambda x, y, z: (-y, z, x),
+    "mitsuba": lambda x, y, z: (y, z, x),
 }
 """Ours -> theirs, written out; the others have our axes."""
 

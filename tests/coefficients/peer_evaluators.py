@@ -147,3 +147,87 @@ def e3nn(coefficients: Numbers, directions: NDArray[np.float64]) -> Numbers:
     )
     scale = np.sqrt((2 * degree(16) + 1) / (4 * PI))
     return np.asarray((norm * scale)[:, : len(coefficients)] @ coefficients)
+
+
+def babylon(c: Numbers, directions: NDArray[np.float64]) -> Numbers:
+    """preScaleForRendering of Maths/sphericalPolynomial.ts (SH3ylmBasisConstants), then harmonicsFunctions of its shaders."""
+    constants = np.sqrt(np.array([1, 3, 3, 3, 15, 15, 5 / 4, 15, 15 / 4]) / (4 * PI))
+    return np.asarray(polynomials(directions) * constants * [1, -1, 1, -1, 1, -1, 1, -1, 1] @ c)
+
+
+def gltf(c: Numbers, directions: NDArray[np.float64]) -> Numbers:
+    """EXT_lights_image_based.ts: convertIrradianceToLambertianRadiance, which divides by pi, and then as above."""
+    return babylon(c / PI, directions)
+
+
+def playcanvas(sh: Numbers, directions: NDArray[np.float64]) -> Numbers:
+    """addAmbient of the shader chunk ambient.js."""
+    x, y, z = directions.T
+    basis = np.stack([1 + 0 * x, x, y, z, x * z, z * y, y * x, 3 * z * z - 1, x * x - y * y], axis=1)
+    return np.asarray(basis @ sh)
+
+
+def godot(sh: Numbers, directions: NDArray[np.float64]) -> Numbers:
+    """The lightmap capture of scene_forward_clustered.glsl: c[5] with the products and the quotients in its comments."""
+    c = np.sqrt(np.array([1, 3, 15, 5 / 4, 15 / 4]) / (4 * PI)) * PI * np.array([1, 2 / 3, 1 / 4, 1 / 4, 1 / 4])
+    return np.asarray(polynomials(directions) * c[[0, 1, 1, 1, 2, 2, 3, 2, 4]] @ sh)
+
+
+def gaussian_splatting(sh: Numbers, directions: NDArray[np.float64]) -> Numbers:
+    """eval_sh of utils/sh_utils.py plus 0.5: C0, C1, C2 and C3 are the roots that they are printed digits of."""
+    x, y, z = directions.T
+    xx, yy, zz = x * x, y * y, z * z
+    c0, c1 = math.sqrt(1 / (4 * PI)), math.sqrt(3 / (4 * PI))
+    c2 = np.sqrt(np.array([15, 15, 5 / 4, 15, 15 / 4]) / (4 * PI)) * [1, -1, 1, -1, 1]
+    c3 = -np.sqrt(np.array([35 / 8, 105, 21 / 8, 7 / 4, 21 / 8, 105 / 4, 35 / 8]) / (4 * PI)) * [1, -1, 1, -1, 1, -1, 1]
+    degree2 = [x * y, y * z, 2 * zz - xx - yy, x * z, xx - yy]
+    last = 4 * zz - xx - yy
+    degree3 = [
+        y * (3 * xx - yy),
+        x * y * z,
+        y * last,
+        z * (2 * zz - 3 * xx - 3 * yy),
+        x * last,
+        z * (xx - yy),
+        x * (xx - 3 * yy),
+    ]
+    basis = np.stack([c0 + 0 * x, -c1 * y, c1 * z, -c1 * x, *(c2[:, None] * degree2), *(c3[:, None] * degree3)], axis=1)
+    return np.asarray(0.5 + basis[:, : len(sh)] @ sh)
+
+
+def b_format(directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The gains of W X Y Z R S T U V K L M N O P Q for a plane wave from azimuth A and elevation E, after Malham, (d, 16)."""
+    x, y, z = directions.T
+    a, e = np.arctan2(y, x), np.arcsin(z)
+    level, third, fourth = np.cos(e), math.sqrt(135 / 256), math.sqrt(27 / 4)
+    gains = [math.sqrt(1 / 2) + 0 * x, np.cos(a) * level, np.sin(a) * level, z]
+    gains += [(3 * z**2 - 1) / 2, np.cos(a) * np.sin(2 * e), np.sin(a) * np.sin(2 * e)]
+    gains += [np.cos(2 * a) * level**2, np.sin(2 * a) * level**2]
+    gains += [
+        z * (5 * z**2 - 3) / 2,
+        third * np.cos(a) * level * (5 * z**2 - 1),
+        third * np.sin(a) * level * (5 * z**2 - 1),
+    ]
+    gains += [fourth * np.cos(2 * a) * z * level**2, fourth * np.sin(2 * a) * z * level**2]
+    gains += [np.cos(3 * a) * level**3, np.sin(3 * a) * level**3]
+    return np.stack(gains, axis=1)
+
+
+def fuma(channels: Numbers, directions: NDArray[np.float64]) -> Numbers:
+    """Channels are integrals with these gains, which are orthogonal: the sum undoes their mean squares, by quadrature."""
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    azimuth = np.arange(8) * PI / 4
+    z, a = np.repeat(nodes, 8), np.tile(azimuth, 8)
+    rule = np.stack([np.sqrt(1 - z * z) * np.cos(a), np.sqrt(1 - z * z) * np.sin(a), z], axis=1)
+    squares = (PI / 4) * (np.repeat(weights, 8)[:, None] * b_format(rule) ** 2).sum(axis=0)
+    return np.asarray((b_format(directions) / squares)[:, : len(channels)] @ channels)
+
+
+def shtools(rows: Numbers, directions: NDArray[np.float64]) -> Numbers:
+    """SHVectorToCilm, then SHCoeffs with its defaults."""
+    import pyshtools
+
+    x, y, z = directions.T
+    latitude, longitude = np.degrees(np.arcsin(z)), np.degrees(np.arctan2(y, x))
+    tables = [pyshtools.SHCoeffs.from_array(pyshtools.shio.SHVectorToCilm(channel)) for channel in rows.T]
+    return np.stack([table.expand(lat=latitude, lon=longitude) for table in tables], axis=1)

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
+import json
+from functools import cache
+from typing import Any
+
 import numpy as np
 import pytest
 from coefficients import peer_evaluators as peers
-from coefficients.peer_cases import EXACT, PEERS, asymmetric, directions_here, theirs
+from coefficients.peer_cases import EXACT, OF_IRRADIANCE, PEERS, SHADED, A, asymmetric, directions_here, theirs
 from numpy.typing import NDArray
+from places import DATA
 
-from shviewer.coefficients.axes import NAMED_AXES, Axes, all_axes, turn
-from shviewer.coefficients.convention import to_quantity
-from shviewer.coefficients.programs import CONVENTIONS, convention_text, parse_convention
+from shviewer.coefficients.parts.axes import NAMED_AXES, Axes, all_axes, turn
+from shviewer.coefficients.parts.quantities import to_quantity
+from shviewer.coefficients.parts.rows import ORDERS, row_order
+from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.texts import convention_text, in_our_terms, parse_convention
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.harmonics.rotation import rotate
 
-A = np.repeat([np.pi, 2 * np.pi / 3, np.pi / 4], [1, 3, 5])[:, None]
-"""The clamped cosine's factors."""
 
-
-def what_it_holds(name: str, coefficients: Array, directions: Array) -> Array:
-    """The radiance, or for programs that keep irradiance over pi that."""
-    held = coefficients * A / np.pi if name in ("filament", "unity") else coefficients
-    return evaluate_basis(directions, int(np.sqrt(len(held)))) @ held
+def shaded(name: str, radiance: Array) -> Array:
+    """Coefficients of what the program's evaluator gives for a light with these of the radiance."""
+    return radiance * A / np.pi if name in SHADED else radiance
 
 
 @pytest.mark.parametrize("name", PEERS)
@@ -30,7 +33,7 @@ def test_the_program_evaluates_our_export_to_the_same_function(name: str) -> Non
     evaluator, n_bands = PEERS[name]
     coefficients, directions = asymmetric(n_bands), directions_here()
     numbers = CONVENTIONS[name].from_ours(coefficients)
-    wanted = what_it_holds(name, coefficients, directions)
+    wanted = evaluate_basis(directions, n_bands) @ shaded(name, coefficients)
     np.testing.assert_allclose(evaluator(numbers, theirs(name, directions)), wanted, rtol=0, atol=EXACT)
 
 
@@ -41,13 +44,13 @@ def test_coefficients_of_the_program_become_ours(name: str) -> None:
     if name == "scipy":
         numbers = CONVENTIONS[name].from_ours(asymmetric(n_bands)[::-1].copy())
     directions = directions_here()
-    found = evaluate_basis(directions, n_bands) @ CONVENTIONS[name].to_ours(numbers)
-    if name in ("filament", "unity"):
-        found = found / np.pi
+    ours = CONVENTIONS[name].to_ours(numbers)
+    ours = ours / np.pi if name in OF_IRRADIANCE else shaded(name, ours)
+    found = evaluate_basis(directions, n_bands) @ ours
     np.testing.assert_allclose(found, evaluator(numbers, theirs(name, directions)), rtol=0, atol=10 * EXACT)
 
 
-@pytest.mark.parametrize("name", ["filament", "three", "unity", "unreal", "sphericart"])
+@pytest.mark.parametrize("name", ["filament", "three", "unity", "unreal", "sphericart", "playcanvas", "cesium"])
 def test_a_projection_made_with_the_programs_own_functions_is_the_one_we_write(name: str) -> None:
     """Integrals over the program's directions of the function times the program's functions, one by one."""
     evaluator, n_bands = PEERS[name]
@@ -57,7 +60,7 @@ def test_a_projection_made_with_the_programs_own_functions_is_the_one_we_write(n
     basis = evaluator(np.eye(n_bands**2), theirs(name, rule.directions))
     gram = basis.T @ (rule.weights[:, None] * basis)
     projected = np.linalg.solve(gram, basis.T @ (rule.weights[:, None] * ours))
-    if name in ("filament", "unity"):
+    if name in OF_IRRADIANCE:  # rows of band l are within band l in every order
         projected = projected * A / np.pi
     np.testing.assert_allclose(CONVENTIONS[name].from_ours(coefficients), projected, rtol=0, atol=EXACT)
 
@@ -74,15 +77,101 @@ def test_pyshtools_evaluates_both_normalisations_and_both_phases(normalization: 
     np.testing.assert_allclose(convention.to_ours(numbers), coefficients, rtol=0, atol=EXACT)
 
 
-def test_e3nn_has_its_pole_along_y_and_no_phase() -> None:
+@cache
+def values_of_programs() -> dict[str, Any]:
+    return dict(json.loads((DATA / "peer_values.json").read_text()))
+
+
+@pytest.mark.parametrize("name", ["directxmath", "e3nn", "mitsuba", "spharpy"])
+def test_the_values_that_the_program_itself_gave_sum_up_to_the_function(name: str) -> None:
+    """peer_values.py ran the programs: DirectXMath in float32, the others to the ten digits that are kept."""
+    values = np.array(values_of_programs()["programs"][name]["values"])
+    there = np.array(values_of_programs()["directions"])
+    coefficients, n_bands = asymmetric(6), 6
+    here = there @ CONVENTIONS[name].axes.matrix  # the inverse of ours to theirs
+    np.testing.assert_allclose(theirs(name, here), there, rtol=0, atol=1e-15)
+    wanted = evaluate_basis(here, n_bands) @ coefficients
+    found = values @ np.asarray(CONVENTIONS[name].from_ours(coefficients))
+    tolerance = 2e-6 if name == "directxmath" else 1e-9  # of sums of 36 products, the largest of which are near 1
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=tolerance)
+
+
+def test_e3nn_has_its_pole_along_y_and_its_first_degree_is_x_y_z() -> None:
     convention = parse_convention("shviewer,no-phase,+z+x+y")
-    coefficients, directions = asymmetric(4), directions_here()
-    numbers = np.asarray(convention.from_ours(coefficients))
-    in_basis_axes = directions @ convention.axes.matrix.T
-    x, y, z = in_basis_axes.T
-    value = peers.e3nn(numbers, np.stack([y, z, x], axis=1))  # its x, y, z are what it calls m = -1, 0, 1
-    np.testing.assert_allclose(value, evaluate_basis(directions, 4) @ coefficients, rtol=0, atol=EXACT)
-    np.testing.assert_allclose(np.stack([y, z, x], axis=1), directions, rtol=0, atol=0)  # and they are our x, y, z
+    np.testing.assert_array_equal(convention.from_ours(asymmetric(4)), CONVENTIONS["e3nn"].from_ours(asymmetric(4)))
+    rows = np.asarray(CONVENTIONS["e3nn"].from_ours(CONVENTIONS["shviewer"].to_ours(np.eye(4))))
+    by_axis = [np.linalg.solve(rows, np.eye(4))[:, i] for i in (1, 2, 3)]  # our coefficients of its l = 1
+    directions = directions_here(20)
+    found = evaluate_basis(directions, 2) @ np.stack(by_axis, axis=1)
+    np.testing.assert_allclose(found, directions * np.sqrt(3 / (4 * np.pi)), rtol=0, atol=1e-15)
+    for_a_client = parse_convention("shviewer,no-phase,-y+x+z")
+    np.testing.assert_allclose(
+        parse_convention("e3nn,y-up").from_ours(asymmetric(4)), for_a_client.from_ours(asymmetric(4)), atol=1e-15
+    )
+
+
+def test_live_packages_evaluate_what_we_write_for_them() -> None:
+    """Mitsuba with all of its bands, and spharpy, where they are installed."""
+    drjit = pytest.importorskip("drjit", reason="Dr.Jit is not installed: pip install mitsuba")
+    mitsuba = pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install mitsuba")
+    mitsuba.set_variant("scalar_rgb")
+    directions, coefficients = directions_here(5), asymmetric(10)
+    there = theirs("mitsuba", directions)
+    basis = np.array([[float(v) for v in drjit.sh_eval(mitsuba.Vector3d(*row), 9)] for row in there.tolist()])
+    found = basis @ np.asarray(CONVENTIONS["mitsuba"].from_ours(coefficients))
+    np.testing.assert_allclose(found, evaluate_basis(directions, 10) @ coefficients, rtol=0, atol=1e-12)
+
+
+def test_spharpy_evaluates_what_we_write_for_it_and_its_fuma_is_the_inverse() -> None:
+    spharpy = pytest.importorskip("spharpy", reason="spharpy is not installed: pip install spharpy")
+    from pyfar import Coordinates
+
+    directions, coefficients = directions_here(50), asymmetric(8)
+    basis = np.real(spharpy.SphericalHarmonics(7, Coordinates(*directions.T)).basis)
+    found = basis @ np.asarray(CONVENTIONS["spharpy"].from_ours(coefficients))
+    np.testing.assert_allclose(found, evaluate_basis(directions, 8) @ coefficients, rtol=0, atol=EXACT)
+    n, m = np.array([(l, m) for l in range(4) for m in range(-l, l + 1)]).T
+    channel = np.asarray(spharpy.spherical.nm_to_fuma(n, m)).astype(int)
+    np.testing.assert_array_equal(row_order("order-fuma-inverse", 4), np.argsort(channel))
+
+
+@pytest.mark.parametrize(
+    ("name", "wanted"),
+    [
+        ("order-playcanvas", "1 x y z xz yz xy zz xx"),
+        ("order-xyz", "1 x y z xy xz yz xx zz"),
+        ("order-alternating", "1 z x y zz xz yz xx xy"),
+        ("order-2001", "1 y z x xz yz xy zz xx"),
+        ("order-cilm", "1 z x y zz xz xx yz xy"),
+        ("order-m-major", "1 z zz x xz y yz xx xy"),
+        ("order-m-rising", "xy y yz 1 z zz x xz xx"),
+        ("order-fuma", "1 x y z zz xz yz xx xy"),
+    ],
+)
+def test_an_order_of_rows_is_that_of_the_sources_functions(name: str, wanted: str) -> None:
+    """zz is 3z^2-1 and xx is x^2-y^2, as the sources that parts/rows.py names have them one after the other."""
+    ours = ["1", "y", "z", "x", "xy", "yz", "zz", "xz", "xx"]
+    assert " ".join(ours[index] for index in row_order(name, 3)) == wanted
+    numbers = np.asarray(parse_convention(f"shviewer,{name}").from_ours(asymmetric(3)))
+    np.testing.assert_array_equal(numbers, asymmetric(3)[row_order(name, 3)])
+    np.testing.assert_array_equal(parse_convention(f"shviewer,{name}").to_ours(numbers), asymmetric(3))
+
+
+def test_orders_of_any_length_are_permutations_and_others_say_where_they_end() -> None:
+    most = {"order-playcanvas": 3, "order-xyz": 3, "order-2001": 3, "order-fuma": 4, "order-fuma-inverse": 4}
+    for name in ORDERS:
+        for n_bands in range(1, most.get(name, 7) + 1):
+            assert sorted(row_order(name, n_bands)) == list(range(n_bands**2))
+        if name in most:
+            with pytest.raises(
+                ValueError, match=rf"{name}, {most[name] + 1} bands: it is defined for 1 to {most[name]}"
+            ):
+                row_order(name, most[name] + 1)
+    pyshtools = pytest.importorskip("pyshtools")
+    cilm = np.arange(2 * 36.0).reshape(2, 6, 6)
+    index = [int(cilm[int(m < 0), l, abs(m)]) for l in range(6) for m in range(-l, l + 1)]
+    vector = pyshtools.shio.SHCilmToVector(cilm)
+    np.testing.assert_array_equal(np.array(index)[row_order("order-cilm", 6)], vector)
 
 
 def test_the_printed_factors_of_filament_are_ours() -> None:
@@ -164,6 +253,10 @@ def test_axes_say_which_way_is_up_and_which_hand() -> None:
         "three,z-up-left",
         "shviewer,m-swapped,-z+y+x",
         "shviewer,polynomial",
+        "shviewer,polynomial,order-xyz,radiance-over-pi",
+        "shviewer,shifted,schmidt,order-m-major",
+        "shviewer,fuma,m-swapped,order-fuma-inverse",
+        "e3nn,y-up",
     ],
 )
 def test_a_convention_is_its_text(text: str) -> None:
@@ -171,16 +264,26 @@ def test_a_convention_is_its_text(text: str) -> None:
     assert parse_convention(convention_text(convention)) == convention
     coefficients = asymmetric(3)
     back = convention.to_ours(convention.from_ours(coefficients, "irradiance" if convention.quantity else "radiance"))
-    held = "irradiance" if convention.quantity == "irradiance-over-pi" else convention.quantity or "radiance"
+    held = (convention.quantity or "radiance").removesuffix("-over-pi")
     np.testing.assert_allclose(
         to_quantity(back, held, "irradiance" if convention.quantity else "radiance"), coefficients, atol=EXACT
     )
+    if not convention.complex:
+        numbers = convention.from_ours(coefficients)
+        ours = parse_convention(in_our_terms(convention)).to_ours(numbers)
+        np.testing.assert_allclose(ours, convention.to_ours(numbers), rtol=0, atol=EXACT)
 
 
 @pytest.mark.parametrize(
     ("text", "says"),
     [
         ("blender", "must be one of shviewer, filament"),
+        ("webxr", "nobody documents its phase; name a reading, webxr-phase or webxr-no-phase"),
+        ("playcanvas,order-fuma", "so are shviewer,[+]y[+]z[+]x,polynomial,order-fuma,irradiance-over-pi"),
+        ("three,order-cilm", "order-cilm contradicts three"),
+        ("e3nn,phase", "so are shviewer,[+]z[+]x[+]y"),
+        ("three,shifted", "shifted contradicts three"),
+        ("shviewer,order-cilm,order-fuma", "contradict each other"),
         ("three,irradiance", "contradicts three, which takes radiance"),
         ("filament,radiance", "contradicts filament, which takes irradiance-over-pi"),
         ("unreal,no-phase", "not be what that program expects"),
@@ -195,16 +298,36 @@ def test_unknown_and_contradictory_conventions_are_refused(text: str, says: str)
 
 
 def test_more_bands_than_a_program_has_are_refused() -> None:
-    for name in ("filament", "three", "unity", "unreal"):
-        with pytest.raises(ValueError, match=rf"4 bands: {name} takes 1 to 3"):
-            CONVENTIONS[name].from_ours(asymmetric(4))
+    three_bands = (
+        "filament",
+        "three",
+        "unity",
+        "unreal",
+        "babylon",
+        "playcanvas",
+        "cesium",
+        "gltf",
+        "godot",
+        "webxr-phase",
+    )
+    for name, most in {
+        **dict.fromkeys(three_bands, 3),
+        "3dgs": 4,
+        "fuma": 4,
+        "directxmath": 6,
+        "mitsuba": 10,
+        "e3nn": 13,
+    }.items():
+        with pytest.raises(ValueError, match=rf"{most + 1} bands: {name} takes 1 to {most}"):
+            CONVENTIONS[name].from_ours(asymmetric(most + 1))
 
 
 def test_programs_that_always_have_three_bands_get_three() -> None:
-    for name, rows in {"filament": 4, "three": 9, "unity": 9, "unreal": 9, "ambix": 4}.items():
+    for name, rows in {"filament": 4, "three": 9, "unity": 9, "unreal": 9, "ambix": 4, "babylon": 9, "3dgs": 4}.items():
         numbers = CONVENTIONS[name].from_ours(asymmetric(2))
         assert len(numbers) == rows
         assert not np.any(numbers[4:])
+    assert len(CONVENTIONS["directxmath"].from_ours(asymmetric(1))) == 4
 
 
 def test_radiance_comes_back_from_irradiance_up_to_the_degree_that_is_lost() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from coefficients import peer_evaluators as peers
-from coefficients.peer_cases import EXACT, PEERS, asymmetric, directions_here, theirs
+from coefficients.peer_cases import EXACT, OF_IRRADIANCE, PEERS, SHADED, asymmetric, directions_here, theirs
 
 from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.recipe import Recipe
@@ -20,22 +20,19 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
 
-OVER_PI = ("filament", "unity")
-"""They hold irradiance over pi; the others here hold radiance."""
-
 
 def given(n_bands: int) -> CoefficientLight:
     return CoefficientLight(asymmetric(n_bands), "given")
 
 
 def projected(name: str, n_bands: int) -> Projected:
-    quantity = "irradiance" if name in OVER_PI else "radiance"
+    quantity = "irradiance" if name in OF_IRRADIANCE else "radiance"
     return project_recipe(Recipe(given(n_bands), n_bands=n_bands, quantity=quantity))
 
 
 def held(name: str, light: CoefficientLight, directions: Array) -> Array:
-    """What the program's numbers are of."""
-    if name not in OVER_PI:
+    """What the program makes of its numbers."""
+    if name not in SHADED:
         return light.radiance(directions)
     return load_light(Recipe(light, quantity="irradiance")).radiance(directions) / np.pi
 
@@ -71,7 +68,7 @@ def as_the_program_keeps_them(name: str, numbers: peers.Numbers) -> tuple[str, s
         return ".txt", "\n".join(rows)
     if name == "three":  # SphericalHarmonics3.toArray
         return ".json", json.dumps(numbers.ravel().tolist())
-    if name in ("unity", "unreal"):  # one list per channel
+    if name in ("unity", "unreal", "directxmath"):  # one list per channel
         return ".json", json.dumps(numbers.T.tolist())
     if name == "scipy":
         return ".csv", "\n".join(",".join(f"{v.real!r},{v.imag!r}" for v in row) for row in numbers.tolist())
@@ -104,7 +101,7 @@ def test_our_own_numbers_survive_every_program_and_every_format(tmp_path: Path) 
             light = find_light(str(path))
             assert isinstance(light, CoefficientLight)
             assert light.file is not None
-            quantity = "irradiance" if name in OVER_PI else "radiance"
+            quantity = "irradiance" if name in OF_IRRADIANCE else "radiance"
             written = convention.from_ours(projected(name, 3).coefficients, quantity)
             np.testing.assert_array_equal(light.file.numbers, written)  # not one digit is lost
             np.testing.assert_allclose(light.given, asymmetric(3), rtol=0, atol=1e-14)

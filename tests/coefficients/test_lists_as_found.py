@@ -66,7 +66,7 @@ def test_a_grey_list_is_told_from_a_coloured_one(name: str, text: str, note: str
 def test_a_table_of_shtools_is_that_of_shtools(tmp_path: Path) -> None:
     """The file of its own writer, for lmax 1 to 8: some sizes pass for lists of grey."""
     pyshtools = pytest.importorskip("pyshtools")
-    from shviewer.coefficients.programs import parse_convention
+    from shviewer.coefficients.texts import parse_convention
 
     for lmax in range(1, 9):
         ours = np.random.default_rng(lmax).normal(size=((lmax + 1) ** 2, 1))

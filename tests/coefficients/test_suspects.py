@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from coefficients.peer_cases import A, asymmetric, spoiled
 
-from shviewer.coefficients.axes import Axes, turn
-from shviewer.coefficients.convention import OVER_PI
+from shviewer.coefficients.parts.axes import Axes, turn
+from shviewer.coefficients.parts.quantities import OVER_PI
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.suspects import usual_suspects
 

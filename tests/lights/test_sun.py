@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from shviewer.coefficients.axes import Axes
+from shviewer.coefficients.parts.axes import Axes
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import evaluate_basis, normalise

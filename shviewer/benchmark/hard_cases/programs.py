@@ -13,7 +13,7 @@ import numpy as np
 
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.benchmark.hard_cases.shader import SEED
-from shviewer.coefficients.programs import parse_convention
+from shviewer.coefficients.texts import parse_convention
 from shviewer.harmonics.basis import Array
 
 CONSTANTS = np.sqrt(np.array([1, 3, 3, 3, 15, 15, 5 / 4, 15, 15 / 4]) / (4 * pi))

@@ -37,6 +37,11 @@ def names_place(name: str) -> bool:
     return _PLACE.fullmatch(name) is not None
 
 
+def are_places(names: Sequence[str]) -> bool:
+    """Whether names with places have an l and m, and not only the number of the row, as sh[3]."""
+    return not _INDEX.fullmatch(names[0])
+
+
 def places_of(names: Sequence[str]) -> list[int] | None:
     """The index l(l+1) + m of each name, such as L00, l1_1, L1m1 or sh[0]; None unless all n**2 are named once.
 

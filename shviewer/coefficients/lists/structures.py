@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.coefficients.lists.names import channel_order, places_of
+from shviewer.coefficients.lists.names import are_places, channel_order, places_of
 from shviewer.coefficients.numbers import MAX_NUMBERS, Listed, arranged
 from shviewer.errors import LightError
 from shviewer.limits import MAX_BANDS
@@ -43,7 +43,8 @@ def read_structure(found: object) -> Listed:
         return arranged(rows_of_numbers(channels))
     rows = {key: value for key, value in found.items() if isinstance(value, list | dict)}
     if len(rows) > 1 and (place := places_of(list(rows))) is not None:
-        return arranged(rows_of_numbers(list(rows.values()))[np.argsort(place)])
+        found_rows = arranged(rows_of_numbers(list(rows.values()))[np.argsort(place)])
+        return replace(found_rows, placed=are_places(list(rows)))
     raise LightError(
         'a JSON object without "coefficients"; it holds rows of red, green and blue there, or is that of three.js or glTF'
     )

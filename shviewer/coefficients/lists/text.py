@@ -9,7 +9,7 @@ import numpy as np
 
 from shviewer.coefficients.lists.columns import header_of, read_columns
 from shviewer.coefficients.lists.commas import DECIMAL_COMMAS, with_points
-from shviewer.coefficients.lists.names import channel_at_end, channel_order, places_of
+from shviewer.coefficients.lists.names import are_places, channel_at_end, channel_order, places_of
 from shviewer.coefficients.lists.scan import Scan, without_comments
 from shviewer.coefficients.numbers import Listed, Numbers, arranged, holds_light
 from shviewer.errors import LightError
@@ -103,7 +103,8 @@ def _by_name(scan: Scan, owners: list[int], sizes: list[int]) -> Listed:
         rows = values.reshape(-1, len(order))[:, order]
         of_rows = [scan.names[i] for i in sorted(set(range(len(scan.names))) - set(owners))]
         place = places_of(of_rows) if len(of_rows) == len(rows) else None
-        return arranged(rows if place is None else rows[np.argsort(place)])
+        found = arranged(rows if place is None else rows[np.argsort(place)])
+        return replace(found, placed=place is not None and are_places(of_rows))
     if len(names) == 3 and len(set(sizes)) == 1 and (order := channel_order([channel_at_end(name) for name in names])):
         return arranged(values.reshape(3, -1)[order])
     place = places_of(names)
@@ -113,4 +114,5 @@ def _by_name(scan: Scan, owners: list[int], sizes: list[int]) -> Listed:
             f"{len(names)} lists of numbers, with the names {shown}; keep the one that holds the coefficients"
         )
     rows = _even(values, sizes, "names")
-    return arranged(rows[np.argsort(place)]) if rows.ndim == 2 else Listed(rows)
+    found = arranged(rows[np.argsort(place)]) if rows.ndim == 2 else Listed(rows)
+    return replace(found, placed=are_places(names))

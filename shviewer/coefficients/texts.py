@@ -1,0 +1,104 @@
+"""Texts of conventions, as --convention takes them: a name and modifiers, such as "three,z-up"."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.axes import NAMED_AXES, Axes
+from shviewer.coefficients.parts.quantities import QUANTITIES
+from shviewer.coefficients.parts.rows import ACN, ORDERS
+from shviewer.coefficients.parts.scales import SCALES
+from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
+
+SHIFTED = "shifted"
+"""The modifier of a list whose mean is less by 0.5, as 3D Gaussian splatting has it."""
+
+MODIFIERS = ("phase", "no-phase", "m-swapped", SHIFTED, *QUANTITIES, *SCALES, *list(ORDERS)[1:], *NAMED_AXES)
+
+
+def parse_convention(text: str) -> Convention:
+    """The convention of a text: a name and modifiers, such as "three,z-up" or "shviewer,no-phase,4pi,irradiance".
+
+    Names are those of CONVENTIONS, modifiers those of MODIFIERS, or axes such as "+x+z-y". ValueError for an unknown one, and
+    for a modifier that contradicts the program or another modifier.
+    """
+    name, *modifiers = (part.strip() for part in text.split(","))
+    if name in READINGS:
+        raise ValueError(
+            f"convention {name!r}: nobody documents its phase; name a reading, {' or '.join(READINGS[name])}: with a lamp"
+            " overhead row 1 is negative with phase, positive without"
+        )
+    if name not in CONVENTIONS:
+        raise ValueError(f"convention {name!r}: it must be one of {', '.join(CONVENTIONS)}")
+    convention, said = CONVENTIONS[name], dict[str, str]()
+    for modifier in modifiers:
+        kind, convention = _modified(convention, modifier)
+        if said.setdefault(kind, modifier) != modifier:
+            raise ValueError(f"convention {text!r}: {said[kind]} and {modifier} contradict each other")
+    return convention
+
+
+def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
+    """The aspect that the modifier changes, and the convention changed."""
+    if modifier in QUANTITIES:
+        fixed = CONVENTIONS[convention.name].quantity
+        if fixed not in (None, modifier):
+            raise ValueError(f"{modifier} contradicts {convention.name}, which takes {fixed}")
+        return "quantity", convention.holding(modifier)
+    if modifier in NAMED_AXES or modifier[:1] in ("+", "-"):
+        return "axes", replace(convention, axes=Axes.named(modifier))
+    if modifier in ("phase", "no-phase"):
+        return "phase", _if_free(convention, modifier, "phase", modifier == "phase")
+    if modifier == "m-swapped":
+        return "sign of m", _if_free(convention, modifier, "mirrored", True)
+    if modifier == SHIFTED:
+        return "shift", _if_free(convention, modifier, "shift", CONVENTIONS["3dgs"].shift)
+    if modifier in ORDERS and modifier != ACN:
+        return "order", _if_free(convention, modifier, "order", modifier)
+    if modifier in SCALES:
+        return "scale", _if_free(convention, modifier, "scale", modifier)
+    raise ValueError(
+        f"convention modifier {modifier!r}: it must be one of {', '.join(MODIFIERS)}, or axes such as +x+z-y"
+    )
+
+
+def _if_free(convention: Convention, modifier: str, field: str, value: object) -> Convention:
+    """Our own convention with a field changed. ValueError for another program's, which is fixed."""
+    if convention.name != OURS.name and getattr(convention, field) != value:
+        raise ValueError(
+            f"{modifier} contradicts {convention.name}: it would not be what that program expects; numbers that differ from its"
+            f" own so are {in_our_terms(replace(convention, **{field: value}))}"  # type: ignore[arg-type]
+        )
+    changes: dict[str, object] = {field: value}
+    if value == "polynomial":
+        changes |= {"most_bands": 3, "phase": False}
+    return replace(convention, **changes)  # type: ignore[arg-type]
+
+
+def in_our_terms(convention: Convention) -> str:
+    """A text for the same numbers that begins with "shviewer"; all of the convention stands in its modifiers."""
+    return convention_text(replace(convention, name=OURS.name, axes=convention.basis_axes, pole=Axes()))
+
+
+def convention_text(convention: Convention) -> str:
+    """The text that `parse_convention` turns into this convention again."""
+    base = CONVENTIONS[convention.name]
+    parts = [convention.name]
+    if convention.axes != base.axes:
+        parts.append(
+            next((name for name, text in NAMED_AXES.items() if text == convention.axes.text), convention.axes.text)
+        )
+    if convention.scale != base.scale:
+        parts.append(convention.scale)
+    if convention.phase != base.phase and convention.scale != "polynomial":
+        parts.append("phase" if convention.phase else "no-phase")
+    if convention.mirrored != base.mirrored:
+        parts.append("m-swapped")
+    if convention.order != base.order:
+        parts.append(convention.order)
+    if convention.shift != base.shift:
+        parts.append(SHIFTED)
+    if convention.quantity != base.quantity and convention.quantity:
+        parts.append(convention.quantity)
+    return ",".join(parts)
