@@ -39,7 +39,7 @@ from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.reference import compare_with_reference
-from shviewer.viewer.saving.stamp import state_of_stamp
+from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.state import state_of
 from shviewer.words import MOST_CHARACTERS, one_line
 

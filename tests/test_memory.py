@@ -34,7 +34,8 @@ from shviewer.lights.reading import Reading
 from shviewer.limits import TEXEL_BYTES, Limits
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.reference import compare_with_reference
-from shviewer.viewer.saving.stamp import metadata, state_of_stamp
+from shviewer.viewer.saving.stamp import metadata
+from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.state import state_of
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="pipes and limits as POSIX has them")

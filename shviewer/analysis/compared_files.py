@@ -14,7 +14,7 @@ from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.reading import interpreted, read_numbers
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.errors import LightError
-from shviewer.files import naming
+from shviewer.files import naming, version_of
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import built_in_lights, read_from
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
@@ -34,6 +34,7 @@ def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple
             f"{text} is {_kind(text)}; {option} takes coefficients ({', '.join(COEFFICIENT_SUFFIXES)}): shviewer project "
             "makes them of a light"
         )
+    version = version_of(file)
     with naming(text):
         listed = read_numbers(file, recipe.reading.limits)
         if listed.stamp or listed.implied or recipe.reading.convention:
@@ -42,7 +43,7 @@ def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple
             found = _found(recipe, listed)
             read = interpreted(listed, found.best.text)
     name = one_line(file.name)
-    light = read_from(CoefficientLight.of_file(read, name), file)
+    light = read_from(CoefficientLight.of_file(read, name), file, version)
     said = [] if found and found.fits else [f"{name}: {note}" for note in read.notes]  # what fits was guessed rightly
     return replace(recipe, compare=light), "; ".join([*said, *([_said(name, found)] if found else [])])
 

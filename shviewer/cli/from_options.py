@@ -13,32 +13,43 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
 from shviewer.errors import UsageError
 from shviewer.outputs import Replacing
+from shviewer.words import one_line
 
 if TYPE_CHECKING:
+    from shviewer.lights.light import Light
     from shviewer.lights.reading import Reading
+    from shviewer.viewer.saving.restoring import Restored
     from shviewer.viewer.state import State
+    from shviewer.viewer.view import View
+
+DEFAULT_SIZE = (1280, 640)
 
 
 def chosen_of(options: argparse.Namespace, holder: type) -> dict[str, Any]:
     """The given options that belong to a dataclass, by the names of its fields."""
     given = vars(options)
-    return {name: given[name] for name in options_of(holder) if given.get(name) is not None}
+    return _given({name: given.get(name) for name in options_of(holder)})
 
 
-def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
+START = Recipe()
+
+
+def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe = START) -> tuple[Recipe, str]:
     """The recipe that the options ask for, with LIGHT, and a message about it or "".
 
-    UsageError for an option out of range, before the light is read if that does not depend on it.
+    start: what the options come on top of. UsageError for an option out of range, before the light is read if that does
+    not depend on it.
     """
     from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
     from shviewer.lights.find import split_light
 
     chosen = chosen_of(options, Recipe)
-    window, separator, width = chosen.get("window", "none").partition(":")
-    if separator and window in ("none", "dering"):
-        raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
-    chosen |= {"window": window, "window_width": _finite(width, "window width") if separator else None}
-    recipe = Recipe(light, reading_from(options), **chosen)
+    if "window" in chosen:
+        window, separator, width = chosen["window"].partition(":")
+        if separator and window in ("none", "dering"):
+            raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
+        chosen |= {"window": window, "window_width": _finite(width, "window width") if separator else None}
+    recipe = replace(start, light=light, reading=reading_from(options, start.reading), **chosen)
     recipe.check()
     if "suns" in chosen and not recipe.split_sun:
         raise UsageError(f"--suns {recipe.suns}: it says what --split-sun takes; give that, too")
@@ -49,7 +60,8 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
         recipe, found = compared_with(recipe, compared)
         if found:
             print(f"shviewer: {found}", file=sys.stderr)
-    if compared or split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES:
+    listed = isinstance(light, str) and split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES
+    if compared or (listed and start is START):
         from shviewer.analysis.comparison import as_the_file_holds
 
         any_bands = options.n_bands is None and options.tolerance is None
@@ -59,10 +71,13 @@ def recipe_from(options: argparse.Namespace, light: str) -> tuple[Recipe, str]:
 
 def replacing_of(options: argparse.Namespace) -> Replacing:
     """What the command may replace. Its inputs are its lights, coefficients to compare, and a reference."""
-    from shviewer.lights.find import split_light
+    from shviewer.lights.find import file_of, split_light
 
-    others = [vars(options).get(name) for name in ("compare", "reference")]
+    others = [vars(options).get(name) for name in ("compare", "reference", "like")]
     inputs = [*(split_light(light)[0] for light in lights_of(options)), *(Path(other) for other in others if other)]
+    if pictured := pictured_by(options):
+        named = (pictured.state.recipe.light, pictured.state.recipe.compare)
+        inputs += filter(None, (file_of(light) for light in named if light is not None))
     return Replacing(tuple(inputs), options.force)
 
 
@@ -72,42 +87,85 @@ def lights_of(options: argparse.Namespace) -> list[str]:
     return given.get("lights") or [given.get("light", "green")]
 
 
+def pictured_by(options: argparse.Namespace) -> Restored | None:
+    """What the options come on top of: the picture named by --like, or by LIGHT; None for another light. Read once."""
+    given = vars(options)
+    if "pictured" not in given:
+        options.pictured = _pictured(options) if "as_image" in given else None
+    found: Restored | None = options.pictured
+    return found
+
+
+def _pictured(options: argparse.Namespace) -> Restored | None:
+    from shviewer.lights.find import split_light
+    from shviewer.viewer.saving.restoring import restored
+
+    limits = reading_from(options).limits
+    if options.like is None:
+        path, part = split_light(options.light)
+        return None if part or options.as_image else restored(path, limits)
+    found = restored(options.like, limits, options.light)
+    if found is None:
+        raise UsageError(f"--like {options.like}: no picture that shviewer saved; name one, or leave out --like")
+    return found
+
+
 def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
-    """The state that the options ask for. UsageError for an option out of range."""
+    """The state that the options ask for, on top of that of a picture. UsageError for an option out of range.
+
+    Size and overlay, which are no part of a state, are those of the picture from now on, unless the options say them.
+    """
     from shviewer.lights.find import built_in_lights
     from shviewer.viewer.actions import open_light
-    from shviewer.viewer.camera import towards
     from shviewer.viewer.state import State, changed
+
+    pictured = pictured_by(options)
+    start = pictured.state if pictured else State()
+    light = start.recipe.light if pictured else options.light
+    options.size = tuple(options.size or (pictured and pictured.size) or DEFAULT_SIZE)
+    options.no_overlay = vars(options).get("no_overlay") or (pictured is not None and not pictured.overlay)
+    view = _view_from(options, start.view)
+    asked = start.recipe.n_bands if options.n_bands is None else options.n_bands
+    State(Recipe(n_bands=asked), view).check(options.size)
+    recipe, said = recipe_from(options, light, start.recipe if pictured else START)
+    lights = tuple(built_in_lights()) if all_lights else (light,)
+    state = open_light(State(recipe, view, lights), light)
+    state = changed(
+        state, message=said or view.message, basis=tuple(options.basis) if options.basis else start.view.basis
+    )
+    state.check()
+    if pictured and pictured.said:
+        print(one_line(f"shviewer: note: {options.like or options.light}: {pictured.said}"), file=sys.stderr)
+        state = changed(state, message=pictured.said) if all_lights else state
+    return changed(state, sweep_to=None) if all_lights else state  # a window shows the picture, and does not play on
+
+
+def _view_from(options: argparse.Namespace, start: View) -> View:
+    """The view that the options ask for, but for a basis function, which is checked as soon as its bands are known."""
+    from shviewer.viewer.camera import towards
     from shviewer.viewer.view import View
 
     elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
     if any(abs(elevation) > 90 for elevation in elevations):
         raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
-    chosen = chosen_of(options, View) | {"error_range": _error_range(options)}
+    chosen: dict[str, Any] = {"basis": None} | chosen_of(options, View)
+    if options.error_range is not None:
+        chosen["error_range"] = _error_range(options.error_range, options.error or start.error)
     if options.camera:
         chosen["camera"] = options.camera[0] % 360, options.camera[1]
     if options.basis:
-        chosen |= {"basis": None, "lobe_view": True}  # checked as soon as its bands are known
+        chosen |= {"basis": None, "lobe_view": True}
+    if options.exposure_stops is not None:
+        chosen = {"exposure_offset": 0.0} | chosen
     if options.rotate_light:
         chosen["light_rotation"] = towards(*options.rotate_light)
-    view = View(**chosen)
-    asked = Recipe.n_bands if options.n_bands is None else options.n_bands
-    State(Recipe(n_bands=asked), view).check(tuple(options.size))
-    recipe, said = recipe_from(options, options.light)
-    lights = tuple(built_in_lights()) if all_lights else (options.light,)
-    state = open_light(State(recipe, view, lights), options.light)
-    state = changed(state, message=said, basis=tuple(options.basis) if options.basis else None)
-    state.check()
-    return state
+    return replace(start, **chosen)
 
 
-def _error_range(options: argparse.Namespace) -> float | None:
+def _error_range(text: str, error: str) -> float:
     """The error range: a radiance, or for the relative error a share of 1, which may be given in percent."""
-    text = options.error_range
-    if text is None:
-        return None
     share = text.endswith("%")
-    if share and options.error != "relative":
+    if share and error != "relative":
         raise UsageError(f"error range {text}: a share is for --error relative; give a radiance, such as 0.5")
     return _finite(text.removesuffix("%"), "error range") / (100 if share else 1)
 
@@ -143,12 +201,12 @@ def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
     return replace(recipe, n_bands=wanted or found.best_bands)
 
 
-def reading_from(options: argparse.Namespace) -> Reading:
-    """The reading that the options ask for. UsageError for an unknown layout or convention."""
-    from shviewer.lights.reading import LAYOUT_CHOICES, Reading
-    from shviewer.limits import Limits
+def reading_from(options: argparse.Namespace, start: Reading | None = None) -> Reading:
+    """The reading that the options ask for, on top of `start`. UsageError for an unknown layout or convention."""
+    from shviewer.lights.reading import DEFAULT_READING, LAYOUT_CHOICES
 
-    if options.layout not in LAYOUT_CHOICES:
+    start = start or DEFAULT_READING
+    if options.layout is not None and options.layout not in LAYOUT_CHOICES:
         raise UsageError(f"layout {options.layout!r}: it must be one of {', '.join(LAYOUT_CHOICES)}")
     chosen = {
         "side": options.max_side,
@@ -156,10 +214,15 @@ def reading_from(options: argparse.Namespace) -> Reading:
         "file_bytes": _binary_millions(options.max_file_mib),
         "memory_bytes": _binary_millions(options.max_memory_mib),
     }
-    limits = Limits(**{name: value for name, value in chosen.items() if value is not None})
     if options.input_convention:
         _check_convention(options, options.input_convention)
-    return Reading(options.sanitize, options.layout, limits=limits, convention=options.input_convention)
+    named = {"sanitize": options.sanitize, "layout": options.layout, "convention": options.input_convention or None}
+    limits = replace(start.limits, **_given(chosen))
+    return replace(start, limits=limits, **_given(named))
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def _binary_millions(count: float | None) -> int | None:

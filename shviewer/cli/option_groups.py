@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Container
+from pathlib import Path
 from typing import Any, NoReturn
 
 from shviewer.analysis.options import Bands, Number, Option, Pair, Share, Whole, WholeOr, options_of
@@ -36,6 +37,17 @@ class OneLineParser(argparse.ArgumentParser):
 def add_view_options(parser: OneLineParser) -> None:
     """Add LIGHT and every option that its picture depends on."""
     parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
+    parser.add_argument(
+        "--like",
+        metavar="PICTURE",
+        type=Path,
+        help="everything but the light as in a picture that shviewer saved; other options come on top of it",
+    )
+    parser.add_argument(
+        "--as-image",
+        action="store_true",
+        help="take a picture that shviewer saved for an image, not for the light and the view that it shows",
+    )
     add_table(parser, Recipe)
     add_picture_options(parser)
     add_reading_options(parser)
@@ -85,7 +97,7 @@ def add_picture_options(parser: OneLineParser) -> None:
         help="turn the light so that its +x axis points there, degrees",
     )
     parser.add_argument(
-        "--size", metavar=("W", "H"), nargs=2, type=int, default=(1280, 640), help="pixels (default 1280 640)"
+        "--size", metavar=("W", "H"), nargs=2, type=int, help="pixels (default 1280 640, or those of the picture)"
     )
 
 
@@ -102,12 +114,12 @@ def add_reading_options(parser: OneLineParser, convention: str = "--convention")
     parser.add_argument(
         "--sanitize",
         action="store_true",
+        default=None,
         help="repair NaN, infinite and negative texels of an image instead of refusing or keeping them",
     )
     parser.add_argument(
         "--layout",
         metavar="L",
-        default="auto",
         help="how an image covers the sphere: auto (default), lat-long, cube, angular or mirror-ball",
     )
     parser.add_argument(

@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     state = state_from(options, all_lights=True)
     first = Task(lambda: _announced(state))
     try:
-        window.run(first, tuple(options.size), verbose=options.verbose, watch=options.watch)
+        window.run(first, options.size, verbose=options.verbose, watch=options.watch, as_image=options.as_image)
     except NoDisplayError as error:
         stem = f"shviewer-{file_stem(subject(state.recipe).light.name)}"
         composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)

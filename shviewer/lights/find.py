@@ -52,17 +52,22 @@ def file_version(text: str) -> FileVersion | None:
     return version_of(split_light(text)[0])
 
 
-_FILES: WeakKeyDictionary[Light, Path] = WeakKeyDictionary()
+_FILES: WeakKeyDictionary[Light, tuple[Path, FileVersion | None]] = WeakKeyDictionary()
 
 
 def file_of(light: str | Light) -> Path | None:
     """The file that a light is read from, or that the text of a command line names; None for a light that has none."""
-    return split_light(light)[0] if isinstance(light, str) else _FILES.get(light.source)
+    return split_light(light)[0] if isinstance(light, str) else _FILES.get(light.source, (None, None))[0]
 
 
-def read_from(light: Found, path: Path) -> Found:
-    """The light, which from now on is known to come from that file."""
-    _FILES[light] = Path(os.path.abspath(path))
+def version_of_light(light: Light) -> FileVersion | None:
+    """The version that the light's file had when it was read; None if it has none."""
+    return _FILES.get(light.source, (None, None))[1]
+
+
+def read_from(light: Found, path: Path, version: FileVersion | None = None) -> Found:
+    """The light, which from now on is known to come from that file. version: the file's before it was read."""
+    _FILES[light] = Path(os.path.abspath(path)), version
     return light
 
 
@@ -73,7 +78,8 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
     LightError if there is no such light or its file is bad.
     """
     path, part = split_light(text)
-    return read_from(_read(text, path, part, reading), path)
+    version = version_of(path)  # asked first: a change during the reading is a later version
+    return read_from(_read(text, path, part, reading), path, version)
 
 
 def _read(text: str, path: Path, part: str, reading: Reading) -> Light:

@@ -41,8 +41,13 @@ class View:
         "--exposure",
         "STOPS",
     )
-    exposure_offset: float = 0.0
-    """Stops added to the exposure, which is `exposure_stops` or, where that is None, chosen from the light."""
+    exposure_offset: float = option(
+        0.0,
+        Number(-MAX_EXPOSURE, MAX_EXPOSURE, f"it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops"),
+        "added to the exposure, fixed or chosen",
+        "--exposure-offset",
+        "STOPS",
+    )
     tone: str = option("none", Choice(TONES), "curve after exposure: none, reinhard, aces or log", "--tone", "T")
     error: str = option(
         "off",

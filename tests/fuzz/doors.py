@@ -51,7 +51,7 @@ from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
 from shviewer.outputs import OURS
 from shviewer.viewer.saving.reference import compare_with_reference
-from shviewer.viewer.saving.stamp import state_of_stamp
+from shviewer.viewer.saving.stamp_reading import state_of_stamp
 
 MOST_CHARACTERS = 1000
 

@@ -27,7 +27,8 @@ from shviewer.viewer.keys import ACTIONS
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.saving.picture_files import write_exr
-from shviewer.viewer.saving.stamp import metadata, state_of_stamp
+from shviewer.viewer.saving.stamp import metadata
+from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.screenshot import render_linear, render_rgb
 from shviewer.viewer.state import state_of
 

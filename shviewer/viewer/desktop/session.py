@@ -10,6 +10,7 @@ import sys
 import traceback
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from threading import Event
 from time import perf_counter
 
@@ -32,6 +33,7 @@ from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
+from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import State, changed
@@ -60,11 +62,12 @@ class Session:
         *,
         verbose: bool = False,
         watch: bool = False,
+        as_image: bool = False,
         wake: Callable[[], None] | None = None,
     ) -> None:
         """first: the picture of the state; without it, it is made here: LightError or UsageError if that is impossible.
 
-        wake: called from another thread when a task has ended.
+        as_image: take pictures that this program saved for images. wake: called from another thread when a task has ended.
         """
         first = first or prepare(state)
         reading = state.recipe.reading  # from now on no pipe is waited for: it was read where the command line named it
@@ -73,6 +76,7 @@ class Session:
         self.picture: Picture = replace(first, state=self.state)
         self.by_map = False
         self.verbose = verbose
+        self.as_image = as_image
         self.metronome = Metronome()
         self._watch = Watch() if watch else None
         self._looked_at = perf_counter()
@@ -139,13 +143,29 @@ class Session:
             self.state = changed(self.picture.state, message=f"stopped {what}".rstrip(), sweep_to=None)
 
     def drop(self, path: str) -> None:
-        """Open a file, which may have been edited since it was last opened; never code, which is no file."""
+        """Open a file, which may have been edited since it was last opened; never code, which is no file.
+
+        A picture that this program saved is the state that it was saved from.
+        """
         if is_code(path):
-            message = one_line(f"{path}: code runs only when the command line names it")
-            self.state = changed(self.state, message=message)
+            self._say(f"{path}: code runs only when the command line names it")
             return
-        self.state = open_light(self.state, path)
+        try:
+            picture = None if self.as_image else restored(Path(path), self.state.recipe.reading.limits)
+        except ShviewerError as error:
+            self._say(str(error))
+            return
+        if picture is None:
+            self.state = open_light(self.state, path)
+        else:
+            shown = replace(picture.state, lights=self.state.lights)
+            reading = replace(shown.recipe.reading, isolated=True)
+            self.state = changed(open_light(shown, shown.recipe.light), reading=reading, sweep_to=None)
+            self._say(picture.said)
         self._reading = Event()
+
+    def _say(self, message: str) -> None:
+        self.state = changed(self.state, message=one_line(message))
 
     def tick(self, now: float) -> bool:
         """Take a step of the sweep and a look at a watched file, where they are due; return whether anything changed."""

@@ -38,11 +38,13 @@ CLICK_PIXELS = 4.0
 """A press is a click if the mouse moves less than this before its release."""
 
 
-def run(first: Task[Picture], size: tuple[int, int], *, verbose: bool = False, watch: bool = False) -> None:
+def run(
+    first: Task[Picture], size: tuple[int, int], *, verbose: bool = False, watch: bool = False, as_image: bool = False
+) -> None:
     """Open a window of `size` screen coordinates, show the first picture when it is there, and stay until it is closed.
 
     NoDisplayError without a display, GraphicsError without OpenGL 3.3, and what the first picture raises. verbose: one line
-    on stderr per frame. watch: read the light's file again when it changes.
+    on stderr per frame. watch: read the light's file again when it changes. as_image: take pictures of this program for images.
     """
     if first.wait(PATIENCE):
         first.result()  # what is refused at once is refused without a window
@@ -50,7 +52,7 @@ def run(first: Task[Picture], size: tuple[int, int], *, verbose: bool = False, w
         canvas = Canvas(moderngl.create_context(require=330))
         try:
             if _wait_for(first, handle, canvas):
-                Window(handle, canvas, first.result(), verbose, watch).loop()
+                Window(handle, canvas, first.result(), verbose, watch, as_image).loop()
         finally:
             canvas.release()
 
@@ -74,11 +76,21 @@ def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
 class Window:
     """One window, one session, one canvas: events in, frames out."""
 
-    def __init__(self, handle: Any, canvas: Canvas, first: Picture, verbose: bool, watch: bool = False) -> None:
+    def __init__(
+        self,
+        handle: Any,
+        canvas: Canvas,
+        first: Picture,
+        verbose: bool,
+        watch: bool = False,
+        as_image: bool = False,
+    ) -> None:
         self.handle = handle
         self.canvas = canvas
         self.verbose = verbose
-        self.session = Session(first.state, first, verbose=verbose, watch=watch, wake=glfw.post_empty_event)
+        self.session = Session(
+            first.state, first, verbose=verbose, watch=watch, as_image=as_image, wake=glfw.post_empty_event
+        )
         self.frames_due = 2  # the first swap may still have the old size
         self.frame_count = 0
         self.pressed_at: tuple[float, float] | None = None

@@ -1,4 +1,4 @@
-"""The stamp of a picture: everything that made it, and its figures, as one JSON text; and the state read back from it.
+"""The stamp of a picture: everything that made it, and its figures, as one JSON text. stamp_reading.py reads it.
 
 Schema 1: `state` holds every field of recipe and view, by its name. Older stamps have no schema and no `state`; they are
 read as far as they go. Keys are added and never change their meaning.
@@ -8,27 +8,24 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+import os
 from dataclasses import asdict, fields
+from pathlib import Path
 from typing import Any
 
-from shviewer.analysis.options import Flag, Kind, Number, Whole, taken, whole
 from shviewer.analysis.recipe import Recipe
-from shviewer.errors import UsageError
-from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.lights.find import is_code
+from shviewer.lights.find import file_of, version_of_light
 from shviewer.lights.light import Light
-from shviewer.lights.reading import LAYOUT_CHOICES, Reading
 from shviewer.lights.suns.sun import Sun
-from shviewer.limits import MAX_BANDS, Limits
+from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.version import __version__
-from shviewer.viewer.camera import Quaternion
 from shviewer.viewer.colour_maps import map_of
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.saving.file_marks import mark_of
 from shviewer.viewer.state import State
-from shviewer.viewer.view import MAX_EXPOSURE, View
+from shviewer.viewer.view import View
 
 SCHEMA = 1
 
@@ -38,39 +35,11 @@ EVALUATED = {DirectSum: "direct", SplineMap: "map", Surfaces: "surfaces"}
 NOT_SEEN = ("layout_tried",)
 """Fields of the view that no pixel depends on."""
 
-BESIDE: dict[str, Kind] = {
-    "exposure_offset": Number(-MAX_EXPOSURE, MAX_EXPOSURE, f"it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops"),
-    "cursor": Whole(0, MAX_BANDS - 1, "cursor {}", f"bands are counted from 0 to {MAX_BANDS - 1}"),
-    "cursor_visible": Flag(),
-    "help_visible": Flag(),
-    "sweep_to": Whole(1, MAX_BANDS, "a sweep to {} bands", f"the viewer shows 1 to {MAX_BANDS}"),
-}
-"""Fields of the view that are no options, and their kinds."""
-
 LIMITS = ("side", "texels", "file_bytes")
 """The limits that a stamp tells: that of memory is for the machine to say."""
 
-BEFORE_SCHEMAS: dict[str, tuple[str, Callable[[Any], Any]]] = {
-    "bands": ("n_bands", int),
-    "muted": ("muted", frozenset),
-    "quantity": ("quantity", str),
-    "split_sun": ("split_sun", bool),
-    "window": ("window", str),
-    "window_width": ("window_width", float),
-    "method": ("method", str),
-    "samples_asked": ("samples", int),
-    "seed": ("seed", int),
-    "exposure_stops": ("exposure_stops", float),
-    "tone": ("tone", str),
-    "error": ("error", lambda error: error["kind"]),
-    "marks": ("marks", bool),
-    "sheet": ("sheet", str),
-    "lobe_view": ("lobe_view", bool),
-    "basis": ("basis", tuple),
-    "camera_degrees": ("camera", tuple),
-    "zoom": ("zoom", float),
-}
-"""Keys of a stamp without a schema: the field that each of them tells, and how."""
+DIGITS = 9
+"""Significant digits of the coefficients in a stamp: those of float32."""
 
 
 def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
@@ -84,6 +53,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "light": picture.light.name,
         "light_argument": state.recipe.light if isinstance(state.recipe.light, str) else None,
         "light_notes": list(picture.light.notes),
+        "files": _files(picture),
         "bands": state.recipe.n_bands,
         "muted": list(state.recipe.muted_shown),
         "quantity": state.recipe.quantity,
@@ -149,7 +119,41 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
             "bands_needed_unsplit": asdict(picture.needs_unsplit) if picture.needs_unsplit else None,
         },
     }
+    description["coefficients"] = _coefficients(picture)  # last, since they may be many
     return json.dumps(_finite(description), allow_nan=False)
+
+
+def _files(picture: Picture) -> dict[str, Any]:
+    """The marks of the files that the picture was made of, and where the compared one was found."""
+    files, compare = {}, picture.state.recipe.compare
+    for name, light in (("light", picture.subject.whole), ("compare", compare)):
+        mark = _mark(light) if light is not None else None
+        if mark is not None:
+            files[name] = mark
+    if compare is not None and (path := file_of(compare)) is not None:
+        files["compare"] = {"path": _as_given(path), **files.get("compare", {})}
+    return files
+
+
+def _mark(light: Light) -> dict[str, Any] | None:
+    path = file_of(light)
+    return None if path is None else mark_of(path, version_of_light(light))
+
+
+def _as_given(path: Path) -> str:
+    """A path as it is named in the present folder: one below it without the folders above."""
+    below = os.path.relpath(path) if path.drive == Path.cwd().drive else ".."
+    return str(path) if below.startswith("..") else below
+
+
+def _coefficients(picture: Picture) -> list[list[float]]:
+    """What is left of the picture where its light is gone: the coefficients of its bands, none muted, without the window.
+
+    They are of the quantity shown. Of more than MAX_DIRECT_BANDS bands, the first.
+    """
+    n_bands = min(picture.state.recipe.n_bands, MAX_DIRECT_BANDS)
+    rows = picture.projection.coefficients[: n_bands**2].tolist()
+    return [[float(f"{value:.{DIGITS}g}") for value in row] for row in rows]
 
 
 def _described(sun: Sun) -> dict[str, Any]:
@@ -171,35 +175,6 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def state_of_stamp(text: str, light: str | Light | None = None, compare: CoefficientLight | None = None) -> State:
-    """The state that a stamp tells. `light` and `compare` give what no text can hold: a light object and coefficients.
-
-    UsageError for a text that is no stamp, one of a later schema, or a value out of range.
-    """
-    try:
-        said = json.loads(text)
-        if said.get("schema", 0) > SCHEMA:
-            raise UsageError(f"a picture of schema {said['schema']}: this version reads {SCHEMA}; update shviewer")
-        recipe, view = _told(said["state"]) if "state" in said else _told_before_schemas(said)
-        given = (said["state"]["recipe"] if "state" in said else said).get("compare")
-        compared = str(given["name"]) if given else ""
-    except (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
-        raise UsageError(f"no stamp of a picture ({error}): save the picture again") from error
-    name = recipe.pop("light", None)
-    if light is None and name is None:
-        raise UsageError("the picture is of a light that has no text to name it: give the light")
-    if light is None and is_code(name):
-        raise UsageError(f"the picture is of {name}, which is code, and no picture runs code: give the light")
-    if compared and compare is None:
-        raise UsageError(f"the picture compares with {compared}: give those coefficients")
-    if compare is not None and recipe.get("n_bands", 1) > compare.n_bands:
-        raise UsageError(f"{recipe['n_bands']} bands: {compare.extent}; give the coefficients of the picture")
-    shown = light or name or Recipe.light
-    state = State(Recipe(light=shown, compare=compare, **recipe), View(**view), (shown,))
-    state.check()
-    return state
-
-
 def _recorded(state: State) -> dict[str, Any]:
     """Every field of recipe and view, as JSON."""
     recipe = {part.name: getattr(state.recipe, part.name) for part in fields(Recipe)}
@@ -217,47 +192,3 @@ def _recorded(state: State) -> dict[str, Any]:
         },
     }
     return {"recipe": recipe, "view": view}
-
-
-def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The values of recipe and view; fields that a later version may have added are left out."""
-    recipe = {part.name: said["recipe"][part.name] for part in fields(Recipe) if part.name in said["recipe"]}
-    view = {part.name: said["view"][part.name] for part in fields(View) if part.name in said["view"]}
-    recipe |= taken(recipe, Recipe) | {"reading": _told_reading(recipe["reading"])}
-    view |= taken(view, View) | {"light_rotation": _told_rotation(view["light_rotation"])}
-    for name, kind in BESIDE.items():
-        if view[name] is not None or name != "sweep_to":
-            view[name] = kind.taken(name, view[name])
-            kind.check(name, view[name])
-    if not isinstance(view["message"], str) or not isinstance(recipe["light"], str | None):
-        raise ValueError("light and message are texts")
-    recipe.pop("compare")
-    return recipe, view
-
-
-def _told_reading(said: dict[str, Any]) -> Reading:
-    limits = Limits(**{name: whole(said["limits"][name], name) for name in LIMITS})
-    if (
-        said["layout"] not in LAYOUT_CHOICES
-        or not isinstance(said["convention"], str)
-        or min(getattr(limits, name) for name in LIMITS) < 1
-    ):
-        raise ValueError("a reading that there is not")
-    return Reading(Flag().taken("sanitize", said["sanitize"]), said["layout"], limits, said["convention"])
-
-
-def _told_rotation(said: list[Any]) -> Quaternion:
-    x, y, z, w = map(float, said)
-    if not abs(math.hypot(x, y, z, w) - 1) < 1e-6:
-        raise ValueError(f"a light rotation of length {math.hypot(x, y, z, w):g}")
-    return x, y, z, w
-
-
-def _told_before_schemas(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    told = {name: make(said[key]) for key, (name, make) in BEFORE_SCHEMAS.items() if said.get(key) is not None}
-    recipe, view = taken(told, Recipe), taken(told, View)
-    reading = Reading(sanitize=bool(said.get("sanitize", False)), layout=str(said.get("layout", "auto")))
-    light = said.get("light_argument")
-    if not isinstance(light, str | None) or reading.layout not in LAYOUT_CHOICES:
-        raise ValueError("a light or a layout that there is not")
-    return {"light": light, "reading": reading, **recipe}, view

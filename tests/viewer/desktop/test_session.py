@@ -6,11 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import frame_of, picture_of
 
 from shviewer.errors import LightError
 from shviewer.viewer.actions import Command
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.state import state_of
+from shviewer.viewer.saving.picture_files import write_png
+from shviewer.viewer.saving.stamp import metadata
+from shviewer.viewer.state import changed, state_of
 
 SCENE = '[[lobe]]\nprofile = "constant"\nradiance = {}\n'
 
@@ -108,3 +111,30 @@ def test_the_title_is_that_of_the_light_shown_however_it_came_there() -> None:
     assert session.press("T") is None
     session.prepare()
     assert session.title == "shviewer - constant"
+
+
+@pytest.mark.usefixtures("fresh_memory")
+def test_a_picture_that_is_dropped_is_the_state_that_it_was_saved_from(tmp_path: Path) -> None:
+    shown = picture_of("studio", n_bands=7, error="signed", camera=(1.0, 2.0), sweep_to=9)
+    write_png(tmp_path / "p.png", np.zeros((2, 2, 3), np.uint8), metadata(shown, frame_of(shown), "none"))
+    session = Session(state_of("green", "constant"))
+    session.drop(str(tmp_path / "p.png"))
+    session.prepare()
+    state = session.state
+    assert (state.recipe.light, state.recipe.n_bands, state.view.error, state.view.camera) == (
+        "studio",
+        7,
+        "signed",
+        (1.0, 2.0),
+    )
+    assert state.lights == ("green", "constant", "studio")
+    assert state.view.sweep_to is None  # it is looked at, not played on
+    assert session.picture.state == state
+    write_png(tmp_path / "p.png", np.zeros((2, 2, 3), np.uint8), "{")
+    session.drop(str(tmp_path / "p.png"))
+    session.prepare()
+    assert "its stamp is damaged" in session.state.view.message
+    assert changed(session.state, message="") == changed(state, message="")
+    image = Session(state_of(), as_image=True)
+    image.drop(str(tmp_path / "p.png"))
+    assert image.state.recipe.light == str(tmp_path / "p.png")

@@ -19,7 +19,8 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.reading import Reading
 from shviewer.limits import Limits
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.saving.stamp import SCHEMA, metadata, state_of_stamp
+from shviewer.viewer.saving.stamp import SCHEMA, metadata
+from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.state import State, state_of
 from shviewer.viewer.view import View
 

@@ -1,0 +1,125 @@
+"""The state that the stamp of a picture tells, read back. Nothing but a UsageError comes out of a stamp that is none."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+from shviewer.analysis.options import Flag, Kind, Whole, taken, whole
+from shviewer.analysis.recipe import Recipe
+from shviewer.errors import UsageError
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.find import is_code
+from shviewer.lights.light import Light
+from shviewer.lights.reading import LAYOUT_CHOICES, Reading
+from shviewer.limits import MAX_BANDS, Limits
+from shviewer.viewer.camera import Quaternion
+from shviewer.viewer.saving.stamp import LIMITS, SCHEMA
+from shviewer.viewer.state import State
+from shviewer.viewer.view import View
+
+BESIDE: dict[str, Kind] = {
+    "cursor": Whole(0, MAX_BANDS - 1, "cursor {}", f"bands are counted from 0 to {MAX_BANDS - 1}"),
+    "cursor_visible": Flag(),
+    "help_visible": Flag(),
+    "sweep_to": Whole(1, MAX_BANDS, "a sweep to {} bands", f"the viewer shows 1 to {MAX_BANDS}"),
+}
+"""Fields of the view that are no options, and their kinds."""
+
+BEFORE_SCHEMAS: dict[str, tuple[str, Callable[[Any], Any]]] = {
+    "bands": ("n_bands", int),
+    "muted": ("muted", frozenset),
+    "quantity": ("quantity", str),
+    "split_sun": ("split_sun", bool),
+    "window": ("window", str),
+    "window_width": ("window_width", float),
+    "method": ("method", str),
+    "samples_asked": ("samples", int),
+    "seed": ("seed", int),
+    "exposure_stops": ("exposure_stops", float),
+    "tone": ("tone", str),
+    "error": ("error", lambda error: error["kind"]),
+    "marks": ("marks", bool),
+    "sheet": ("sheet", str),
+    "lobe_view": ("lobe_view", bool),
+    "basis": ("basis", tuple),
+    "camera_degrees": ("camera", tuple),
+    "zoom": ("zoom", float),
+}
+"""Keys of a stamp without a schema: the field that each of them tells, and how."""
+
+
+def state_of_stamp(text: str, light: str | Light | None = None, compare: CoefficientLight | None = None) -> State:
+    """The state that a stamp tells. `light` and `compare` give what no text can hold: a light object and coefficients.
+
+    UsageError for a text that is no stamp, one of a later schema, or a value out of range.
+    """
+    try:
+        said = json.loads(text)
+        if said.get("schema", 0) > SCHEMA:
+            raise UsageError(f"a picture of schema {said['schema']}: this version reads {SCHEMA}; update shviewer")
+        recipe, view = _told(said["state"]) if "state" in said else _told_before_schemas(said)
+        given = (said["state"]["recipe"] if "state" in said else said).get("compare")
+        compared = str(given["name"]) if given else ""
+    except (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
+        raise UsageError(f"no stamp of a picture ({error}): save the picture again") from error
+    name = recipe.pop("light", None)
+    if light is None and name is None:
+        raise UsageError("the picture is of a light that has no text to name it: give the light")
+    if light is None and is_code(name):
+        raise UsageError(f"the picture is of {name}, which is code, and no picture runs code: give the light")
+    if compared and compare is None:
+        raise UsageError(f"the picture compares with {compared}: give those coefficients")
+    if compare is not None and recipe.get("n_bands", 1) > compare.n_bands:
+        raise UsageError(f"{recipe['n_bands']} bands: {compare.extent}; give the coefficients of the picture")
+    shown = light or name or Recipe.light
+    state = State(Recipe(light=shown, compare=compare, **recipe), View(**view), (shown,))
+    state.check()
+    return state
+
+
+def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The values of recipe and view; fields that a later version may have added are left out."""
+    recipe = {part.name: said["recipe"][part.name] for part in fields(Recipe) if part.name in said["recipe"]}
+    view = {part.name: said["view"][part.name] for part in fields(View) if part.name in said["view"]}
+    recipe |= taken(recipe, Recipe) | {"reading": _told_reading(recipe["reading"])}
+    view |= taken(view, View) | {"light_rotation": _told_rotation(view["light_rotation"])}
+    for name, kind in BESIDE.items():
+        if view[name] is not None or name != "sweep_to":
+            view[name] = kind.taken(name, view[name])
+            kind.check(name, view[name])
+    if not isinstance(view["message"], str) or not isinstance(recipe["light"], str | None):
+        raise ValueError("light and message are texts")
+    recipe.pop("compare")
+    return recipe, view
+
+
+def _told_reading(said: dict[str, Any]) -> Reading:
+    limits = Limits(**{name: whole(said["limits"][name], name) for name in LIMITS})
+    if (
+        said["layout"] not in LAYOUT_CHOICES
+        or not isinstance(said["convention"], str)
+        or min(getattr(limits, name) for name in LIMITS) < 1
+    ):
+        raise ValueError("a reading that there is not")
+    return Reading(Flag().taken("sanitize", said["sanitize"]), said["layout"], limits, said["convention"])
+
+
+def _told_rotation(said: list[Any]) -> Quaternion:
+    x, y, z, w = map(float, said)
+    if not abs(math.hypot(x, y, z, w) - 1) < 1e-6:
+        raise ValueError(f"a light rotation of length {math.hypot(x, y, z, w):g}")
+    return x, y, z, w
+
+
+def _told_before_schemas(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    told = {name: make(said[key]) for key, (name, make) in BEFORE_SCHEMAS.items() if said.get(key) is not None}
+    recipe, view = taken(told, Recipe), taken(told, View)
+    reading = Reading(sanitize=bool(said.get("sanitize", False)), layout=str(said.get("layout", "auto")))
+    light = said.get("light_argument")
+    if not isinstance(light, str | None) or reading.layout not in LAYOUT_CHOICES:
+        raise ValueError("a light or a layout that there is not")
+    return {"light": light, "reading": reading, **recipe}, view
