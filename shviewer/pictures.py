@@ -14,7 +14,7 @@ from shviewer.api import LightLike, recipe_of, with_options
 from shviewer.errors import UsageError
 from shviewer.viewer import screenshot as offscreen
 from shviewer.viewer.composition import compose
-from shviewer.viewer.picture import prepare
+from shviewer.viewer.picture import first_picture, prepare
 from shviewer.viewer.state import State
 from shviewer.viewer.view import View
 
@@ -54,7 +54,7 @@ def view(
     from shviewer.viewer.desktop.task import Task
 
     state = _state(light, bands, options, size)
-    window.run(Task(lambda: prepare(state)), size)
+    window.run(Task(lambda: [first_picture(state)]), size)
 
 
 def _state(light: LightLike, bands: int | None, options: dict[str, Any], size: Any) -> State:

@@ -6,6 +6,8 @@ Expensive results are remembered (cache.py): a light is sampled once for its err
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Final
 
 import numpy as np
 
@@ -44,6 +46,18 @@ HALF_SEED = 2**31
 """The number added to the seed for the second, independent set of samples."""
 
 
+class Pending(Enum):
+    """The type of a figure that is still being computed: it is neither 0 nor absent."""
+
+    PENDING = "\u2026"
+
+    def __str__(self) -> str:
+        return str(self.value)
+
+
+PENDING: Final = Pending.PENDING
+
+
 @dataclass(frozen=True)
 class Needs:
     """The fewest bands within a tolerance, for the radiance and for the irradiance of a light; None if no count is."""
@@ -57,18 +71,21 @@ class Needs:
     searched: int
     """The number of bands up to which was searched: fewer for samples, and of given coefficients all that there are."""
 
+    def of(self, quantity: str) -> int | None:
+        """The answer for one of QUANTITIES."""
+        return self.irradiance if quantity == "irradiance" else self.radiance
+
 
 @dataclass(frozen=True)
-class Figures:
-    """The figures that the overlay and the metadata show. Radiance is linear."""
+class Sums:
+    """The figures that are sums of squares, which follow from coefficients and norm at once. Radiance is linear."""
 
     channels: dict[str, ChannelFigures]
     """Figures of "all" channels together, and of "red", "green", "blue" and "luminance"."""
-    irradiance_relative_l2: float
-    """The relative L2 error of the irradiance: the error of the same coefficients if they shade a white Lambertian surface."""
     floor: float
     """Relative L2 errors below this cannot be told from rounding or from the quadrature's own error."""
-    extremes: Extremes
+    peak: float
+    """The largest |radiance| of the original seen on a grid."""
     energy_share: tuple[float, ...]
     """The energy of each band divided by that of the light, for all bands that were projected exactly."""
     factors: tuple[float, ...]
@@ -77,6 +94,15 @@ class Figures:
     @property
     def relative_l2(self) -> float:
         return self.channels["all"].relative_l2
+
+
+@dataclass(frozen=True)
+class Figures(Sums):
+    """All figures that the overlay and the metadata show: those that are sums, and those that are searched for."""
+
+    irradiance_relative_l2: float
+    """The relative L2 error of the irradiance: the error of the same coefficients if they shade a white Lambertian surface."""
+    extremes: Extremes
 
 
 def needs(recipe: Recipe) -> Needs:
@@ -123,9 +149,14 @@ def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: 
     return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 
 
-@remember(most=64, doing="comparing")
 def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Array, Figures]:
-    """The coefficients shown of a projection, (n_bands**2, 3), and their figures."""
+    """The coefficients shown of a projection, (n_bands**2, 3), and all their figures."""
+    return sums(light, projection, what)[0], figures_of(light, projection, what)
+
+
+@remember(most=64)
+def sums(light: Light, projection: Projection, what: Shown) -> tuple[Array, Sums]:
+    """The coefficients shown of a projection, (n_bands**2, 3), and the figures that need no search."""
     n_bands, muted, window_name, width = what
     exact = project(light, *BEST, projection.n_bands).coefficients
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
@@ -133,19 +164,30 @@ def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Arra
     shown = shown * per_coefficient(factors)
     total = float(np.trace(light.products()))
     power = band_power(exact).sum(axis=1)
-    extremes = error_grid(light, grid_rows(n_bands)).compare(shown)
-    irradiance = irradiance_of(light)
-    cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(n_bands))
-    shaded = squared_error(irradiance.products().diagonal(), cosine * exact[: n_bands**2], cosine * shown)
-    figures = Figures(
-        irradiance_relative_l2=relative(sum(shaded), irradiance.products().diagonal()),
-        channels=channel_figures(light.products(), exact[: n_bands**2], shown, extremes.peak),
+    peak = error_grid(light, grid_rows(n_bands)).peak
+    figures = Sums(
+        channels=channel_figures(light.products(), exact[: n_bands**2], shown, peak),
         floor=max(PARSEVAL_FLOOR, light.accuracy()),
-        extremes=extremes,
+        peak=peak,
         energy_share=tuple(float(p) / total if total else 0.0 for p in power),
         factors=tuple(0.0 if band in muted else float(factor) for band, factor in enumerate(factors)),
     )
     return shown, figures
+
+
+@remember(most=64, doing="comparing")
+def figures_of(light: Light, projection: Projection, what: Shown) -> Figures:
+    """All figures of a projection as it is shown."""
+    shown, known = sums(light, projection, what)
+    exact = project(light, *BEST, projection.n_bands).coefficients[: len(shown)]
+    irradiance = irradiance_of(light)
+    cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(what.n_bands))
+    norm = irradiance.products().diagonal()
+    return Figures(
+        **vars(known),
+        irradiance_relative_l2=relative(sum(squared_error(norm, cosine * exact, cosine * shown)), norm),
+        extremes=error_grid(light, grid_rows(what.n_bands)).compare(shown),
+    )
 
 
 def _window_factors(coefficients: Array, name: str, width: float | None) -> Array:

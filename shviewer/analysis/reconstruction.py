@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
-from shviewer.analysis.figures import Figures, error_grid, grid_rows, reconstruct
-from shviewer.analysis.projections import Projection, project, sampling_of
+from shviewer.analysis.figures import Figures, Sums, error_grid, figures_of, grid_rows, sums
+from shviewer.analysis.projections import BEST, Projection, project, sampling_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array
@@ -21,14 +22,25 @@ class Reconstruction:
     """The light, the part of it that is projected, and the suns that were split off."""
     projection: Projection
     coefficients: Array
-    figures: Figures
+    sums: Sums
+    """The figures that need no search."""
+
+    @cached_property
+    def figures(self) -> Figures:
+        """All figures; searched for when they are asked for."""
+        return figures_of(self.subject.light, self.projection, self.recipe.shown)
 
 
-def reconstruction_of(recipe: Recipe) -> Reconstruction:
-    """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range."""
+def reconstruction_of(recipe: Recipe, ahead: int = 0) -> Reconstruction:
+    """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range.
+
+    ahead: the number of bands that will be asked for: a light that keeps its coefficients is then projected only once.
+    """
     recipe.check()
     found = subject(recipe)
+    if ahead > recipe.projected_bands:
+        project(found.light, *BEST, ahead)
     projection = project(found.light, *sampling_of(recipe), recipe.projected_bands)
     named = recipe.light if isinstance(recipe.light, str) else found.light.name
     check_radiance(error_grid(found.whole, grid_rows(1)).peak, named)
-    return Reconstruction(recipe, found, projection, *reconstruct(found.light, projection, recipe.shown))
+    return Reconstruction(recipe, found, projection, *sums(found.light, projection, recipe.shown))

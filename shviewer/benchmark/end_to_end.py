@@ -85,7 +85,7 @@ class Watched(window.Window):
 
 window.Window = Watched
 try:
-    window.run(Task(lambda: prepare(State())), (1280, 640))
+    window.run(Task(lambda: [prepare(State())]), (1280, 640))
 except KeyboardInterrupt:
     pass
 except GraphicsError as error:

@@ -36,27 +36,28 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.viewer.desktop import window
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
     from shviewer.viewer.desktop.task import Task
+    from shviewer.viewer.picture import completed
     from shviewer.viewer.saving.picture_files import write_numbered
     from shviewer.viewer.screenshot import save_picture
 
     state = state_from(options, all_lights=True)
-    first = Task(lambda: _announced(state))
+    first = Task(lambda: [_announced(state)])
     try:
         window.run(first, options.size, verbose=options.verbose, watch=options.watch, as_image=options.as_image)
     except NoDisplayError as error:
         stem = f"shviewer-{file_stem(subject(state.recipe).light.name)}"
         composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
-        picture = first.result()
+        picture = completed(first.result())
         out = write_numbered(stem, lambda out: save_picture(picture, composition, out, exclusive=True), first=0)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0
 
 
 def _announced(state: State) -> Picture:
-    """The picture of a state; the notes on its light are printed."""
+    """The picture of a state, its figures pending; the notes on its light are printed."""
     from shviewer.cli.notes import print_notes
-    from shviewer.viewer.picture import prepare
+    from shviewer.viewer.picture import first_picture
 
-    picture = prepare(state)
+    picture = first_picture(state)
     print_notes(state.recipe)
     return picture

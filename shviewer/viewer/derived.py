@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.analysis.cache import remember
-from shviewer.analysis.figures import error_grid, grid_rows, reconstruct
+from shviewer.analysis.figures import error_grid, grid_rows, sums
 from shviewer.analysis.projections import BEST, Projection, project
 from shviewer.analysis.recipe import Shown
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
+from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
@@ -62,7 +63,7 @@ def reconstruction_map(
     light: Light, projection: Projection, shown: Shown, size: tuple[int, int]
 ) -> NDArray[np.float32]:
     """The map of the reconstruction with (rows, columns) `size`: spline coefficients (rows, columns, 4)."""
-    return Synthesis(reconstruct(light, projection, shown)[0]).spline_map(*size)
+    return Synthesis(sums(light, projection, shown)[0]).spline_map(*size)
 
 
 @remember(most=4, doing="making surfaces")
@@ -72,7 +73,7 @@ def _compared_surfaces(
     shown: Shown,
     rows: int,
 ) -> tuple[Surface, Surface, Surface]:
-    coefficients = reconstruct(light, projection, shown)[0]
+    coefficients = sums(light, projection, shown)[0]
     original, reconstruction = sample_light(light, rows), sample_reconstruction(coefficients, rows)
     scale = common_scale(original, reconstruction)
     values = original, reconstruction, reconstruction - original
@@ -85,12 +86,14 @@ def error_scale(
     projection: Projection,
     shown: Shown,
     kind: str,
+    found: Extremes | None = None,
 ) -> ErrorScale:
     """The scale of the error, from the grid of the figures. The largest relative error is no figure: it is searched for here.
 
-    The floor of the relative error is the light's mean.
+    The floor of the relative error is the light's mean. found: the extremes; None, as long as they are searched for: then the
+    largest error is that on the grid.
     """
-    coefficients, figures = reconstruct(light, projection, shown)
+    coefficients, figures = sums(light, projection, shown)
     exact = project(light, *BEST, projection.n_bands).coefficients
     floor = max(float(np.abs(exact[0]).mean()) / (2 * np.sqrt(np.pi)), DIMMEST)
     grid, synthesis = error_grid(light, grid_rows(shown.n_bands)), Synthesis(coefficients)
@@ -101,13 +104,13 @@ def error_scale(
     def error_at(directions: Array) -> Array:
         return error_values(kind, light.radiance(directions), synthesis.in_directions(directions), floor)
 
-    direction = np.array(figures.extremes.max_error_direction)
-    if kind == "relative":
-        row, column = divmod(int(errors.argmax()), len(grid.phi))
-        start = directions_from_angles(grid.theta[[row]], grid.phi[[column]])
+    row, column = divmod(int(np.abs(errors).argmax()), len(grid.phi))
+    start = directions_from_angles(grid.theta[[row]], grid.phi[[column]])
+    direction = start[0] if found is None else np.array(found.max_error_direction)
+    if kind == "relative" and found is not None:
         direction = climb(error_at, start, np.pi / len(grid.theta), DISPLAY_ROUNDS)[1][0]
     largest = float(error_at(direction[None])[0])
-    noise = NOISE * figures.extremes.peak / (floor if kind == "relative" else 1.0)
+    noise = NOISE * figures.peak / (floor if kind == "relative" else 1.0)
     end = automatic_range(kind, errors, np.repeat(grid.row_share, len(grid.phi)), abs(largest), noise)
     return ErrorScale(kind, floor, largest, direction, max(end, DIMMEST), noise)
 

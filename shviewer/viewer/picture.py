@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from shviewer.analysis.comparison import verdict
-from shviewer.analysis.figures import Figures, Needs, needs
+from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import Subject
 from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.harmonics.extremes.error_grid import Extremes
+from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
-from shviewer.limits import MAX_DIRECT_BANDS
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
@@ -30,6 +33,9 @@ LIVE = (
     *("sweep_to", "help_visible", "message", "layout_tried"),
 )
 """Fields of the view on which nothing depends that takes time."""
+
+BETWEEN = 1.1
+"""A reconstruction is at most this many times as large as on its grid, which has eight points to its shortest wave."""
 
 EXPOSURE = ("exposure_stops", "exposure_offset")
 
@@ -63,12 +69,22 @@ class Picture:
     error_scale: ErrorScale | None
     """The scale of the error, if the error is shown."""
     projection: Projection
-    figures: Figures
-    needs: Needs
-    needs_unsplit: Needs | None
+    figures: Sums
+    """The figures: `Figures`, all of them, once they are there."""
+    needs: Needs | Pending = PENDING
+    needs_unsplit: Needs | Pending | None = None
     """The bands that the light would need with its suns; None if none were split off."""
     verdict: str = ""
     """How well the compared coefficients agree with the light's own, and if they do not, what is wrong with them."""
+
+    @property
+    def extremes(self) -> Extremes | Pending:
+        return self.figures.extremes if isinstance(self.figures, Figures) else PENDING
+
+    @property
+    def complete(self) -> bool:
+        """Whether all figures are there."""
+        return isinstance(self.figures, Figures) and isinstance(self.needs, Needs)
 
     @property
     def light(self) -> Light:
@@ -105,23 +121,59 @@ def still(state: State) -> State:
 
 
 def prepare(state: State, *, by_map: bool = False) -> Picture:
-    """Make the picture of a state. LightError if the light cannot be read, UsageError for a state out of range.
+    """Make the complete picture of a state. LightError if the light cannot be read, UsageError for a state out of range.
 
     by_map: draw the reconstruction from a map of it, although it could be summed per pixel.
     """
+    ahead = MAX_BANDS if state.view.sheet != "plane" else 0  # the plane tells what the bands in use took
+    return completed(first_picture(state, by_map=by_map, ahead=ahead))
+
+
+def stages(state: State, *, by_map: bool = False) -> Iterator[Picture]:
+    """Yield pictures of a state, each with more figures; the last one is complete. Raises what `prepare` raises."""
+    picture = first_picture(state, by_map=by_map)
+    yield picture
+    picture = with_figures(picture)
+    yield picture
+    yield completed(picture)
+
+
+def completed(picture: Picture) -> Picture:
+    """The picture with all figures."""
+    picture, recipe = with_figures(picture), picture.state.recipe
+    if isinstance(picture.needs, Needs):
+        return picture
+    unsplit = needs(replace(recipe, split_sun=False)) if picture.subject.suns else None
+    said = verdict(picture.light, recipe.compare) if recipe.compare else ""
+    return replace(picture, needs=needs(recipe), needs_unsplit=unsplit, verdict=said)
+
+
+def with_figures(picture: Picture) -> Picture:
+    """The picture with the figures that are searched for, but without `needs`."""
+    if isinstance(picture.figures, Figures):
+        return picture
+    figures = figures_of(picture.light, picture.projection, picture.state.recipe.shown)
+    picture = replace(picture, figures=figures)
+    return replace(picture, error_scale=_scale(picture.state, picture.light, picture.projection, figures.extremes))
+
+
+def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Picture:
+    """The picture of a state with what can be drawn at once: what takes a search is pending. Raises what `prepare` raises.
+
+    ahead: as in `reconstruction_of`.
+    """
     state.check()
     recipe, view = state.recipe, state.view
-    found = reconstruction_of(recipe)
+    found = reconstruction_of(recipe, ahead)
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
-    scale = None if view.error == "off" else error_scale(light, projection, recipe.shown, view.error)
-    if scale is not None and view.error_range is not None:
-        scale = replace(scale, end=view.error_range)
+    scale = _scale(state, light, projection)
     stops = exposure_stops(view, whole)
     drawn: Drawn
     if view.lobe_view:
         drawn = Surfaces(surfaces(view, light, projection, recipe.shown))
     elif by_map or view.evaluate == "map" or recipe.n_bands > MAX_DIRECT_BANDS:
-        size = map_size(recipe.n_bands, _height(found.figures, scale, 2.0**stops * steepest(view.tone)))
+        largest = _largest(light, found.coefficients, recipe.n_bands)
+        size = map_size(recipe.n_bands, _height(largest, scale, 2.0**stops * steepest(view.tone)))
         drawn = SplineMap(reconstruction_map(light, projection, recipe.shown, size))
     else:
         drawn = DirectSum(found.coefficients)
@@ -138,16 +190,27 @@ def prepare(state: State, *, by_map: bool = False) -> Picture:
         exposure_stops=stops,
         error_scale=scale,
         projection=projection,
-        figures=found.figures,
-        needs=needs(recipe),
-        needs_unsplit=needs(replace(recipe, split_sun=False)) if found.subject.suns else None,
-        verdict=verdict(light, recipe.compare) if recipe.compare else "",
+        figures=found.sums,
+        needs_unsplit=PENDING if found.subject.suns else None,
     )
 
 
-def _height(figures: Figures, scale: ErrorScale | None, exposure: float) -> float:
-    """A bound of the reconstruction's magnitude in units of the full range of colours: white, or the end of the error's."""
-    largest = figures.extremes.peak + figures.extremes.max_error
+def _scale(state: State, light: Light, projection: Projection, found: Extremes | None = None) -> ErrorScale | None:
+    """The scale of the error, if it is shown; found: as in `error_scale`."""
+    if state.view.error == "off":
+        return None
+    scale = error_scale(light, projection, state.recipe.shown, state.view.error, found)
+    return scale if state.view.error_range is None else replace(scale, end=state.view.error_range)
+
+
+def _largest(light: Light, coefficients: Array, n_bands: int) -> float:
+    """A bound of the reconstruction's magnitude, from the grid of its figures."""
+    grid = error_grid(light, grid_rows(n_bands))
+    return BETWEEN * float(np.abs(Synthesis(coefficients).on_rows(grid.theta, len(grid.phi))).max())
+
+
+def _height(largest: float, scale: ErrorScale | None, exposure: float) -> float:
+    """The reconstruction's magnitude in units of the full range of colours: white, or the end of the error's."""
     if scale is None:
         return largest * exposure
     return largest * max(exposure, 1 / (scale.end * (scale.floor if scale.kind == "relative" else 1.0)))

@@ -12,7 +12,7 @@ from helpers import unavailable
 from viewer.desktop.desktop import missing_programs, virtual_display
 
 from shviewer.analysis.cache import MEMORY
-from shviewer.analysis.figures import reconstruct
+from shviewer.analysis.figures import figures_of
 from shviewer.benchmark import end_to_end
 from shviewer.benchmark.end_to_end import (
     IDLE,
@@ -94,11 +94,11 @@ def test_what_is_new_is_computed_anew_and_what_is_known_is_not(
         for name, work in reversed(works.items()):
             before(name, 0)
             light = MEMORY.named(("green", DEFAULT_READING))
-            known = 0 if light is None else len(MEMORY.results(light, reconstruct))
+            known = 0 if light is None else len(MEMORY.results(light, figures_of))
             work()
             light = MEMORY.named(("green", DEFAULT_READING))
             assert light is not None
-            seen[name[0]] = known, len(MEMORY.results(light, reconstruct))
+            seen[name[0]] = known, len(MEMORY.results(light, figures_of))
         return {}
 
     monkeypatch.setattr(end_to_end, "time_interleaved", in_reverse)

@@ -114,11 +114,13 @@ def summed_pixels(composition: Composition) -> float:
 def _overlay_key(picture: Picture, composition: Composition) -> object:
     """A key that is equal as long as no text changes. Turning changes none, unless the help shows the camera.
 
-    Zooming may change it, since text gives way to spheres; the time-error plane changes with every measurement.
+    Zooming may change it, since text gives way to spheres; the time-error plane changes with every measurement, and figures
+    come after the picture.
     """
     state = picture.state
     if not state.view.help_visible:
         state = changed(state, camera=View.camera, light_rotation=View.light_rotation, zoom=View.zoom)
     known = measured(picture) if state.view.sheet == "plane" else ()
     place = composition.width, composition.height, composition.scale, composition.spheres
-    return state, known, describe_evaluation(picture, timing=True), place
+    figures = picture.figures, picture.needs, picture.verdict, picture.error_scale
+    return state, figures, known, describe_evaluation(picture, timing=True), place

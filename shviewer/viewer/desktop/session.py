@@ -1,19 +1,20 @@
 """The session: between a key and a frame, one state and its picture, kept together whatever fails. Knows no window.
 
-What takes time is a task behind the window. Until it has ended, the last picture stays, seen from where the camera is now.
-The newest wish wins: a task whose picture nobody wants any more is ended.
+What takes time is a task behind the window. Until it has a picture, the last one stays, seen from where the camera is now.
+Figures that are searched for come after the picture. The newest wish wins: a task whose picture nobody wants any more is ended.
 """
 
 from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from time import perf_counter
 
+from shviewer.analysis.figures import Pending
 from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError, within_memory
@@ -31,7 +32,7 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import foresee
-from shviewer.viewer.picture import Picture, prepare, still
+from shviewer.viewer.picture import Picture, prepare, stages, still
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
 from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.saving.stamp import metadata
@@ -89,8 +90,12 @@ class Session:
         """The task before it, which may still be at its last step."""
         self._wish: object = None
         """What the task makes: the still part of a state, and how it is drawn and read."""
+        self._taken: Picture | None = None
+        """The last picture that was taken from the task."""
+        self._enough: State | None = None
+        """The still part of the state whose figures are not wanted any more: the search was stopped, or failed."""
         self._later: list[Callable[[], None]] = []
-        """Commands that wait for the picture."""
+        """Commands that wait for the picture and all its figures."""
         self._said = ""
 
     @property
@@ -99,7 +104,7 @@ class Session:
 
     def press(self, key: str) -> Command | None:
         """Do what a key asks for; a command that only a window can carry out is returned."""
-        if key == "Esc" and self.working:
+        if key == "Esc" and self.working and (self.status or not self._shown):
             self.stop()
             return None
         done = press(self.state, key)
@@ -123,8 +128,13 @@ class Session:
 
     @property
     def working(self) -> bool:
-        """Whether a picture is being made."""
+        """Whether a picture is being made, or its figures."""
         return self._task is not None
+
+    @property
+    def _shown(self) -> bool:
+        """Whether the picture is that of the state, with its figures or without."""
+        return self._reading is None and still(self.state) == still(self.picture.state)
 
     @property
     def status(self) -> str:
@@ -141,6 +151,7 @@ class Session:
             self._reading = None
             keep_light(self.picture.state.recipe, self.picture.subject.whole)
             self.state = changed(self.picture.state, message=f"stopped {what}".rstrip(), sweep_to=None)
+            self._enough = still(self.picture.state)
 
     def drop(self, path: str) -> None:
         """Open a file, which may have been edited since it was last opened; never code, which is no file.
@@ -178,38 +189,48 @@ class Session:
             recipe = self.state.recipe
             if isinstance(recipe.light, str) and self._watch.changed(recipe.light, version_read(recipe)):
                 self.do(Command.RELOAD)
-        ended = self._task is not None and self._task.finished
-        return ended or self.state is not last or self._reading is not reading or self._said != said
+        task = self._task
+        latest = task.latest if task is not None else None
+        news = task is not None and (task.finished or (latest is not None and latest[0] is not self._taken))
+        return news or self.state is not last or self._reading is not reading or self._said != said
 
     def wait(self, now: float, most: float) -> float:
         """The seconds until the next tick is due, at most `most`."""
         return min(most, STATUS_SECONDS) if self._task is not None else self.metronome.wait(now, most)
 
     def prepare(self, by_map: bool = False, patience: float | None = None) -> bool:
-        """Make the picture of the state; return whether it is there. For a state that cannot be shown, keep the last one.
+        """Make the picture of the state; return whether it is complete. For a state that cannot be shown, keep the last one.
 
         patience: the seconds to wait for it since it was first wished for; None: as long as it takes.
         """
         while self._make(by_map, patience):
+            if not self.picture.complete:  # what needs all figures does not get them
+                self._later.clear()
             if not self._later:
                 return True
             self._later.pop(0)()
         return False
 
     def _make(self, by_map: bool, patience: float | None) -> bool:
-        """Make the picture; return whether it is there."""
+        """Make the picture; return whether it has all figures that are wanted."""
         last, state, reading = self.picture, self.state, self._reading
         wish = still(state), reading
-        if wish == (still(last.state), None) and by_map == self.by_map:
+        enough = last.complete or wish[0] == self._enough
+        if wish == (still(last.state), None) and by_map == self.by_map and enough:
             self._end_task()
             self.picture = last if last.state == state else last.seen(state)
             return True
         if self._task is None or wish != self._wish:
             self._end_task()
             self._wish = wish
-            self._task = Task(lambda: (_picture_of(state, by_map, reading), by_map), self._ended, self._wake)
+            self._taken = None
+            self._task = Task(lambda: _pictures_of(state, by_map, reading), self._ended, self._wake)
         if not self._task.wait(None if patience is None else patience - self._task.seconds):
-            self.picture = last if last.state.view == state.view else last.seen(state)
+            latest = self._task.latest
+            if latest is not None and latest[0] is not self._taken:
+                self._take(*latest)
+            elif last.state.view != state.view:
+                self.picture = last.seen(state)
             return False
         task, self._task, self._reading = self._task, None, None
         try:
@@ -222,17 +243,20 @@ class Session:
             traceback.print_exception(error)
             self.keep(ShviewerError("internal error, see the terminal"))
             return True
-        picture = picture.seen(state)
+        self._take(picture, made_by_map, again=reading is not None)
+        return made_by_map == by_map or self._make(by_map, patience)
+
+    def _take(self, made: Picture, by_map: bool, again: bool | None = None) -> None:
+        """Show a picture that the task made for the state. again: whether its light was read again."""
+        last, state, picture = self.picture, self.state, made.seen(self.state)
         if picture.light is not last.light:
-            message = self._news(
-                picture.light, again=reading is not None and state.recipe.light == last.state.recipe.light
-            )
+            again = self._reading is not None if again is None else again
+            message = self._news(picture.light, again=again and state.recipe.light == last.state.recipe.light)
             message = "; ".join(filter(None, (reading_news(last.state.recipe, state.recipe), message)))
             if message and not state.view.message:
                 self.state = changed(state, message=message)
                 picture = replace(picture, state=self.state)
-        self.picture, self.by_map = picture, made_by_map
-        return made_by_map == by_map or self._make(by_map, patience)
+        self.picture, self.by_map, self._taken = picture, by_map, made
 
     def _end_task(self) -> None:
         """Want the task's result no more; the next one begins when it has ended."""
@@ -241,7 +265,8 @@ class Session:
             self._ended, self._task = self._task, None
 
     def _when_ready(self, command: Callable[[], None]) -> None:
-        """Carry a command out that needs the picture: now, or when it is there."""
+        """Carry a command out that needs the picture with all figures: now, or when they are there."""
+        self._enough = None
         self._later.append(command)
         self.prepare(self.by_map, PATIENCE)
 
@@ -253,6 +278,7 @@ class Session:
         tried = self.state.view.layout_tried
         self.state = changed(shown.state, message=message, sweep_to=None, layout_tried=tried)
         self.picture = replace(shown, state=self.state)
+        self._enough = still(self.state)
         self._log(f"kept {shown.light.name}: {error}")
 
     def save(self, renderer: Renderer, composition: Composition) -> None:
@@ -284,7 +310,9 @@ class Session:
     def _fit(self) -> None:
         """Use as many bands as the tolerance needs; where none are enough, say what is the best there is."""
         found = self.picture.needs
-        wanted = found.irradiance if self.state.recipe.quantity == "irradiance" else found.radiance
+        if isinstance(found, Pending):  # never, once the picture is complete
+            return
+        wanted = found.of(self.state.recipe.quantity)
         if wanted is None:
             best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"
             message = f"no band count is within {100 * found.tolerance:g} %: {best}"
@@ -308,11 +336,11 @@ class Session:
             print(text, file=sys.stderr, flush=True)
 
 
-def _picture_of(state: State, by_map: bool, reading: Event | None) -> Picture:
-    """The picture of a state, with everything ready that its text needs."""
+def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[tuple[Picture, bool]]:
+    """The pictures of a state as `stages` has them, with everything ready that their text needs; each with `by_map`."""
     if reading is not None and not reading.is_set():
         read_again(state.recipe)
         reading.set()  # a later wish need not read it once more
-    picture = prepare(state, by_map=by_map)
-    foresee(picture)
-    return picture
+    for picture in stages(state, by_map=by_map):
+        foresee(picture)
+        yield picture, by_map

@@ -1,8 +1,8 @@
-"""Work behind the window: one thread that tells how far it is, and ends early when nobody wants its result."""
+"""Work behind the window: one thread that tells how far it is, and ends early when nobody wants its results."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from threading import Event, Thread
 from time import perf_counter
 from typing import Generic, TypeVar
@@ -13,19 +13,20 @@ T = TypeVar("T")
 
 
 class Task(Generic[T]):
-    """One computation. It begins when the task before it has ended, so that only one is at work at a time."""
+    """One computation, of results each better than the one before. It begins when the task before it has ended."""
 
     def __init__(
-        self, make: Callable[[], T], after: Task[T] | None = None, done: Callable[[], None] | None = None
+        self, make: Callable[[], Iterable[T]], after: Task[T] | None = None, done: Callable[[], None] | None = None
     ) -> None:
-        """done: called from the thread at the end, whatever happened."""
+        """make: gives the results, at least one. done: called from the thread at every result, and at the end in any case."""
         self.started = perf_counter()
         self.status = ""
         """What it is doing, in words."""
         self._stopped = False
         self._over = Event()
         """Set before `done` is called, which must find the task finished."""
-        self._result: T | None = None
+        self.latest: T | None = None
+        """The best result so far."""
         self._error: BaseException | None = None
         self._thread: Thread = Thread(target=self._run, args=(make, after and after._thread, done), daemon=True)
         self._thread.start()
@@ -47,19 +48,22 @@ class Task(Generic[T]):
         self._stopped = True
 
     def result(self) -> T:
-        """What was made. Raises what the computation raised, or Stopped."""
+        """What was made last. Raises what the computation raised, or Stopped."""
         self._over.wait()
         if self._error is not None:
             raise self._error
-        return self._result  # type: ignore[return-value]  # without an error, it was made
+        return self.latest  # type: ignore[return-value]  # without an error, it was made
 
-    def _run(self, make: Callable[[], T], before: Thread | None, done: Callable[[], None] | None) -> None:
+    def _run(self, make: Callable[[], Iterable[T]], before: Thread | None, done: Callable[[], None] | None) -> None:
         if before is not None:
             before.join()
         try:
             with listening(self._hear):
                 self._hear("", None)
-                self._result = make()
+                for result in make():
+                    self.latest = result
+                    if done is not None:
+                        done()
         except BaseException as error:
             self._error = error
         self._over.set()

@@ -34,7 +34,7 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
         changes.append("cut at the circle")
     if state.view.basis is not None:
         value = float(picture.projection.coefficients[index(*state.view.basis)] @ LUMINANCE)
-        bands, changes = describe_basis(state.view), [f"coefficient {radiance(value, picture.figures.extremes.peak)}"]
+        bands, changes = describe_basis(state.view), [f"coefficient {radiance(value, picture.figures.peak)}"]
     captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
     any(painter.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
     projection = picture.projection

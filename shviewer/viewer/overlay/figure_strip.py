@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from shviewer.analysis.figures import PENDING, Pending
 from shviewer.viewer.overlay.band_axis import band_slots, band_step
 from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, INK, NEGATIVE, RULE, UNUSED
 from shviewer.viewer.overlay.painter import Painter
@@ -16,19 +17,22 @@ def write_figures(painter: Painter, picture: Picture) -> None:
     y = at.hairline_y
     if 2 * at.margin < at.width:
         painter.draw.rectangle((at.margin, y, at.width - at.margin, y + max(0, round(at.scale) - 1)), fill=RULE)
-    extremes = figures.extremes
     relative: tuple[str, ...] = ("relative L2 error",)
     largest: tuple[str, ...] = ("largest error",)
-    if extremes.max_error_bound is None:  # a Python function is known only where it was looked at
-        largest = ("largest error found", *largest)
+    error = minimum = negative = str(PENDING)
+    if not isinstance(extremes := picture.extremes, Pending):
+        error, minimum = (radiance(value, figures.peak) for value in (extremes.max_error, extremes.minimum))
+        negative = percent(extremes.negative_area, 2)
+        if extremes.max_error_bound is None:  # a Python function is known only where it was looked at
+            largest = ("largest error found", *largest)
     if picture.subject.suns:
         relative = ("relative L2 error of rest", "L2 error of rest")
         largest = ("largest error of rest", "largest of rest", *largest)
     columns = (
         ("relative_l2", percent(figures.relative_l2, floor=figures.floor), relative),
-        ("max_error", radiance(extremes.max_error, extremes.peak), largest),
-        ("minimum", radiance(extremes.minimum, extremes.peak), ("minimum of a channel", "minimum")),
-        ("negative_area", percent(extremes.negative_area, 2), ("luminance below zero",)),
+        ("max_error", error, largest),
+        ("minimum", minimum, ("minimum of a channel", "minimum")),
+        ("negative_area", negative, ("luminance below zero",)),
     )
     face, room = painter.face(13), at.px(150) - at.px(6) - 1
     x = at.margin

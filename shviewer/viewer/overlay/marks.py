@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 from PIL import Image, ImageDraw
 
+from shviewer.analysis.figures import Pending
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.layers import Layer
@@ -55,9 +56,9 @@ class Placed:
 
 def marks_of(picture: Picture) -> list[Mark]:
     """Marks of the minimum, if it is negative, and of the largest error, if the error is shown; surfaces have no marks."""
-    state, extremes = picture.state, picture.figures.extremes
+    state, extremes = picture.state, picture.extremes
     marks: list[Mark] = []
-    if not state.view.marks or state.view.lobe_view or state.view.help_visible:
+    if isinstance(extremes, Pending) or not state.view.marks or state.view.lobe_view or state.view.help_visible:
         return marks
     lowest = radiance(extremes.minimum, extremes.peak)
     if extremes.minimum < 0 and lowest != "0":

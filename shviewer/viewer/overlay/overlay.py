@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from shviewer.analysis.comparison import agrees
+from shviewer.analysis.figures import PENDING, Pending
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.captions import write_captions
 from shviewer.viewer.overlay.colour_bar import draw_colour_bar
@@ -119,9 +120,11 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "", status: st
     curve = "" if state.view.tone == "none" else f", {state.view.tone} curve"
     stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state.view)}){curve}"
     needs, far = picture.needs, at.width - at.margin
-    radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
-    bands = "band" if needs.radiance == 1 else "bands"
-    within = f"within {100 * needs.tolerance:g} %: {radiance} {bands}, for irradiance {irradiance}"
+    within = f"within {100 * state.recipe.tolerance:g} %: {PENDING}"
+    if not isinstance(needs, Pending):
+        radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
+        bands = "band" if needs.radiance == 1 else "bands"
+        within = f"within {100 * needs.tolerance:g} %: {radiance} {bands}, for irradiance {irradiance}"
     any(painter.text("exposure", far, y, text, 12, GREY, "rm") for text in (f"{within}     {stops}", within, stops))
     if not message:
         hints = [*_describe_suns(picture), HINT]
@@ -137,8 +140,10 @@ def _describe_suns(picture: Picture) -> list[str]:
     suns, before = picture.subject.suns, picture.needs_unsplit
     if not suns or before is None:
         return []
-    counts = (str(count or f"over {before.searched}") for count in (before.radiance, before.irradiance))
-    unsplit = "with it {} bands, irradiance {}".format(*counts)
+    unsplit = f"with it {PENDING} bands"
+    if not isinstance(before, Pending):
+        counts = (str(count or f"over {before.searched}") for count in (before.radiance, before.irradiance))
+        unsplit = "with it {} bands, irradiance {}".format(*counts)
     sun = suns[0]
     theta, phi = theta_phi_degrees(sun.axis)
     place = f"theta {theta:.1f}, phi {phi:z.1f}"

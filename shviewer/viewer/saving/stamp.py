@@ -13,6 +13,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
+from shviewer.analysis.figures import Figures, Needs, Pending
 from shviewer.analysis.recipe import Recipe
 from shviewer.lights.find import file_of, version_of_light
 from shviewer.lights.light import Light
@@ -43,9 +44,9 @@ DIGITS = 9
 
 
 def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
-    """Everything that made the picture, as one JSON text; equal arguments give equal text."""
+    """Everything that made the picture, and the figures that are there, as one JSON text; equal arguments give equal text."""
     state, figures, projection = picture.state, picture.figures, picture.projection
-    extremes, scale = figures.extremes, picture.error_scale
+    scale = picture.error_scale
     description: dict[str, Any] = {
         "schema": SCHEMA,
         "version": __version__,
@@ -104,19 +105,11 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
             **{name: asdict(channel) for name, channel in figures.channels.items()},
             "relative_l2": figures.relative_l2,
             "relative_l2_floor": figures.floor,
-            "irradiance_relative_l2": figures.irradiance_relative_l2,
-            "max_error": extremes.max_error,
-            "max_error_bound": extremes.max_error_bound,
-            "max_error_direction_in_light": list(extremes.max_error_direction),
-            "minimum": extremes.minimum,
-            "minimum_bound": extremes.minimum_bound,
-            "minimum_direction_in_light": list(extremes.minimum_direction),
-            "negative_area": extremes.negative_area,
-            "negative_energy": extremes.negative_energy,
-            "peak": extremes.peak,
+            **_searched(picture),
+            "peak": figures.peak,
             "energy_share": list(figures.energy_share),
-            "bands_needed": asdict(picture.needs),
-            "bands_needed_unsplit": asdict(picture.needs_unsplit) if picture.needs_unsplit else None,
+            "bands_needed": _answers(picture.needs),
+            "bands_needed_unsplit": _answers(picture.needs_unsplit),
         },
     }
     description["coefficients"] = _coefficients(picture)  # last, since they may be many
@@ -154,6 +147,29 @@ def _coefficients(picture: Picture) -> list[list[float]]:
     n_bands = min(picture.state.recipe.n_bands, MAX_DIRECT_BANDS)
     rows = picture.projection.coefficients[: n_bands**2].tolist()
     return [[float(f"{value:.{DIGITS}g}") for value in row] for row in rows]
+
+
+def _searched(picture: Picture) -> dict[str, Any]:
+    """The figures that are searched for; nothing if they are not there."""
+    figures = picture.figures
+    if not isinstance(figures, Figures):
+        return {}
+    extremes = figures.extremes
+    return {
+        "irradiance_relative_l2": figures.irradiance_relative_l2,
+        "max_error": extremes.max_error,
+        "max_error_bound": extremes.max_error_bound,
+        "max_error_direction_in_light": list(extremes.max_error_direction),
+        "minimum": extremes.minimum,
+        "minimum_bound": extremes.minimum_bound,
+        "minimum_direction_in_light": list(extremes.minimum_direction),
+        "negative_area": extremes.negative_area,
+        "negative_energy": extremes.negative_energy,
+    }
+
+
+def _answers(needs: Needs | Pending | None) -> dict[str, Any] | None:
+    return asdict(needs) if isinstance(needs, Needs) else None
 
 
 def _described(sun: Sun) -> dict[str, Any]:

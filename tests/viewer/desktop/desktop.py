@@ -69,7 +69,7 @@ class Viewer:
         self.reader = threading.Thread(target=self._read, daemon=True)
         self.reader.start()
         try:
-            self.wait_for("frame 2:")
+            self.wait_for("frame ")  # its figures are there, too
             self._find_window()
         except BaseException:
             self.close()

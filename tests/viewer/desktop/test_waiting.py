@@ -165,14 +165,15 @@ def test_work_is_spoken_of_only_once_it_has_taken_a_while(gate: Gate, monkeypatc
 def test_a_task_ends_at_its_next_step_and_the_next_one_begins_then() -> None:
     order, go = [], threading.Event()
 
-    def first() -> None:
+    def first() -> list[str]:
         assert go.wait(60)
         tell("first")
         order.append("never")
+        return []
 
-    def second() -> str:
+    def second() -> list[str]:
         order.append("second")
-        return "made"
+        return ["made"]
 
     task = Task(first)
     task.stop()
@@ -185,7 +186,7 @@ def test_a_task_ends_at_its_next_step_and_the_next_one_begins_then() -> None:
         task.result()
 
 
-def test_who_is_told_of_the_end_finds_the_task_finished() -> None:
+def test_who_is_told_of_a_result_finds_it_and_who_is_told_of_the_end_finds_the_task_finished() -> None:
     found: list[bool] = []
     made = threading.Event()
     task: list[Task[None]] = []
@@ -194,10 +195,10 @@ def test_who_is_told_of_the_end_finds_the_task_finished() -> None:
         made.wait(60)
         found.append(task[0].finished)
 
-    task.append(Task(lambda: None, done=done))
+    task.append(Task(lambda: [None], done=done))
     made.set()
     task[0]._thread.join()
-    assert found == [True]
+    assert found == [False, True]
 
 
 def test_a_listener_hears_one_thread_and_only_as_long_as_it_listens() -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shviewer.analysis.figures import errors_of
+from shviewer.analysis.figures import Pending, errors_of
 from shviewer.analysis.projections import BEST, project, sampling_of
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count
@@ -27,7 +27,7 @@ class BandSeries:
     shown: float | None
     """The error of what is shown, where bands are muted or windowed."""
     tolerance: float
-    needed: int | None
+    needed: int | Pending | None
     """The smallest n within the tolerance, for the quantity shown; None if the search found none."""
     energy: dict[int, float]
     """Band -> its share, where that can be told from rounding."""
@@ -58,10 +58,10 @@ def band_series(picture: Picture) -> BandSeries:
     return BandSeries(
         slots=slots,
         errors=on_axis(errors_by_count(picture)),
-        exact=on_axis(errors_of(picture.light, *BEST)) if state.recipe.method != "best" else {},
+        exact=on_axis(errors_of(picture.light, *BEST)) if picture.complete and state.recipe.method != "best" else {},
         shown=max(figures.relative_l2, floor) if altered and np.isfinite(figures.relative_l2) else None,
-        tolerance=needs.tolerance,
-        needed=needs.irradiance if state.recipe.quantity == "irradiance" else needs.radiance,
+        tolerance=state.recipe.tolerance,
+        needed=needs if isinstance(needs, Pending) else needs.of(state.recipe.quantity),
         energy=energy,
         kept={band: energy[band] * factor**2 for band, factor in enumerate(factors) if band in energy},
     )
@@ -70,8 +70,9 @@ def band_series(picture: Picture) -> BandSeries:
 def errors_by_count(picture: Picture) -> Array:
     """The relative L2 error of the picture's light with the first 1 ... N bands, none muted and no window, (N,), N >= n."""
     light, sampling = picture.light, sampling_of(picture.state.recipe)
-    errors = errors_of(light, *sampling)
-    if picture.state.recipe.n_bands <= len(errors):
-        return errors
-    exact = project(light, *BEST, picture.projection.n_bands).coefficients  # samples were searched no further
+    if not isinstance(picture.needs, Pending):
+        errors = errors_of(light, *sampling)
+        if picture.state.recipe.n_bands <= len(errors):
+            return errors
+    exact = project(light, *BEST, picture.projection.n_bands).coefficients  # searched no further, or not yet
     return errors_by_band_count(light.products(), exact, picture.projection.coefficients)

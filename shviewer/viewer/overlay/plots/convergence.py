@@ -12,6 +12,7 @@ from itertools import chain
 
 from PIL import Image
 
+from shviewer.analysis.figures import Pending
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.band_axis import BandAxis
 from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, INK, RULE, Ink
@@ -100,9 +101,9 @@ class _Drawing:
         pad = sheet.ring + 2 * unit
         bands = BandAxis(series.slots, left + pad, right - pad)
         points = {n: (bands.at(n), error.at(share)) for n, share in series.errors.items()}
-        needed = points.get(series.needed) if series.needed and series.needed <= series.slots else None
+        needed = series.needed if isinstance(series.needed, int) and series.needed <= series.slots else 0
         shown = (bands.at(self.state.recipe.n_bands), error.at(series.shown)) if series.shown is not None else None
-        self.found = Convergence(box, bands, error, energy, points, shown, needed, boxes=sheet.boxes)
+        self.found = Convergence(box, bands, error, energy, points, shown, points.get(needed), boxes=sheet.boxes)
 
     def axes(self) -> None:
         """Draw title, captions, round values, and the line at the present n."""
@@ -207,6 +208,8 @@ class _Drawing:
     def _tolerance(self) -> None:
         """Write what the tolerance needs: over its line right of the curve, or under it left of the curve, else in a corner."""
         sheet, area, needs = self.sheet, self.area, self.picture.needs
+        if isinstance(needs, Pending):
+            return
         count = self.series.needed or f"over {needs.searched}"
         share = f"{100 * needs.tolerance:g} %"
         y, height = self.found.error.at(needs.tolerance), sheet.size_of("0")[1]
