@@ -7,6 +7,7 @@ In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT
     exit codes
     found images            which program writes what
     found lists             the same of coefficients
+    programs                what programs show that are run in tests/clients/
     options MODE MODE ...   the options that all of these modes have and no other has; the window's mode is called "view"
 """
 
@@ -15,6 +16,8 @@ from __future__ import annotations
 import argparse
 import re
 
+from clients.measured import rendered
+from clients.measured import table as programs
 from coefficients.found_lists import table as found_lists
 from documents import PAGES
 from lights.found_images import table as found_images
@@ -26,8 +29,13 @@ from shviewer.viewer.keys import key_table
 MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 
 
+CONVENTION = re.compile(r"^(\| `([\w-]+)` \| (?:kept|none) \|.*\|)[^|\n]*\|$", re.MULTILINE)
+"""A row of the table of conventions, whose last cell is how far off the program shows it."""
+
+
 def written_anew(text: str) -> str:
     """A page with its tables as the program has them today. KeyError for one that nothing makes."""
+    text = CONVENTION.sub(lambda found: f"{found[1]} {rendered(found[2])} |", text)
     return MARKED.sub(lambda found: found[1] + generated(found[2]) + found[3], text)
 
 
@@ -38,6 +46,8 @@ def generated(what: str) -> str:
         return "\n".join(["", "| option | meaning |", "|---|---|", *rows, "", ""])
     if what == "found images":
         return found_images()
+    if what == "programs":
+        return programs()
     if what == "found lists":
         return found_lists()
     texts = {"keys": key_table(), "usage": usage(), "exit codes": exit_codes()}

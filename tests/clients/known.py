@@ -1,0 +1,57 @@
+"""The programs that are run here, and whether they can be."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).parent
+MODULES = HERE / "node_modules"
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program that is run here; browser/programs/ says how."""
+
+    called: str
+    package: str
+    """Its name on npm."""
+    hand: int = 1
+    """1 if its axes are right-handed, -1 if left-handed: which way is right in a picture of it."""
+
+    @property
+    def version(self) -> str:
+        """The one that is installed."""
+        package = json.loads((MODULES / self.package / "package.json").read_text(encoding="utf-8"))
+        return str(package["version"])
+
+
+PROGRAMS = {
+    "three": Program("three.js", "three"),
+    "babylon": Program("Babylon.js", "babylonjs", hand=-1),
+    "gltf": Program("glTF in Babylon.js", "babylonjs-loaders", hand=-1),
+    "filament": Program("Filament", "filament"),
+    "playcanvas": Program("PlayCanvas", "playcanvas"),
+    "cesium": Program("Cesium", "cesium"),
+}
+"""By the name that `shviewer project --convention` is given."""
+
+
+class Missing(Exception):
+    """The programs cannot be run on this machine; why, and what to do."""
+
+
+def chromium() -> str:
+    """The path of the browser. Missing if anything that the programs need is not there."""
+    found = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+    if found is None or shutil.which("node") is None:
+        raise Missing("the programs need Node.js and Chromium: apt-get install nodejs npm chromium")
+    absent = [
+        name for name in ("playwright-core", *(p.package for p in PROGRAMS.values())) if not (MODULES / name).is_dir()
+    ]
+    if absent:
+        raise Missing(f"{absent[0]} is not installed: npm ci --prefix tests/clients")
+    return found
