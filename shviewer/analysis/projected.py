@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from shviewer.analysis.figures import Figures
 from shviewer.analysis.recipe import Recipe, light_name
@@ -21,6 +22,8 @@ from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import encode
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.extremes.error_grid import Triple
+from shviewer.harmonics.rotation import check_rotation, rotate
 from shviewer.lights.find import file_of
 from shviewer.lights.suns.sun import Sun
 from shviewer.outputs import Replacing, write_atomically
@@ -75,6 +78,26 @@ class Projected:
             return parse_convention(convention).from_ours(self.coefficients, self.quantity)
         except ValueError as error:
             raise UsageError(str(error)) from error
+
+    def turned(self, rotation: ArrayLike) -> Projected:
+        """The same of the light carried along by a rotation, a 3 x 3 matrix, v_out = M v_in. ValueError for another matrix.
+
+        Suns and the directions of the figures turn with it; all other figures stay.
+        """
+        matrix = check_rotation(rotation)
+        extremes = self.figures.extremes
+        largest, lowest = (
+            cast(Triple, tuple((matrix @ np.array(direction)).tolist()))
+            for direction in (extremes.max_error_direction, extremes.minimum_direction)
+        )
+        extremes = replace(extremes, max_error_direction=largest, minimum_direction=lowest)
+        return replace(
+            self,
+            coefficients=rotate(self.coefficients, matrix),
+            figures=replace(self.figures, extremes=extremes),
+            about=self.about | {"turned": " ".join(f"{value:.12g}" for value in matrix.ravel() + 0.0)},
+            suns=tuple(replace(sun, axis=matrix @ sun.axis) for sun in self.suns),
+        )
 
     def save(self, path: str | os.PathLike[str], convention: str = "shviewer", *, force: bool = False) -> None:
         """Write a .json, .csv, .npz, .h or .glsl file, with everything stamped on it, whole or not at all.

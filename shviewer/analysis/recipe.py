@@ -44,7 +44,7 @@ class Recipe:
     tolerance: float = option(
         0.05,
         Share(0, 1, "it must be between 0 and 1, such as 0.05 or 5%", closed=False),
-        "as many bands as keep the relative L2 error within T, such as 5% or 0.05, instead of --bands",
+        "as many bands as keep the relative L2 error within T, such as 5% or 0.05; with --bands, what counts as enough",
         "--tolerance",
         "T",
     )

@@ -38,7 +38,7 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
     """The recipe that the options ask for, with LIGHT, and a message about it or "".
 
     start: what the options come on top of. UsageError for an option out of range, before the light is read if that does
-    not depend on it.
+    not depend on it. With --bands, a tolerance only says what is enough.
     """
     from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
     from shviewer.lights.find import split_light
@@ -66,7 +66,8 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
 
         any_bands = options.n_bands is None and options.tolerance is None
         recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
-    return (recipe if options.tolerance is None else _fitted(recipe, options)), said
+    fits = options.tolerance is not None and options.n_bands is None
+    return (_fitted(recipe) if fits else recipe), said
 
 
 def replacing_of(options: argparse.Namespace) -> Replacing:
@@ -142,24 +143,35 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
 
 def _view_from(options: argparse.Namespace, start: View) -> View:
     """The view that the options ask for, but for a basis function, which is checked as soon as its bands are known."""
-    from shviewer.viewer.camera import towards
+    from shviewer.viewer.camera import rolled_towards
     from shviewer.viewer.view import View
 
-    elevations = [angles[1] for angles in (options.camera, options.rotate_light) if angles]
-    if any(abs(elevation) > 90 for elevation in elevations):
-        raise UsageError(f"elevation {max(elevations, key=abs):g}: it must be -90 to 90 degrees")
     chosen: dict[str, Any] = {"basis": None} | chosen_of(options, View)
     if options.error_range is not None:
         chosen["error_range"] = _error_range(options.error_range, options.error or start.error)
     if options.camera:
-        chosen["camera"] = options.camera[0] % 360, options.camera[1]
+        chosen["camera"] = options.camera[0] % 360, _elevation(options.camera[1])
     if options.basis:
         chosen |= {"basis": None, "lobe_view": True}
     if options.exposure_stops is not None:
         chosen = {"exposure_offset": 0.0} | chosen
-    if options.rotate_light:
-        chosen["light_rotation"] = towards(*options.rotate_light)
+    if angles := turn_from(options):
+        chosen["light_rotation"] = rolled_towards(*angles)
     return replace(start, **chosen)
+
+
+def turn_from(options: argparse.Namespace) -> tuple[float, float, float] | None:
+    """Azimuth, elevation and roll, degrees, by which the options turn the light; None if they do not."""
+    if options.rotate_light is None and options.roll_light is None:
+        return None
+    azimuth, elevation = options.rotate_light or (0.0, 0.0)
+    return azimuth, _elevation(elevation), options.roll_light or 0.0
+
+
+def _elevation(degrees: float) -> float:
+    if abs(degrees) > 90:
+        raise UsageError(f"elevation {degrees:g}: it must be -90 to 90 degrees")
+    return degrees
 
 
 def _error_range(text: str, error: str) -> float:
@@ -178,12 +190,10 @@ def _finite(text: str, what: str) -> float:
         raise UsageError(f"{what} {error}") from error
 
 
-def _fitted(recipe: Recipe, options: argparse.Namespace) -> Recipe:
+def _fitted(recipe: Recipe) -> Recipe:
     """The recipe with as many bands as the tolerance needs, or if none are enough, the best count; stderr says which."""
     from shviewer.analysis.figures import estimate_from_samples, needs
 
-    if options.n_bands is not None:
-        raise UsageError(f"--bands {options.n_bands} and --tolerance {options.tolerance:g}: give one of them")
     found = needs(recipe)
     counts = {"radiance": found.radiance, "irradiance": found.irradiance}
     says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())

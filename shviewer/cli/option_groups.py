@@ -89,6 +89,14 @@ def add_picture_options(parser: OneLineParser) -> None:
         "mistake they are off; finds out the convention of a bare list, if none is named",
     )
     add_table(parser, View)
+    add_turn(parser)
+    parser.add_argument(
+        "--size", metavar=("W", "H"), nargs=2, type=int, help="pixels (default 1280 640, or those of the picture)"
+    )
+
+
+def add_turn(parser: OneLineParser) -> None:
+    """Add the options that turn the light."""
     parser.add_argument(
         "--rotate-light",
         metavar=("AZIMUTH", "ELEVATION"),
@@ -97,7 +105,7 @@ def add_picture_options(parser: OneLineParser) -> None:
         help="turn the light so that its +x axis points there, degrees",
     )
     parser.add_argument(
-        "--size", metavar=("W", "H"), nargs=2, type=int, help="pixels (default 1280 640, or those of the picture)"
+        "--roll-light", metavar="DEGREES", type=finite, help="before that, turn the light about its +x axis"
     )
 
 

@@ -13,6 +13,7 @@ from shviewer.cli.option_groups import (
     add_jobs,
     add_reading_options,
     add_table,
+    add_turn,
     add_view_options,
     finite,
     share,
@@ -176,6 +177,7 @@ def project_parser() -> OneLineParser:
     )
     parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
     add_table(parser, Recipe)
+    add_turn(parser)
     add_reading_options(parser, convention="--input-convention")
     add_jobs(parser)
     add_force(parser)

@@ -16,7 +16,7 @@ from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.batch import error_in_percent, project_batch
-from shviewer.cli.from_options import lights_of, recipe_from, replacing_of
+from shviewer.cli.from_options import lights_of, recipe_from, replacing_of, turn_from
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.convention import Convention
@@ -26,6 +26,7 @@ from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError
+from shviewer.harmonics.rotation import turn
 from shviewer.outputs import Replacing, file_stem, write_atomically
 from shviewer.words import counted
 
@@ -35,6 +36,8 @@ STDOUT = "-"
 def run(options: argparse.Namespace) -> int:
     """Project and write. ShviewerError for one light that fails, or arguments that fit no light."""
     convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
+    if options.n_bands is not None and options.tolerance is not None:
+        raise UsageError(f"--bands {options.n_bands} and --tolerance {options.tolerance:g}: give one of them")
     if convention.quantity:
         options.quantity = whole(convention.quantity)
     if options.n_bands is None and options.tolerance is None and convention.most_bands:
@@ -57,7 +60,8 @@ def _projected_of(options: argparse.Namespace, convention: Convention, light: st
     recipe, _ = recipe_from(options, light)
     if options.tolerance is not None:
         check_tolerance(recipe, convention)
-    return project_recipe(recipe)
+    projected, angles = project_recipe(recipe), turn_from(options)
+    return projected.turned(turn(*angles)) if angles else projected
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:

@@ -9,6 +9,7 @@ Schema 1. A reader needs the first three keys; the others are for people, and mu
     program, layout         the program that reads it, and how the program itself arranges the numbers
     bands, rows, columns    n, n^2, and the names of the columns
     light, light-is, light-notes, window, muted, method, samples, seed
+    turned                  the rotation of the light before it was written, if it was turned: a matrix row by row, in our axes
     suns                    how many were left out of the light, if any were; of each, sun-1 having the greatest flux,
     sun-1-direction         x y z in the file's axes, the unit vector towards it,
     sun-1-irradiance        red green blue, of a surface that faces it, not divided by pi: that of a directional light,

@@ -3,7 +3,7 @@
 The rotated function is evaluated and projected again on Gauss-Legendre points that integrate every product of two n-band
 functions exactly. Nothing but the 3 x 3 matrix enters, so there are no angles, no gimbal and no recurrence in l that
 would lose digits (Ivanic and Ruedenberg's loses nine by l = 100). The viewer itself turns the look-up direction
-instead, which is exact at any n; this is for exchange and for tests.
+instead, which is exact at any n; this is for what is written, and for tests.
 """
 
 from __future__ import annotations
@@ -52,6 +52,15 @@ def _power_kept(before: Array, after: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         factors = np.where(kept > 0, np.sqrt(power / kept), 1.0)
     return np.asarray(np.repeat(factors, 2 * np.arange(len(starts)) + 1, axis=0))
+
+
+def turn(azimuth: float, elevation: float, roll: float = 0.0) -> Array:
+    """The rotation, degrees, by `roll` about +x and then +x to an azimuth (from +x towards +y) and an elevation: 3 x 3."""
+    a, e, r = np.radians([azimuth, elevation, roll])
+    about_x = np.array([[1, 0, 0], [0, np.cos(r), -np.sin(r)], [0, np.sin(r), np.cos(r)]])
+    about_y = np.array([[np.cos(e), 0, -np.sin(e)], [0, 1, 0], [np.sin(e), 0, np.cos(e)]])
+    about_z = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+    return np.asarray(about_z @ about_y @ about_x)
 
 
 def check_rotation(rotation: ArrayLike) -> Array:

@@ -47,6 +47,13 @@ def is_code(text: str) -> bool:
     return bool(part) and path.suffix.lower() == ".py"
 
 
+def is_image(light: str | Light) -> bool:
+    """Whether a light is an image, or LIGHT names what may be one: then a layout and repairs have a meaning."""
+    if isinstance(light, str):
+        return split_light(light)[0].suffix.lower() in (*IMAGE_SUFFIXES, ".npy")
+    return light.source.about.layout is not None
+
+
 def file_version(text: str) -> FileVersion | None:
     """The present version of the file of the light that `text` names; None where there is no file."""
     return version_of(split_light(text)[0])

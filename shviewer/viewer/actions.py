@@ -8,12 +8,13 @@ from enum import Enum, auto
 from typing import Any
 
 from shviewer.analysis.options import Choice, options_of
-from shviewer.analysis.recipe import WINDOWS, Recipe
-from shviewer.harmonics.basis import degree_order, index
+from shviewer.analysis.recipe import WINDOWS, Recipe, light_name
+from shviewer.harmonics.basis import Array, degree_order, index
+from shviewer.lights.find import is_image
 from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
-from shviewer.viewer.camera import turned_by_drag
+from shviewer.viewer.camera import facing, turned_by_drag
 from shviewer.viewer.state import IN_RECIPE, State, changed
 from shviewer.viewer.view import MAX_EXPOSURE, ZOOM_RANGE, View
 
@@ -28,6 +29,13 @@ class Command(Enum):
     FACE_MARK = auto()
     """Look at the next mark, whose place depends on the light."""
     FULL_SCREEN = auto()
+    COPY = auto()
+    """Copy the command line that makes this picture."""
+    COPY_COEFFICIENTS = auto()
+    EXPORT = auto()
+    """Write the coefficients into a file."""
+    LEAVE = auto()
+    """Leave full screen, or else close the window."""
     CLOSE = auto()
 
 
@@ -99,6 +107,8 @@ def next_light(state: State, step: int) -> State:
 
 def next_layout(state: State) -> State:
     """Read images in the next layout: this one and those opened afterwards."""
+    if not is_image(state.recipe.light):
+        return changed(state, message=f"{light_name(state.recipe.light)} is no image, and has no layout")
     last = state.view.layout_tried or state.recipe.reading.layout
     layout = _after(last, LAYOUT_CHOICES)
     return changed(state, reading=replace(state.recipe.reading, layout=layout), layout_tried=layout)
@@ -106,6 +116,8 @@ def next_layout(state: State) -> State:
 
 def toggle_sanitizing(state: State) -> State:
     """Repair bad values or leave them: in this image and those opened afterwards."""
+    if not is_image(state.recipe.light):
+        return changed(state, message=f"{light_name(state.recipe.light)} is no image, and has no values to repair")
     return changed(state, reading=replace(state.recipe.reading, sanitize=not state.recipe.reading.sanitize))
 
 
@@ -173,19 +185,18 @@ def step_sweep(state: State) -> State:
 
 
 def reset(state: State) -> State:
-    """Go back to the start in everything but the light, how it is read and what is asked of its numbers."""
-    last, view = state.recipe, state.view
-    recipe = Recipe(last.light, last.reading, compare=last.compare, tolerance=last.tolerance, suns=last.suns)
-    return changed(state, recipe=recipe, view=View(evaluate=view.evaluate, layout_tried=view.layout_tried))
+    """Go back to what the command line asked for, in everything but the light."""
+    recipe, view = state.start
+    return changed(state, recipe=replace(recipe, light=state.recipe.light), view=replace(view, message=""))
 
 
 def escape(state: State) -> State | Command:
-    """Close the help, or else the sheet over the spheres, or else stop the sweep, or else close the window."""
+    """Close the help, or else the sheet over the spheres, or else stop the sweep, or else leave."""
     if state.view.help_visible:
         return changed(state, help_visible=False)
     if state.view.sheet:
         return changed(state, sheet="")
-    return Command.CLOSE if state.view.sweep_to is None else changed(state, sweep_to=None)
+    return Command.LEAVE if state.view.sweep_to is None else changed(state, sweep_to=None)
 
 
 def orbit(state: State, right: float, up: float) -> State:
@@ -194,6 +205,11 @@ def orbit(state: State, right: float, up: float) -> State:
     azimuth = (azimuth - right * 180 / math.pi) % 360
     elevation = min(max(elevation - up * 180 / math.pi, -90.0), 90.0)
     return changed(state, camera=(azimuth, elevation))
+
+
+def face(state: State, direction: Array) -> State:
+    """Turn all spheres so that a direction in the world (3,) is in front."""
+    return changed(state, camera=facing(direction))
 
 
 def rotate_light(state: State, right: float, up: float) -> State:

@@ -45,6 +45,19 @@ def towards(azimuth_degrees: float, elevation_degrees: float) -> Quaternion:
     return compose(about_axis((0, 0, 1), azimuth_degrees), about_axis((0, 1, 0), -elevation_degrees))
 
 
+def rolled_towards(azimuth_degrees: float, elevation_degrees: float, roll_degrees: float) -> Quaternion:
+    """`towards`, after a turn by `roll_degrees` about +x: every rotation is one of these."""
+    return compose(towards(azimuth_degrees, elevation_degrees), about_axis((1, 0, 0), roll_degrees))
+
+
+def azimuth_elevation_roll(rotation: Quaternion) -> tuple[float, float, float]:
+    """The angles, degrees, from which `rolled_towards` makes a rotation."""
+    azimuth, elevation = facing(matrix(rotation)[:, 0])
+    x, y, z, w = towards(azimuth, elevation)
+    roll = compose((-x, -y, -z, w), rotation)
+    return azimuth, elevation, float(np.degrees(2 * np.arctan2(roll[0], roll[3])))
+
+
 def facing(direction: Array) -> tuple[float, float]:
     """Azimuth in [0, 360) and elevation, in degrees, of the camera that has the world direction (3,) in front."""
     x, y, z = (float(part) for part in direction)

@@ -40,9 +40,9 @@ def _each(action: Callable[[State, T], State], values: Mapping[str, T]) -> dict[
 BINDINGS: dict[str, tuple[Binding, ...]] = {
     "Bands": (
         Binding(
-            "Up / Down",
+            "Up / Down, + / -",
             "one band more, one fewer",
-            _each(do.more_bands, {"Up": 1, "Down": -1}),
+            _each(do.more_bands, {"Up": 1, "+": 1, "Down": -1, "-": -1}),
             lambda s: str(s.recipe.n_bands),
         ),
         Binding(
@@ -101,7 +101,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("Ctrl+R / F5", "read its file again", {"Ctrl+R": Command.RELOAD, "F5": Command.RELOAD}),
         Binding("L", "next layout of an image", {"L": do.next_layout}, lambda s: s.recipe.reading.layout),
         Binding("Z", "repair bad values or not", {"Z": do.toggle_sanitizing}, lambda s: describe_sanitizing(s.recipe)),
-        Binding("Shift+drag", "turn the light", {}),
+        Binding("right drag", "turn the light; Shift+drag, too", {}),
         Binding("drop a file", "open it", {}),
     ),
     "Error": (
@@ -149,18 +149,26 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
             lambda s: describe_basis(s.view) or "none",
         ),
         Binding("drag", "turn the spheres", {}, lambda s: "{:z.0f}, {:z.0f} deg".format(*s.view.camera)),
+        Binding("double click", "face that point", {}),
         Binding("scroll", "zoom", {}, lambda s: f"{s.view.zoom:.2f} x"),
         Binding("F", "camera back", {"F": partial(changed, camera=CAMERA_HOME, zoom=1.0)}),
-        Binding("R", "reset all but the light", {"R": do.reset}),
+        Binding("R", "all but the light as at the start", {"R": do.reset}),
     ),
     "Program": (
         Binding("P / Ctrl+S", "save this picture", {"P": Command.SAVE, "Ctrl+S": Command.SAVE}),
+        Binding("Ctrl+C", "copy the command of this picture", {"Ctrl+C": Command.COPY}),
+        Binding("Ctrl+Shift+C", "copy the coefficients", {"Ctrl+Shift+C": Command.COPY_COEFFICIENTS}),
+        Binding("Ctrl+E", "write the coefficients", {"Ctrl+E": Command.EXPORT}),
         Binding("F11", "full screen", {"F11": Command.FULL_SCREEN}),
-        Binding("H / ?", "this help", _each(do.toggle, dict.fromkeys("H?", "help_visible"))),
-        Binding("Esc", "stop work, close what is open, quit", {"Esc": do.escape}),
+        Binding("H / ? / F1", "this help", _each(do.toggle, dict.fromkeys(("H", "?", "F1"), "help_visible"))),
+        Binding("Esc", "stop, close, leave full screen, quit", {"Esc": do.escape}),
+        Binding("Ctrl+Q / Ctrl+W", "quit", dict.fromkeys(("Ctrl+Q", "Ctrl+W"), Command.CLOSE)),
     ),
 }
 """The rows of each group."""
+
+SYMBOLS = frozenset("+-,.?")
+"""Keys that are bound by what they type, wherever a layout has it."""
 
 ACTIONS = {key: action for rows in BINDINGS.values() for binding in rows for key, action in binding.actions.items()}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from shviewer.analysis.recipe import Recipe
@@ -26,6 +26,8 @@ class State:
     recipe: Recipe = START
     view: View = FRONT
     lights: tuple[str | Light, ...] = ("green",)
+    start: tuple[Recipe, View] = field(default=(START, FRONT), compare=False)
+    """What the command line or an opened picture asked for, to which R goes back. No pixel depends on it."""
 
     @property
     def bands_ahead(self) -> int:
@@ -54,6 +56,12 @@ def changed(state: State, **values: Any) -> State:
     if view:
         state = replace(state, view=replace(state.view, **view))
     return replace(state, **values) if values else state
+
+
+def started(state: State) -> State:
+    """The state as one to which R goes back: without what only keys show."""
+    shown = {name: getattr(FRONT, name) for name in ("help_visible", "sweep_to", "message", "layout_tried")}
+    return replace(state, start=(state.recipe, replace(state.view, **shown)))
 
 
 def state_of(*lights: str | Light, **values: Any) -> State:

@@ -16,6 +16,7 @@ from shviewer.cli.main import main
 from shviewer.cli.status_line import StatusLine
 from shviewer.coefficients.programs import CONVENTIONS, READINGS
 from shviewer.harmonics.metrics import errors_by_band_count
+from shviewer.harmonics.rotation import turn
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 
@@ -338,3 +339,34 @@ def test_the_help_names_every_program(capsys: Capture) -> None:
     said = set(re.findall(r"[\w-]+", re.search(r"convention to write: (.*?); after commas", text)[1]))  # type: ignore[index]
     assert {*CONVENTIONS} - said == {f"{name}-{phase}" for name in READINGS for phase in ("phase", "no-phase")}
     assert {*READINGS, "-phase", "-no-phase"} <= said
+
+
+@pytest.mark.parametrize("kind", ["json", "h"])
+def test_a_turned_light_is_written_turned_and_its_sun_with_it(kind: str, tmp_path: Path) -> None:
+    """The turn takes +x to +z, so the radiance towards +z is what it was towards +x; errors are what they were."""
+    plain, turned = tmp_path / f"plain.{kind}", tmp_path / f"turned.{kind}"
+    assert main(["project", "sun-sky", "--split-sun", "-o", str(plain)]) == 0
+    arguments = ["--rotate-light", "0", "90", "--roll-light", "30"]
+    assert main(["project", "sun-sky", "--split-sun", "-o", str(turned), *arguments]) == 0
+    before, after = (CoefficientLight.read(path) for path in (plain, turned))
+    directions = np.random.default_rng(0).normal(size=(20, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    matrix = turn(0, 90, 30)
+    np.testing.assert_allclose(matrix @ [1, 0, 0], [0, 0, 1], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(after.radiance(directions @ matrix.T), before.radiance(directions), rtol=0, atol=1e-5)
+    assert before.file is not None
+    assert after.file is not None
+    was, now = (np.array([float(value) for value in str(light.file.stamp["sun-1-direction"]).split()])
+                for light in (before, after) if light.file)  # fmt: skip
+    np.testing.assert_allclose(now, matrix @ was, rtol=0, atol=1e-5)
+    assert after.file.stamp["relative-l2"] == before.file.stamp["relative-l2"]
+    written = [float(value) for value in str(after.file.stamp["turned"]).split()]
+    np.testing.assert_allclose(written, matrix.ravel(), rtol=0, atol=1e-11)
+
+
+def test_a_turn_beyond_the_pole_and_two_ways_to_choose_bands_are_refused(tmp_path: Path, capsys: Capture) -> None:
+    out = str(tmp_path / "x.json")
+    assert main(["project", "-o", out, "--rotate-light", "0", "91"]) == 2
+    assert "elevation 91: it must be -90 to 90 degrees" in capsys.readouterr().err
+    assert main(["project", "-o", out, "--bands", "3", "--tolerance", "5%"]) == 2
+    assert "give one of them" in capsys.readouterr().err

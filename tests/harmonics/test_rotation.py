@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import jittered
-from shviewer.harmonics.rotation import rotate
+from shviewer.harmonics.rotation import rotate, turn
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
@@ -116,3 +116,10 @@ def test_what_is_no_rotation_is_refused(matrix: np.ndarray) -> None:
 def test_too_many_bands_are_refused() -> None:
     with pytest.raises(ValueError, match="129 bands"):
         rotate(np.zeros((129**2, 1)), np.eye(3))
+
+
+@pytest.mark.parametrize("angles", [(0, 0, 0), (30, 40, 50), (-170, -80, 10), (20, 90, 70)])
+def test_a_turn_is_that_of_scipy(angles: tuple[float, float, float]) -> None:
+    azimuth, elevation, roll = angles
+    wanted = Rotation.from_euler("ZYX", [azimuth, -elevation, roll], degrees=True).as_matrix()
+    assert_allclose(turn(azimuth, elevation, roll), wanted, rtol=0, atol=1e-15)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import fields
+from dataclasses import fields, replace
 from itertools import chain
 
 import numpy as np
@@ -13,17 +13,21 @@ from hypothesis import strategies as st
 
 from shviewer.analysis.recipe import METHODS, Recipe
 from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
+from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.actions import Command, open_light, orbit, rotate_light, step_sweep, zoom
 from shviewer.viewer.keys import ACTIONS, BINDINGS, key_table, press
-from shviewer.viewer.state import State, changed, describe_exposure, describe_muted, state_of
+from shviewer.viewer.state import State, changed, describe_exposure, describe_muted, started, state_of
 from shviewer.viewer.view import CAMERA_HOME
 
 LIGHTS = ("green", "studio", "sun-sky")
 START = state_of(*LIGHTS)
+IMAGE = state_of("venice_sunset", *LIGHTS)
+GIVEN = CoefficientLight(np.ones((4, 3)))
 
 
 def pressed(state: State, *keys: str) -> State:
@@ -55,7 +59,7 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space Y"
+        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space Y + - F1 Ctrl+C Ctrl+Shift+C Ctrl+E Ctrl+Q Ctrl+W"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -95,8 +99,8 @@ def test_a_bound_key_takes_the_message_away() -> None:
 
 
 def test_bands_go_up_and_down_by_one_and_by_four_and_stop_at_the_ends() -> None:
-    keys = ("Up", "Down", "PageUp", "PageDown", "Home", "End")
-    assert [press(START, key).recipe.n_bands for key in keys] == [6, 4, 9, 1, 1, 32]
+    keys = ("Up", "Down", "+", "-", "PageUp", "PageDown", "Home", "End")
+    assert [pressed(START, key).recipe.n_bands for key in keys] == [6, 4, 6, 4, 9, 1, 1, 32]
     assert pressed(START, *["Down"] * 9).recipe.n_bands == 1
     assert pressed(START, *["PageUp"] * 40).recipe.n_bands == MAX_BANDS
 
@@ -141,28 +145,28 @@ def test_lights_and_methods_go_round() -> None:
 
 
 def test_l_goes_round_the_layouts_and_another_layout_is_another_picture() -> None:
-    states = [pressed(START, *["L"] * count) for count in range(6)]
+    states = [pressed(IMAGE, *["L"] * count) for count in range(6)]
     names = [state.recipe.reading.layout for state in states]
     assert names == ["auto", "lat-long", "cube", "angular", "mirror-ball", "auto"]
-    assert states[1] != START
-    assert states[5] == START
+    assert states[1] != IMAGE
+    assert states[5] == IMAGE
 
 
 def test_l_goes_on_from_a_layout_that_the_image_could_not_have() -> None:
     """The window then takes the reading back."""
-    cube = pressed(START, "L", "L")
-    kept = changed(cube, reading=press(START, "L").recipe.reading)
+    cube = pressed(IMAGE, "L", "L")
+    kept = changed(cube, reading=press(IMAGE, "L").recipe.reading)
     assert press(kept, "L").recipe.reading.layout == "angular"
-    assert press(press(kept, "Left"), "L").recipe.reading.layout == "cube"
-    assert press(open_light(kept, "studio"), "L").recipe.reading.layout == "cube"
+    assert pressed(kept, "Left", "Right", "L").recipe.reading.layout == "cube"
+    assert press(open_light(kept, "mine.hdr"), "L").recipe.reading.layout == "cube"
 
 
 def test_z_repairs_and_again_leaves_as_it_is_for_every_light() -> None:
-    repairing = press(START, "Z")
-    assert repairing == changed(START, reading=Reading(sanitize=True))
-    assert press(repairing, "Z") == START
+    repairing = press(IMAGE, "Z")
+    assert repairing == changed(IMAGE, reading=Reading(sanitize=True))
+    assert press(repairing, "Z") == IMAGE
     assert open_light(repairing, "mine.hdr").recipe.reading.sanitize
-    isolated = changed(START, reading=Reading(isolated=True))
+    isolated = changed(IMAGE, reading=Reading(isolated=True))
     assert pressed(isolated, "Z", "L").recipe.reading.isolated
 
 
@@ -188,10 +192,28 @@ def test_exposure_goes_by_half_stops_and_n_makes_it_automatic() -> None:
     assert (again.view.exposure_stops, again.view.exposure_offset) == (None, 0.0)
 
 
-GIVEN = CoefficientLight(np.ones((4, 3)))
+@pytest.mark.parametrize(
+    "light", ["green", "mine.toml", "probe.json", "lights.py:f", FunctionLight(np.exp, "exp"), GIVEN]
+)
+@pytest.mark.parametrize("key", ["L", "Z"])
+def test_what_is_no_image_has_no_layout_and_no_repairs_which_is_said(light: str | Light, key: str) -> None:
+    state = state_of(light)
+    done = pressed(state, key)
+    assert done == changed(state, message=done.view.message)
+    assert " is no image, and has no " in done.view.message
 
 
-def test_reset_keeps_the_light_and_what_is_asked_of_it_and_nothing_else() -> None:
+@pytest.mark.parametrize(
+    "light", ["sky.exr:layer", "SKY.HDR", "codes.npy", EnvironmentLight(np.ones((2, 4, 3), np.float32))]
+)
+def test_what_is_or_may_be_an_image_has(light: str | Light) -> None:
+    assert press(state_of(light), "L") != state_of(light)
+
+
+def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> None:
+    asked = started(
+        state_of(*LIGHTS, n_bands=7, tone="log", compare=GIVEN, reading=Reading(layout="cube"), message="m")
+    )
     other = state_of(
         *LIGHTS,
         light="sun-sky",
@@ -230,10 +252,9 @@ def test_reset_keeps_the_light_and_what_is_asked_of_it_and_nothing_else() -> Non
     )
     for held in (other.recipe, other.view):
         assert [item.name for item in fields(held) if getattr(held, item.name) == item.default] == []
-    after = press(other, "R")
-    kept = {"reading": Reading(sanitize=True), "compare": GIVEN, "tolerance": 0.1, "evaluate": "map", "suns": "all"}
-    assert after == state_of(*LIGHTS, light="sun-sky", **kept)
-    assert after.view.layout_tried == "cube"
+    assert press(replace(other, start=asked.start), "R") == changed(asked, light="sun-sky", message="")
+    assert press(other, "R") == state_of(*LIGHTS, light="sun-sky")  # where nothing was asked for
+    assert pressed(changed(asked, light="studio"), "L", "Z", "R") == changed(asked, light="studio", message="")
 
 
 @pytest.mark.parametrize(
@@ -246,7 +267,12 @@ def test_reset_keeps_the_light_and_what_is_asked_of_it_and_nothing_else() -> Non
         ("P", Command.SAVE),
         ("Ctrl+S", Command.SAVE),
         ("F11", Command.FULL_SCREEN),
-        ("Esc", Command.CLOSE),
+        ("Esc", Command.LEAVE),
+        ("Ctrl+Q", Command.CLOSE),
+        ("Ctrl+W", Command.CLOSE),
+        ("Ctrl+C", Command.COPY),
+        ("Ctrl+Shift+C", Command.COPY_COEFFICIENTS),
+        ("Ctrl+E", Command.EXPORT),
     ],
 )
 def test_what_is_no_other_state_is_a_command(key: str, command: Command) -> None:
@@ -259,12 +285,12 @@ def test_f_brings_back_the_camera_alone() -> None:
 
 
 def test_escape_closes_the_help_first_and_then_the_window() -> None:
-    for key in ("H", "?"):
+    for key in ("H", "?", "F1"):
         helped = press(START, key)
         assert helped.view.help_visible
         assert press(helped, key) == START
         assert press(helped, "Esc") == START
-        assert press(START, "Esc") is Command.CLOSE
+        assert press(START, "Esc") is Command.LEAVE
 
 
 def test_b_shows_the_time_error_plane_and_escape_closes_it_after_the_help_and_before_the_window() -> None:

@@ -28,6 +28,7 @@ SPECIAL_KEYS = {
     glfw.KEY_ESCAPE: "Esc",
     glfw.KEY_TAB: "Tab",
     glfw.KEY_SPACE: "Space",
+    glfw.KEY_F1: "F1",
     glfw.KEY_F5: "F5",
     glfw.KEY_F11: "F11",
     **{getattr(glfw, f"KEY_{digit}"): str(digit) for digit in range(10)},
@@ -40,15 +41,26 @@ class NoDisplayError(GraphicsError):
     """No display to open a window on."""
 
 
+LETTERS = range(glfw.KEY_A, glfw.KEY_Z + 1)
+
+
 def key_name(code: int, scancode: int, modifiers: int) -> str:
-    """The name under which keys.py binds a key: letters by what they type, so that the keyboard's layout is respected."""
-    name = SPECIAL_KEYS.get(code)
-    if name is None:
-        typed = glfw.get_key_name(code, scancode)
-        name = typed.upper() if typed and len(typed) == 1 else ""
+    """The name under which keys.py binds a key that is no symbol; without a name for the key itself, it binds nothing.
+
+    Letters by what they type, so that the keyboard's layout is respected; on a layout without Latin letters, by their place.
+    """
+    name = SPECIAL_KEYS.get(code) or _letter(code, scancode)
+    if not name and code in LETTERS and not any(map(_letter, LETTERS)):
+        name = chr(code)
     shift = "Shift+" if modifiers & glfw.MOD_SHIFT else ""
     control = "Ctrl+" if modifiers & (glfw.MOD_CONTROL | glfw.MOD_SUPER) else ""
     return f"{control}{shift}{name}"
+
+
+def _letter(code: int, scancode: int = 0) -> str:
+    """The Latin letter that a key types, as a capital; "" for any other."""
+    typed = glfw.get_key_name(code, scancode) or ""
+    return typed.upper() if len(typed) == 1 and typed.isascii() and typed.isalpha() else ""
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from time import perf_counter
+from typing import ParamSpec
 
 from shviewer.analysis.figures import Pending
 from shviewer.analysis.recipe import light_name
@@ -20,11 +21,11 @@ from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError, within_memory
 from shviewer.lights.find import is_code
 from shviewer.lights.light import Light
-from shviewer.outputs import file_stem
 from shviewer.viewer.actions import Command, open_light, step_sweep, with_bands
 from shviewer.viewer.animation.metronome import Metronome
 from shviewer.viewer.camera import facing
 from shviewer.viewer.composition import Composition
+from shviewer.viewer.desktop.errands import save_coefficients, save_picture
 from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.desktop.watching import Watch
@@ -33,12 +34,11 @@ from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, prepare, stages, still
-from shviewer.viewer.saving.picture_files import write_numbered, write_png
 from shviewer.viewer.saving.restoring import restored
-from shviewer.viewer.saving.stamp import metadata
-from shviewer.viewer.screenshot import render_rgb
-from shviewer.viewer.state import State, changed
+from shviewer.viewer.state import State, changed, started
 from shviewer.words import one_line
+
+P = ParamSpec("P")
 
 LOOK_SECONDS = 0.2
 """The least time between two looks at a watched file, also while events come."""
@@ -73,7 +73,8 @@ class Session:
         first = first or prepare(state)
         reading = state.recipe.reading  # from now on no pipe is waited for: it was read where the command line named it
         isolated = replace(reading, isolated=True, limits=replace(reading.limits, pipe_seconds=0))
-        self.state = changed(state, reading=isolated, message=state.view.message or notes_of(first.light))
+        self.state = started(changed(state, reading=isolated))
+        self.state = changed(self.state, message=state.view.message or notes_of(first.light))
         self.picture: Picture = replace(first, state=self.state)
         self.by_map = False
         self.verbose = verbose
@@ -119,9 +120,11 @@ class Session:
         if command is Command.RELOAD:
             self._reading = Event()
         elif command is Command.FIT:
-            self._when_ready(self._fit)
+            self.when_ready(self._fit)
         elif command is Command.FACE_MARK:
-            self._when_ready(self._face_mark)
+            self.when_ready(self._face_mark)
+        elif command is Command.EXPORT:
+            self.when_ready(lambda: self._write(save_coefficients, self.picture))
         else:
             return command
         return None
@@ -159,23 +162,25 @@ class Session:
         A picture that this program saved is the state that it was saved from.
         """
         if is_code(path):
-            self._say(f"{path}: code runs only when the command line names it")
+            self.say(f"{path}: code runs only when the command line names it")
             return
         try:
             picture = None if self.as_image else restored(Path(path), self.state.recipe.reading.limits)
         except ShviewerError as error:
-            self._say(str(error))
+            self.say(str(error))
             return
         if picture is None:
             self.state = open_light(self.state, path)
         else:
             shown = replace(picture.state, lights=self.state.lights)
             reading = replace(shown.recipe.reading, isolated=True)
-            self.state = changed(open_light(shown, shown.recipe.light), reading=reading, sweep_to=None)
-            self._say(picture.said)
+            shown = changed(open_light(shown, shown.recipe.light), reading=reading, sweep_to=None)
+            self.state = started(shown)
+            self.say(picture.said)
         self._reading = Event()
 
-    def _say(self, message: str) -> None:
+    def say(self, message: str) -> None:
+        """Show a message, on one line."""
         self.state = changed(self.state, message=one_line(message))
 
     def tick(self, now: float) -> bool:
@@ -264,7 +269,7 @@ class Session:
             self._task.stop()
             self._ended, self._task = self._task, None
 
-    def _when_ready(self, command: Callable[[], None]) -> None:
+    def when_ready(self, command: Callable[[], None]) -> None:
         """Carry a command out that needs the picture with all figures: now, or when they are there."""
         self._enough = None
         self._later.append(command)
@@ -283,20 +288,21 @@ class Session:
 
     def save(self, renderer: Renderer, composition: Composition) -> None:
         """Save the picture, as soon as it is there, under the next free name in the current folder."""
-        self._when_ready(lambda: self._save(renderer, composition))
+        self.when_ready(lambda: self._save(renderer, composition))
 
     def _save(self, renderer: Renderer, composition: Composition) -> None:
         state = changed(self.state, message="")
         picture = prepare(state) if self.by_map else self.picture.seen(state)
+        self._write(save_picture, picture, composition, renderer)
+
+    def _write(self, write: Callable[P, Path], *arguments: P.args, **named: P.kwargs) -> None:
+        """Write a file, and say which one and in which folder, or why not."""
         try:
-            pixels = render_rgb(renderer, picture, composition)
-            text = metadata(picture, composition, renderer.version)
-            stem = f"shviewer-{file_stem(picture.light.name)}"
-            path = write_numbered(stem, lambda path: write_png(path, pixels, text, exclusive=True))
+            path = write(*arguments, **named)
         except ShviewerError as error:
-            self.state = changed(self.state, message=str(error))
+            self.say(str(error))
         else:
-            self.state = changed(self.state, message=f"saved {path}")
+            self.say(f"saved {path} in {Path.cwd()}")
             self._log(f"saved {path}")
 
     def _news(self, light: Light, *, again: bool) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Callable
 from time import perf_counter, sleep
 from typing import Any
 
@@ -17,6 +18,7 @@ import moderngl
 from shviewer.errors import ShviewerError
 from shviewer.viewer.actions import (
     Command,
+    face,
     orbit,
     rotate_light,
     toggle_band,
@@ -24,10 +26,13 @@ from shviewer.viewer.actions import (
 )
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.desktop.canvas import Canvas
+from shviewer.viewer.desktop.errands import coefficients_text
 from shviewer.viewer.desktop.glfw_window import key_name, open_window
 from shviewer.viewer.desktop.session import PATIENCE, Session
 from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.state import State, changed
 
 IDLE_SECONDS = 0.25
@@ -36,6 +41,13 @@ LEAVE_SECONDS = 0.03
 
 CLICK_PIXELS = 4.0
 """A press is a click if the mouse moves less than this before its release."""
+
+DOUBLE_SECONDS = 0.4
+"""Two clicks on a point are one double click if they are no further apart."""
+
+NEVER = (-math.inf, 0.0, 0.0)
+
+BUTTONS = (glfw.MOUSE_BUTTON_LEFT, glfw.MOUSE_BUTTON_RIGHT)
 
 
 def run(
@@ -93,8 +105,14 @@ class Window:
         )
         self.frames_due = 2  # the first swap may still have the old size
         self.frame_count = 0
-        self.pressed_at: tuple[float, float] | None = None
-        self.mouse = self.dragged_to = (0.0, 0.0)
+        self.pressed: int | None = None
+        """The button of the mouse that is held down, the first of several."""
+        self.mouse = self.pressed_at = self.dragged_to = (0.0, 0.0)
+        self.clicked = NEVER
+        """When and where the last click was."""
+        self.done_by_key = False
+        """Whether the key pressed last did something; then what it types does nothing."""
+        self.has_clipboard = True
         self.dragged = self.hovering = self.fullscreen = False
         self.windowed_place = (0, 0, 1280, 640)
         glfw.set_key_callback(handle, self._on_key)
@@ -138,12 +156,17 @@ class Window:
         """Do what a key asks for; commands that the session returns are done here."""
         command = self.session.press(key)
         composition = self.composition()
-        if command is Command.CLOSE:
-            glfw.set_window_should_close(self.handle, True)
-        elif command is Command.FULL_SCREEN:
+        if command is Command.FULL_SCREEN or (command is Command.LEAVE and self.fullscreen):
             self._toggle_fullscreen()
+        elif command in (Command.CLOSE, Command.LEAVE):
+            glfw.set_window_should_close(self.handle, True)
         elif command is Command.SAVE and composition is not None:
             self.session.save(self.canvas.renderer, composition)
+        elif command is Command.COPY and composition is not None:
+            size = composition.width, composition.height
+            self._copy("the command of this picture", lambda: command_line(self.session.picture, size))
+        elif command is Command.COPY_COEFFICIENTS:
+            self._copy("the coefficients", lambda: coefficients_text(self.session.picture))
         self._due()
 
     def frame(self) -> None:
@@ -209,30 +232,68 @@ class Window:
             glfw.set_window_monitor(self.handle, None, *self.windowed_place, 0)  # type: ignore[arg-type]  # None: no monitor
         self.redraw()
 
+    def _copy(self, what: str, make: Callable[[], str]) -> None:
+        """Give a text to the clipboard, when the picture is there; where there is none, to the terminal."""
+        self.session.when_ready(lambda: self._give(what, make))
+
+    def _give(self, what: str, make: Callable[[], str]) -> None:
+        try:
+            text = make()
+        except ShviewerError as error:
+            self.session.say(str(error))
+            return
+        if self.has_clipboard:
+            glfw.get_error()  # of whatever was before
+            glfw.set_clipboard_string(self.handle, text)
+            if glfw.get_error()[0] == glfw.NO_ERROR:
+                self.session.say(f"copied {what}")
+                return
+            self.session.say(f"no clipboard here: {what} is printed in the terminal")
+        self.has_clipboard = False
+        print(text, flush=True)
+
     def _on_key(self, window: Any, code: int, scancode: int, action: int, modifiers: int) -> None:
-        if action != glfw.RELEASE:  # a key held down repeats
-            self.press(key_name(code, scancode, modifiers))
+        if action == glfw.RELEASE:
+            return  # a key held down repeats
+        name = key_name(code, scancode, modifiers)
+        self.done_by_key = name in ACTIONS
+        self.press(name)
 
     def _on_char(self, window: Any, codepoint: int) -> None:
-        if chr(codepoint) == "?":  # wherever the layout has it
-            self.press("?")
+        """Press a symbol; not where its key has done something, as the digit 7 with Shift, which types "?" on some layouts."""
+        if chr(codepoint) in SYMBOLS and not self.done_by_key:
+            self.press(chr(codepoint))
 
     def _on_button(self, window: Any, button: int, action: int, modifiers: int) -> None:
-        if button != glfw.MOUSE_BUTTON_LEFT:
-            return
-        if action == glfw.PRESS:
-            self.pressed_at = self.dragged_to = self.mouse
+        if action == glfw.PRESS and self.pressed is None and button in BUTTONS:
+            self.pressed, self.pressed_at, self.dragged_to = button, self.mouse, self.mouse
             self.dragged = False
-        elif self.pressed_at is not None:
-            overlay = None if self.dragged or self.session.state.view.help_visible else self.canvas.overlay
-            bars = overlay.bars if overlay is not None else {}
-            for band, box in bars.items():
-                if box.contains(*self.pressed_at):
-                    self.change(toggle_band(changed(self.session.state, message=""), band))
-            self.pressed_at = None
+        elif action == glfw.RELEASE and button == self.pressed:
+            if button == glfw.MOUSE_BUTTON_LEFT and not self.dragged:
+                self._click(*self.pressed_at)
+            self.pressed = None
             if self.dragged:
                 self.dragged = False
                 self.redraw()
+
+    def _click(self, x: float, y: float) -> None:
+        """Mute or unmute the band whose bar is there; a second click soon after on the same point of a sphere faces it."""
+        now, last = perf_counter(), self.clicked
+        near = max(abs(x - last[1]), abs(y - last[2])) < CLICK_PIXELS
+        self.clicked = now, x, y
+        state, composition = self.session.state, self.composition()
+        if composition is None or state.view.help_visible:
+            return
+        bars = self.canvas.overlay.bars if self.canvas.overlay is not None else {}
+        for band, box in bars.items():
+            if box.contains(x, y):
+                self.change(toggle_band(changed(state, message=""), band))
+        if near and now - last[0] < DOUBLE_SECONDS:
+            self.clicked = NEVER
+            found = (pane.direction(x, y, self.session.picture.world_from_view) for pane in composition.panes)
+            direction = next((one for one in found if one is not None), None)
+            if direction is not None:
+                self.change(face(state, direction))
 
     def _on_cursor(self, window: Any, x: float, y: float) -> None:
         """Remember where the mouse is, in pixels of the framebuffer, and drag.
@@ -245,7 +306,7 @@ class Window:
         composition = self.composition()
         if composition is None:
             return
-        if self.pressed_at is None:
+        if self.pressed is None:
             self._hover(composition)
             return
         moved = max(abs(self.mouse[0] - self.pressed_at[0]), abs(self.mouse[1] - self.pressed_at[1]))
@@ -256,7 +317,8 @@ class Window:
         right, up = (self.mouse[0] - self.dragged_to[0]) / radius, (self.dragged_to[1] - self.mouse[1]) / radius
         self.dragged_to = self.mouse
         shift = any(glfw.get_key(self.handle, key) for key in (glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT))
-        self.change((rotate_light if shift else orbit)(self.session.state, right, up))
+        turns_light = shift or self.pressed == glfw.MOUSE_BUTTON_RIGHT
+        self.change((rotate_light if turns_light else orbit)(self.session.state, right, up))
 
     def _hover(self, composition: Composition) -> None:
         """Show the values under the mouse, or take them away."""

@@ -40,15 +40,15 @@ def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
     write_atomically(path, buffer.getvalue())
 
 
-def write_numbered(stem: str, write: Callable[[Path], object], first: int = 1) -> Path:
+def write_numbered(stem: str, write: Callable[[Path], object], first: int = 1, suffix: str = ".png") -> Path:
     """Write under the next free name stem-001.png, stem-002.png, ... in the current folder; return its path.
 
     write: writes a path exclusively. first: the number to begin with; 0 is stem.png.
     """
     for number in range(first, 10_000):
-        path = Path(f"{stem}-{number:03d}.png" if number else f"{stem}.png")
+        path = Path(f"{stem}-{number:03d}{suffix}" if number else f"{stem}{suffix}")
         if not os.path.lexists(path):
             with suppress(FileExistsError):  # somebody else was faster
                 write(path)
                 return path
-    raise OutputError(f"{stem}-001.png to {stem}-9999.png all exist; move some away")
+    raise OutputError(f"{stem}-001{suffix} to {stem}-9999{suffix} all exist; move some away")

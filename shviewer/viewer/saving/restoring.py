@@ -17,7 +17,6 @@ import numpy as np
 from shviewer.analysis.compared_files import compared_with
 from shviewer.analysis.options import is_number
 from shviewer.analysis.recipe import Recipe, light_name
-from shviewer.coefficients.programs import OURS
 from shviewer.errors import LightError, ShviewerError, UsageError
 from shviewer.harmonics.basis import count_bands
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -189,10 +188,7 @@ def _coefficients(said: dict[str, Any]) -> CoefficientLight | None:
         numbers = np.array(rows, dtype=np.float64)
         if numbers.ndim != 2 or numbers.shape[1] != 3 or count_bands(numbers) > MAX_BANDS:
             raise ValueError(f"an array of {numbers.shape}")
-        quantity = "irradiance" if said.get("quantity") == "irradiance" else "radiance"
-        return CoefficientLight.of_numbers(
-            numbers, replace(OURS, quantity=quantity), one_line(str(said.get("light")), 60)
-        )
+        return CoefficientLight(numbers, one_line(str(said.get("light")), 60))
     except (ValueError, TypeError, ArithmeticError, LightError) as error:
         raise UsageError(f"the coefficients in its stamp are damaged ({error})") from None
 

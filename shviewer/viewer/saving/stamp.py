@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from shviewer.analysis.figures import Figures, Needs, Pending
+from shviewer.analysis.projections import project, sampling_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.lights.find import file_of, version_of_light
 from shviewer.lights.light import Light
@@ -140,12 +141,13 @@ def _as_given(path: Path) -> str:
 
 
 def _coefficients(picture: Picture) -> list[list[float]]:
-    """What is left of the picture where its light is gone: the coefficients of its bands, none muted, without the window.
+    """What is left of the picture where its light is gone: its bands of the radiance, none muted, without the window.
 
-    They are of the quantity shown. Of more than MAX_DIRECT_BANDS bands, the first.
+    Of more than MAX_DIRECT_BANDS bands, the first.
     """
-    n_bands = min(picture.state.recipe.n_bands, MAX_DIRECT_BANDS)
-    rows = picture.projection.coefficients[: n_bands**2].tolist()
+    recipe = picture.state.recipe
+    radiance = project(picture.light.source, *sampling_of(recipe), recipe.projected_bands)
+    rows = radiance.coefficients[: min(recipe.n_bands, MAX_DIRECT_BANDS) ** 2].tolist()
     return [[float(f"{value:.{DIGITS}g}") for value in row] for row in rows]
 
 

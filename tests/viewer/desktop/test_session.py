@@ -34,7 +34,7 @@ def test_a_first_light_that_cannot_be_read_makes_no_session() -> None:
 def test_only_what_a_window_can_do_is_given_back() -> None:
     session = Session(state_of())
     given = {key: session.press(key) for key in ("Up", "F11", "P", "T", "Y", "F5", "Esc")}
-    commands = {"F11": Command.FULL_SCREEN, "P": Command.SAVE, "Esc": Command.CLOSE}
+    commands = {"F11": Command.FULL_SCREEN, "P": Command.SAVE, "Esc": Command.LEAVE}
     assert {key: command for key, command in given.items() if command is not None} == commands
 
 

@@ -78,7 +78,7 @@ KINDS: dict[str, list[str]] = {
     "compared": ["green", "--compare", "probe.json", "--error", "signed"],
     "bare": ["green", "--compare", "bare.txt"],
     "sun": ["sun-sky", "--split-sun", "--for", "irradiance", "--window", "hann:4", "--tolerance", "10%"],
-    "surfaces": ["green", "--lobes", "--rotate-light", "30", "40"],
+    "surfaces": ["green", "--lobes", "--rotate-light", "30", "40", "--roll-light", "50"],
     "basis": ["green", "--basis", "2", "-1"],
     "map": ["green", "--evaluate", "map", "--no-overlay"],
 }
