@@ -19,7 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, check_bands, normalise
+from shviewer.harmonics.boxes import wave_sums
+from shviewer.harmonics.chebyshev import chebyshev_points, chebyshev_values, integrate_series, points_from_series
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
+
+DIRECT_BANDS = 32
+"""The most bands for which each point meets each wave."""
 
 BLOCK_VALUES = 2**21
 """How many basis values, or texel values, are held in float64 at a time."""
@@ -32,36 +37,9 @@ def texel_weights(edges: Array, n_points: int) -> tuple[Array, Array]:
     below n_points.
     """
     middle, half = (edges[0] + edges[-1]) / 2, (edges[-1] - edges[0]) / 2
-    edge_angle = np.arccos(np.clip((edges - middle) / half, -1, 1))
-    degree = np.arange(n_points)[:, None]
-    lower = np.divide(
-        np.cos((degree - 1) * edge_angle), degree - 1, where=degree != 1, out=np.zeros((n_points, len(edges)))
-    )
-    antiderivative = (np.cos((degree + 1) * edge_angle) / (degree + 1) - lower) / 2
     points = middle + half * chebyshev_points(n_points)
-    return points, half * (_points_from_series(n_points) @ np.diff(antiderivative, axis=1))
-
-
-def chebyshev_points(n_points: int) -> Array:
-    """Chebyshev points, (n_points,), in (-1, 1), descending."""
-    return np.asarray(np.cos(np.pi * (np.arange(n_points) + 0.5) / n_points))
-
-
-def chebyshev_shares(positions: Array, n_points: int) -> Array:
-    """The share of each Chebyshev point in the interpolation at positions (...) in [-1, 1]: (..., n_points).
-
-    The shares are the polynomials that are 1 at their own point and 0 at the others.
-    """
-    angle = np.arccos(np.clip(positions, -1, 1))
-    return np.asarray(np.cos(angle[..., None] * np.arange(n_points)) @ _points_from_series(n_points).T)
-
-
-def _points_from_series(n_points: int) -> Array:
-    """The matrix from values of the Chebyshev polynomials T(0) to T(n-1), or functionals of them, to shares of the points."""
-    angle = np.pi * (np.arange(n_points) + 0.5) / n_points
-    matrix = np.cos(angle[:, None] * np.arange(n_points)) * (2 / n_points)
-    matrix[:, 0] /= 2
-    return np.asarray(matrix)
+    primitives = integrate_series(chebyshev_values(np.clip((edges - middle) / half, -1, 1), n_points + 1))
+    return points, half * (points_from_series(n_points) @ np.diff(primitives, axis=1))
 
 
 def quadrant_points(n_texels: int, n_points: int) -> tuple[Array, Array]:
@@ -130,23 +108,26 @@ def _sum_rows(weights: Array, image: NDArray[np.floating], spans: NDArray[np.int
 
 
 def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
-    """Sum of value * Y over directions and their mirror images, (n_bands**2, 3).
+    """Sum of value * Y over directions and their mirror images, (n_bands**2, channels).
 
-    directions: (k, 3), any length. values: (x, y, z, k, 3) with 1 or 2 along each of the first three axes; index 1 is the
-    value in the direction whose coordinate of that name is negated.
+    directions: (k, 3), any length. values: (x, y, z, k, channels) with 1 or 2 along each of the first three axes; index 1 is
+    the value in the direction whose coordinate of that name is negated.
 
     Every Y is a sum of products of {cos, sin}(m phi) and, for even m, cos(k theta), for odd m, sin(k theta)
     (theta_series.py), each even or odd in every coordinate. So the values are summed with the products alone, and each kind
-    needs only the sum or the difference of mirror images.
+    needs only the sum or the difference of mirror images. Many bands take the way of boxes.py, whose cost is no longer n^2.
     """
     check_bands(n_bands, MAX_SEPARABLE_BANDS)
+    if n_bands > DIRECT_BANDS:
+        return from_waves(wave_sums(directions, values, n_bands))
+    channels = values.shape[-1]
     for axis in range(3):
         if values.shape[axis] == 2:
             first, second = np.take(values, 0, axis), np.take(values, 1, axis)
             values = np.stack([first + second, first - second], axis)
     last = np.array(values.shape[:3]) - 1
     n_even = (n_bands + 1) // 2
-    sums = np.zeros((n_bands, 2, 3, n_bands))  # m, {cos, sin}(m phi), channel, k by parity
+    sums = np.zeros((n_bands, 2, channels, n_bands))  # m, {cos, sin}(m phi), channel, k by parity
     block = max(64, BLOCK_VALUES // (8 * n_bands))
     for start in range(0, len(directions), block):
         points = slice(start, start + block)
@@ -166,7 +147,7 @@ def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
             along_theta = polar[parity][odd_k::2, None] * mirrored.T  # k, channel, point
             product = azimuth[sine][parity::2] @ along_theta.reshape(-1, len(x)).T
             kept = slice(n_even, None) if odd_k else slice(0, n_even)
-            sums[parity::2, sine, :, kept] += product.reshape(len(product), -1, 3).swapaxes(1, 2)
+            sums[parity::2, sine, :, kept] += product.reshape(len(product), -1, channels).swapaxes(1, 2)
     return from_waves(sums)
 
 

@@ -70,16 +70,16 @@ def azimuth_functions(n_bands: int, n_columns: int) -> Array:
 
 
 def from_waves(sums: Array) -> Array:
-    """Sums with {cos, sin}(m phi) and cos(k theta), for odd m sin(k theta) -> coefficients (n**2, 3).
+    """Sums with {cos, sin}(m phi) and cos(k theta), for odd m sin(k theta) -> coefficients (n**2, channels).
 
     sums: (m, {cos, sin}, channel, k), the even k first, then the odd ones.
     """
-    n_bands = len(sums)
-    table = np.empty((n_bands, 6, n_bands))  # m, ..., l
+    n_bands, _, channels, _ = sums.shape
+    table = np.empty((n_bands, 2 * channels, n_bands))  # m, ..., l
     start = 0
     for parity, series in enumerate(series_by_parity(n_bands)):
         stop = start + series.shape[1]
-        table[..., parity::2] = sums.reshape(n_bands, 6, n_bands)[..., start:stop] @ series
+        table[..., parity::2] = sums.reshape(n_bands, -1, n_bands)[..., start:stop] @ series
         start = stop
     degree, order, sine = degrees_and_orders(n_bands)
-    return np.asarray(table.reshape(n_bands, 2, 3, n_bands)[order, sine, :, degree])
+    return np.asarray(table.reshape(n_bands, 2, channels, n_bands)[order, sine, :, degree])

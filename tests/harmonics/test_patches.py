@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.patches import project_mirrored, quadrant_points, quadrant_weights, texel_weights
+from shviewer.harmonics.patches import DIRECT_BANDS, project_mirrored, quadrant_points, quadrant_weights, texel_weights
 
 
 @pytest.mark.parametrize("n_points", [1, 2, 3, 8, 41])
@@ -66,7 +66,7 @@ def test_blocks_of_rows_change_nothing(monkeypatch):
 
 
 @pytest.mark.parametrize("mirrors", [(1, 1, 1), (2, 1, 1), (1, 2, 1), (1, 1, 2), (1, 2, 2), (2, 2, 2)])
-@pytest.mark.parametrize("n_bands", [1, 2, 7])
+@pytest.mark.parametrize("n_bands", [1, 2, 7, DIRECT_BANDS, DIRECT_BANDS + 1])
 def test_mirrored_points_count_as_if_each_were_given(mirrors, n_bands):
     random = np.random.default_rng(3)
     directions = random.normal(size=(150, 3))

@@ -20,23 +20,10 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.patches import four_quadrants, quadrant_edges
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import Indices
+from shviewer.lights.layouts.rim import cut_areas, project_rim, quadrants
 
-_RIM_BLOCK = 512
-"""How many texels on the rim have their points in memory at a time."""
-
-
-@dataclass(frozen=True, eq=False)
-class RimPoints:
-    """Points (k, n) in k pieces of rectangles. x and y are not negative; depth is sqrt(1 - x^2 - y^2), without cancellation.
-
-    weights: their areas. texels: the index of each piece's rectangle, (k,).
-    """
-
-    x: Array
-    y: Array
-    depth: Array
-    weights: Array
-    texels: NDArray[np.int64]
+ON_THE_RIM = 1e-14
+"""Corners that are this near the rim do not cross it, on whichever side rounding puts them."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +48,14 @@ class DiscLayout:
 
     def theta(self, radius: Array) -> Array:
         """The angle of a radius: the inverse of `radius`."""
+        raise NotImplementedError
+
+    def on_line(self, y: Array, x: Array, depth: Array) -> tuple[Array, Array]:
+        """As in rim.Disc."""
+        raise NotImplementedError
+
+    def opening(self, depth: Array) -> Array:
+        """As in rim.Disc."""
         raise NotImplementedError
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
@@ -109,6 +104,14 @@ class DiscLayout:
     @cached_property
     def quadrant_solid_angles(self) -> Array:
         """Steradians of the texels of the lower right quadrant, (half, half); the middle ones of an odd number count half."""
+        quadrant = self.whole_solid_angles()
+        quadrant[np.arange(self.half) >= self.whole[:, None]] = 0.0
+        cut = self.from_column(self.whole)
+        quadrant[cut] = cut_areas(self, *cut)
+        return quadrant
+
+    def whole_solid_angles(self) -> Array:
+        """The same for texels wholly inside the disc; anything for others."""
         raise NotImplementedError
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
@@ -138,6 +141,24 @@ class DiscLayout:
         folded = np.where(radius < 1, 1.0, -opposite)
         return np.asarray(pixels[self._texel(down * folded), self._texel(right * folded)], dtype=np.float64)
 
+    def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
+        """As in Layout."""
+        inside = self.inside()
+        coefficients = self.project_inside(pixels, inside, n_bands) + project_rim(self, pixels, inside, n_bands)
+        rim = self.from_column(inside)
+        areas = self.quadrant_solid_angles[rim] / np.sqrt(4 * np.pi)
+        for view in quadrants(pixels):
+            coefficients[0] += areas @ view[rim].astype(np.float64)
+        return coefficients
+
+    def inside(self) -> NDArray[np.int64]:
+        """Texels of each row, or column, of a quadrant that `project_inside` takes, from the centre on; (half,), descending."""
+        raise NotImplementedError
+
+    def project_inside(self, pixels: NDArray[np.float32], inside: NDArray[np.int64], n_bands: int) -> Array:
+        """Coefficients (n**2, 3) of these texels."""
+        raise NotImplementedError
+
     # A quadrant: texels by their distance from the centre, down or up and sideways, from 0 to half.
 
     @property
@@ -153,72 +174,17 @@ class DiscLayout:
     @cached_property
     def whole(self) -> NDArray[np.int64]:
         """The number of texels in each row of the quadrant that lie wholly inside the disc, (half,)."""
-        reach = np.sqrt(np.maximum(1 - self.edges[1:] ** 2, 0.0))
+        reach = np.sqrt(np.maximum(1 - self.edges[1:] ** 2, 0.0)) + ON_THE_RIM
         return np.searchsorted(self.edges[1:], reach, side="right")
 
     @cached_property
-    def cut(self) -> tuple[Indices, Indices]:
-        """Row and column in the quadrant of the texels that the rim cuts."""
-        reach = np.sqrt(np.maximum(1 - self.edges[:-1] ** 2, 0.0))
-        stop = np.searchsorted(self.edges[:-1], reach, side="left")
-        counts = np.maximum(stop - self.whole, 0)
+    def reach(self) -> NDArray[np.int64]:
+        """The number of texels in each row of the quadrant of which some part lies inside the disc, (half,)."""
+        reach = np.sqrt(np.maximum(1 - self.edges[:-1] ** 2, 0.0)) - ON_THE_RIM
+        return np.searchsorted(self.edges[:-1], reach, side="left")
+
+    def from_column(self, first: NDArray[np.int64]) -> tuple[Indices, Indices]:
+        """Row and column of the texels of a quadrant from column first[row] on to the rim."""
+        counts = self.reach - first
         rows = np.repeat(np.arange(self.half), counts)
-        first = np.repeat(self.whole - np.concatenate([[0], np.cumsum(counts)[:-1]]), counts)
-        return rows, first + np.arange(len(rows))
-
-    def rim_blocks(self, rows: Indices, columns: Indices, n_points: int) -> list[tuple[Indices, Indices]]:
-        """The texels divided into blocks small enough to be worked on at once."""
-        block = max(1, _RIM_BLOCK * 64 // n_points**2)
-        return [(rows[i : i + block], columns[i : i + block]) for i in range(0, len(rows), block)]
-
-    def rim(self, rows: Indices, columns: Indices, n_points: int) -> RimPoints:
-        """Quadrature points on texels of the quadrant, clipped to the disc."""
-        return rim_points(
-            self.edges[columns], self.edges[columns + 1], self.edges[rows], self.edges[rows + 1], n_points
-        )
-
-    def mirrored(
-        self, pixels: NDArray[np.float32], rows: Indices, columns: Indices, repeat: int = 1
-    ) -> NDArray[np.float32]:
-        """Texels of all four quadrants by their places in one, (2, 2, ..., 3): +y and -y of the world, +z and -z.
-
-        repeat: the texels along each side that one of the pixels stands for. Places beyond the image give any texel.
-        """
-        both_rows, both_columns = (
-            [np.clip(i, 0, self.side - 1) // repeat for i in (self.half - 1 - places, self.side // 2 + places)]
-            for places in (rows, columns)
-        )
-        return np.stack([np.stack([pixels[row, column] for row in both_rows]) for column in both_columns])
-
-
-def rim_points(x0: Array, x1: Array, y0: Array, y1: Array, n_points: int) -> RimPoints:
-    """Gauss's rule on the part of rectangles [x0, x1] x [y0, y1] inside the unit circle; limits (k,) each, not negative.
-
-    With y = sin(p) and x = cos(p) sin(t) the circle is t = pi/2 and sqrt(1 - x^2 - y^2) = cos(p) cos(t), so that nothing is
-    singular there. Where the circle leaves the rectangle through a side x = x', which is p' = acos(x'), the limits in t go
-    like sqrt(p' - p): substituting p = p' - s^2 makes them smooth as well. Below p' of the outer side the rectangle is whole,
-    above it the circle bounds it: two parts of n_points^2 points. Both roots and polynomials in x and y are analytic.
-    """
-    node, weight = np.polynomial.legendre.leggauss(n_points)
-    node, weight = (1 + node) / 2, weight / 2
-    lowest, highest = np.arcsin(np.minimum(y0, 1)), np.arcsin(np.minimum(y1, 1))
-    outer, inner = np.arccos(np.minimum(x1, 1)), np.arccos(np.minimum(x0, 1))
-    parts = []
-    for leaves, start, stop, bound in (
-        (outer, lowest, np.minimum(highest, outer), x1),
-        (inner, np.maximum(lowest, outer), np.minimum(highest, inner), np.full_like(x1, np.inf)),
-    ):
-        texels = np.flatnonzero(stop > start)
-        leaves, start, stop, bound, left = (a[texels, None, None] for a in (leaves, start, stop, bound, x0))
-        first, last = np.sqrt(leaves - stop), np.sqrt(leaves - start)
-        s = first + (last - first) * node[:, None]
-        angle = leaves - s * s
-        c = np.cos(angle)
-        t0, t1 = np.arcsin(np.minimum(left / c, 1)), np.arcsin(np.minimum(bound / c, 1))
-        t = t0 + (t1 - t0) * node
-        depth = c * np.cos(t)
-        weights = (2 * s * (last - first) * weight[:, None] * c) * ((t1 - t0) * weight) * depth
-        y = np.broadcast_to(np.sin(angle), t.shape)
-        parts.append([a.reshape(len(texels), n_points**2) for a in (c * np.sin(t), y, depth, weights)] + [texels])
-    x, y, depth, weights = (np.concatenate([part[i] for part in parts]) for i in range(4))
-    return RimPoints(x, y, depth, weights, np.concatenate([part[4] for part in parts]))
+        return rows, np.arange(len(rows)) + np.repeat(first - np.cumsum(counts) + counts, counts)

@@ -1,0 +1,184 @@
+"""Texels next to the rim of a disc: integrated along their edges, on which nothing is singular.
+
+The rim is one point of the sphere, straight back, so a texel that it cuts is bounded by the texel's own edges alone, and
+boundary.py makes coefficients of integrals along them. On the line Y = y of the image, with rho^2 = 1 - y^2,
+    X = rho cos t,      depth sqrt(1 - X^2 - y^2) = rho sin t,
+and directions are analytic in t up to the rim, at t = 0. Neighbours share an edge, so that a line carries the differences of
+the texels on either side; with Chebyshev points in t their integrals are closed forms, as in patches.py.
+
+A quadrant has X and Y from 0 to 1, in world directions +y and +z; the others are its mirror images.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.boundary import from_boundary
+from shviewer.harmonics.chebyshev import (
+    chebyshev_points,
+    chebyshev_shares,
+    chebyshev_values,
+    integrate_series,
+    point_count,
+    points_from_series,
+)
+from shviewer.harmonics.patches import project_mirrored
+
+Indices = NDArray[np.int64]
+
+GROUP = 128
+"""Neighbouring lines that share their points: the directions are smooth across lines, too."""
+
+LINES = 8
+"""Lines whose polynomials are held at once."""
+
+AREA_POINTS = 24
+"""Gauss's points on an edge that make its part of an area exact to rounding, even in an image of three texels."""
+
+
+class Disc(Protocol):
+    """How a disc covers the sphere, and the texels of a quadrant."""
+
+    @property
+    def edges(self) -> Array:
+        """From 0 to 1, (half + 1,)."""
+
+    @property
+    def reach(self) -> NDArray[np.int64]:
+        """The number of texels in each row, or column, of which some part lies inside, (half,)."""
+
+    def on_line(self, y: Array, x: Array, depth: Array) -> tuple[Array, Array]:
+        """Directions and their derivatives by t, (3, ...) each, on lines of the quadrant."""
+
+    def opening(self, depth: Array) -> Array:
+        """1 + cos(theta) at a depth: 0 on the rim, without cancellation."""
+
+
+def quadrants(pixels: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+    """Views (half, half, 3) of a square image's quadrants, from the centre outwards: upper and lower left, then right."""
+    side = len(pixels)
+    towards, away = slice((side - 1) // 2, None, -1), slice(side // 2, None)
+    return [pixels[rows, columns] for columns in (towards, away) for rows in (towards, away)]
+
+
+def project_rim(disc: Disc, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
+    """Coefficients (n**2, 3), without l = 0, of the texels from column inside[row] on to the rim, in all four quadrants.
+
+    inside: (half,), descending, the same for rows and columns.
+    """
+    views, directions, values = quadrants(pixels), [], []
+    for start in range(0, len(inside), GROUP):
+        lines = slice(start, min(start + GROUP, len(inside)))
+        direction, tangent, along, across = _on_lines(disc, views, inside, lines, n_bands)
+        directions += [direction, direction[[0, 2, 1]]]
+        # On lines of constant X, coordinates change places, which turns the boundary round.
+        values += [_times_tangent(along, tangent), _times_tangent(across, -tangent[[0, 2, 1]])]
+    sums = project_mirrored(np.concatenate(directions, axis=1).T, np.concatenate(values, axis=2)[None], n_bands)
+    return from_boundary(sums.reshape(-1, 3, 3).swapaxes(0, 1))
+
+
+def _on_lines(
+    disc: Disc, views: list[NDArray[np.float32]], inside: Indices, lines: slice, n_bands: int
+) -> tuple[Array, Array, Array, Array]:
+    """Directions and tangents (3, k) at points that stand for some lines of constant Y, and values there, (2, 2, k, 3).
+
+    Values also of the image with X and Y exchanged, whose lines are those of constant X.
+    """
+    edges = disc.edges
+    y = edges[lines, None]
+    rho = np.sqrt((1 - y) * (1 + y))
+    angle = np.arctan2(rho, y)[:, 0]
+    length = float(_parameter(edges[inside[lines], None], rho).max())
+    middle, half = (angle[0] + angle[-1]) / 2, max(angle[0] - angle[-1], 1e-9) / 2
+    n_along, n_across = _point_counts(disc, length, middle, half, n_bands)
+    shares = chebyshev_shares((angle - middle) / half, n_across)
+    sums = np.zeros((n_across, n_along + 1, 24))
+    for start in range(lines.start, lines.stop, LINES):
+        some = slice(start, min(start + LINES, lines.stop))
+        here = slice(some.start - lines.start, some.stop - lines.start)
+        first, last = int(inside[some.stop - 1]), int(np.searchsorted(edges[:-1], rho[here][0, 0]))
+        ends = np.minimum(_parameter(edges[first : last + 1], rho[here]), length)
+        corners = np.zeros((len(ends), last - first + 1, 2, 4, 3))
+        for i, view in enumerate(views):
+            for turned, texels in enumerate((view, view.swapaxes(0, 1))):
+                steps = _steps(disc, texels, inside, some, first, last)
+                corners[:, 1:, turned, i] = steps  # at the end of each edge, and at its beginning
+                corners[:, :-1, turned, i] -= steps
+        polynomials = chebyshev_values(2 * ends / length - 1, n_along + 1)
+        by_line = polynomials.swapaxes(0, 1) @ corners.reshape(*corners.shape[:2], -1)
+        sums += (shares[:, here] @ by_line.reshape(len(by_line), -1)).reshape(sums.shape)
+    values = points_from_series(n_along) @ integrate_series(sums.swapaxes(0, 1)).swapaxes(0, 1) * (length / 2)
+    along, across = values.reshape(-1, 2, 2, 2, 3).transpose(1, 2, 3, 0, 4)
+    y, rho = _circle(middle + half * chebyshev_points(n_across)[:, None])
+    direction, tangent = disc.on_line(y, *_place(rho, length * (1 + chebyshev_points(n_along)) / 2))
+    return direction.reshape(3, -1), tangent.reshape(3, -1), along, across
+
+
+def _point_counts(disc: Disc, length: float, middle: float, half: float, n_bands: int) -> tuple[int, int]:
+    """Chebyshev points along lines and across them, by the longest way that a direction goes, from a few of them."""
+    y, rho = _circle(middle + half * np.linspace(-1, 1, 9)[:, None])
+    directions = disc.on_line(y, *_place(rho, length * np.linspace(0, 1, 9)))[0]
+    across, along = (8 * float(np.linalg.norm(np.diff(directions, axis=axis), axis=0).max()) for axis in (1, 2))
+    return point_count(n_bands * along / 2), point_count(n_bands * across / 2)
+
+
+def _circle(angle: Array) -> tuple[Array, Array]:
+    """y and rho of the lines at an angle, in which directions are analytic up to the top of the disc."""
+    return np.cos(angle), np.sin(angle)
+
+
+def _times_tangent(values: Array, tangent: Array) -> Array:
+    """Values (2, 2, k, 3) times the components of the tangents (3, k) in each quadrant: (2, 2, k, 9)."""
+    weighted = np.empty((*values.shape[:3], 3, 3))
+    for i, j in np.ndindex(2, 2):
+        left, up = 1 - 2 * i, 1 - 2 * j  # a mirror turns the boundary round
+        signed = tangent.T * np.array([left * up, up, left])
+        np.multiply(signed[..., None], values[i, j][:, None], out=weighted[i, j])
+    return weighted.reshape(*values.shape[:3], 9)
+
+
+def _parameter(x: Array, rho: Array) -> Array:
+    """The parameter t of places on a line; 0 beyond its end."""
+    x = np.minimum(x, rho)
+    return np.arctan2(np.sqrt((rho - x) * (rho + x)), x)
+
+
+def _place(rho: Array, t: Array) -> tuple[Array, Array]:
+    return rho * np.cos(t), rho * np.sin(t)
+
+
+def _steps(disc: Disc, view: NDArray[np.float32], inside: Indices, lines: slice, first: int, last: int) -> Array:
+    """Texels above each line minus those below it, (lines, columns, 3); texels that are not next to the rim count as 0."""
+    rows, columns = np.maximum(np.arange(lines.start - 1, lines.stop), 0), np.arange(first, last)
+    texels = view[rows, first:last].astype(np.float64)
+    texels[(columns < inside[rows, None]) | (columns >= disc.reach[rows, None])] = 0.0
+    if lines.start == 0:
+        texels[0] = 0.0
+    return np.asarray(np.diff(texels, axis=0))
+
+
+def cut_areas(disc: Disc, rows: Indices, columns: Indices) -> Array:
+    """Steradians (k,) of the part inside the disc of texels at rows and columns (k,) of a quadrant, which the rim cuts.
+
+    The area is the integral of -(1 + cos theta) d(phi) along the boundary, theta and phi about the direction ahead.
+    """
+    if len(disc.edges) == 2:
+        return np.full(len(rows), np.pi)
+    area = np.zeros(len(rows))
+    for lines, places in ((rows, columns), (columns, rows)):
+        area += _swept(disc, lines, places) - _swept(disc, lines + 1, places)
+    return area
+
+
+def _swept(disc: Disc, lines: Indices, places: Indices) -> Array:
+    """The integral of (1 + cos theta) y dX / (X^2 + y^2) along one texel's edge, (k,), on the line y = edges[lines]."""
+    y = disc.edges[lines, None]
+    rho = np.sqrt((1 - y) * (1 + y))
+    start, stop = (_parameter(disc.edges[at, None], rho) for at in (places + 1, places))
+    node, weight = np.polynomial.legendre.leggauss(AREA_POINTS)
+    depth = rho * np.sin(start + (stop - start) * (1 + node) / 2)
+    return np.asarray((disc.opening(depth) * depth / (1 - depth**2)) @ weight * ((stop - start) * y)[:, 0] / 2)
