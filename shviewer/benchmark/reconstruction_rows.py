@@ -31,13 +31,15 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import offscreen, render_linear
 from shviewer.viewer.state import state_of
-from shviewer.viewer.view import CAMERA_HOME
 
 SECTION = "reconstruction"
 BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
 FRAME = compose(1280, 640)
 MAP_SIZE = (1025, 2048)
 """Height and width of the maps that the CPU makes, and the largest that the shader draws from."""
+
+SEEN_FROM = (78.0, 22.0)
+"""Azimuth and elevation of the camera, degrees."""
 
 DIRECT, CACHED = "shader, direct sum", "shader, cached map"
 SCATTERED, BASIS = "CPU, scattered", "CPU, basis matrix"
@@ -261,7 +263,7 @@ class _Frame:
 
     def _error(self, stage: _Stage, picture: Picture) -> float:
         """The error of the linear radiance read back from the right sphere, seen from the front and from behind."""
-        azimuth, elevation = CAMERA_HOME
+        azimuth, elevation = SEEN_FROM
         total = weights = 0.0
         for place in ((azimuth, elevation), (azimuth + 180, -elevation)):
             world_from_view = camera.world_from_view(*place)

@@ -200,7 +200,8 @@ def escape(state: State) -> State | Command:
 
 
 def orbit(state: State, right: float, up: float) -> State:
-    """Turn all spheres as if their front was dragged, in radii of a sphere."""
+    """Turn all spheres as if their front was dragged, in radii of a sphere. The state says where the camera is."""
+    assert state.view.camera is not None
     azimuth, elevation = state.view.camera
     azimuth = (azimuth - right * 180 / math.pi) % 360
     elevation = min(max(elevation - up * 180 / math.pi, -90.0), 90.0)
@@ -213,7 +214,8 @@ def face(state: State, direction: Array) -> State:
 
 
 def rotate_light(state: State, right: float, up: float) -> State:
-    """Turn the light as if the front of a sphere was dragged, in radii of a sphere."""
+    """Turn the light as if the front of a sphere was dragged, in radii of a sphere. The state says where the camera is."""
+    assert state.view.camera is not None
     return changed(state, light_rotation=turned_by_drag(state.view.light_rotation, state.view.camera, right, up))
 
 

@@ -12,10 +12,12 @@ from shviewer.analysis.recipe import Shown
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
 from shviewer.harmonics.extremes.error_grid import Extremes
+from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 from shviewer.limits import DIMMEST
+from shviewer.viewer import camera
 from shviewer.viewer.error_scale import NOISE, ErrorScale, automatic_range, error_values
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
@@ -36,6 +38,13 @@ WHITE_PERCENTILE = 0.99
 WHITE_LEVEL = 0.8
 """The linear level at which that percentile is shown: the brightest hundredth still stands out above it."""
 
+FACING, ASIDE = (0.0, 12.0), (-45.0, 22.0)
+"""Degrees to the left of the light's mean direction, and elevation, of the camera that faces a map, and one that sees the sides
+of lobes."""
+
+LEVEL = 0.012
+"""Light whose mean direction is less horizontal than this comes from no side."""
+
 SURFACE_RADIUS = 222.0
 """The radius in pixels, at zoom 1, for which surfaces are fine enough: that of the 1280 x 640 design."""
 
@@ -44,6 +53,26 @@ def exposure_stops(view: View, light: Light) -> float:
     """The exposure in use: fixed by the state, or such that 99 % of the original stays just below white."""
     base = _automatic_exposure(light, view.tone) if view.exposure_stops is None else view.exposure_stops
     return base + view.exposure_offset
+
+
+def camera_of(view: View, light: Light) -> tuple[float, float]:
+    """Azimuth and elevation of the camera, degrees: that of the view, or else one that faces the light as it is turned."""
+    if view.camera is not None:
+        return view.camera
+    aside, elevation = ASIDE if light.source.lobes else FACING
+    x, y, _ = camera.light_from_world(view.light_rotation).T @ _mean_direction(light.source)
+    azimuth = float(np.degrees(np.arctan2(y, x))) + aside if np.hypot(x, y) >= LEVEL else 0.0
+    return azimuth % 360, elevation
+
+
+@remember(most=1)
+def _mean_direction(light: Light) -> Array:
+    """The mean of the directions (3,), each weighted with its share of the luminance; 0 if there is none.
+
+    Bands 0 and 1 are constant and linear, so their coefficients are those integrals, but for a factor.
+    """
+    total, along_y, along_z, along_x = light.coefficients(2) @ LUMINANCE
+    return np.array([-along_x, -along_y, along_z]) / (np.sqrt(3) * total) if total > 0 else np.zeros(3)
 
 
 def surfaces(view: View, light: Light, projection: Projection, shown: Shown) -> tuple[Surface, ...]:

@@ -13,8 +13,15 @@ from shviewer.analysis.recipe import light_name
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import actions as do
 from shviewer.viewer.actions import Command
-from shviewer.viewer.state import State, changed, describe_basis, describe_exposure, describe_muted, describe_sanitizing
-from shviewer.viewer.view import CAMERA_HOME
+from shviewer.viewer.state import (
+    State,
+    changed,
+    describe_basis,
+    describe_camera,
+    describe_exposure,
+    describe_muted,
+    describe_sanitizing,
+)
 
 T = TypeVar("T")
 
@@ -148,10 +155,10 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
             _each(do.step_basis, {"Tab": 1, "Shift+Tab": -1}),
             lambda s: describe_basis(s.view) or "none",
         ),
-        Binding("drag", "turn the spheres", {}, lambda s: "{:z.0f}, {:z.0f} deg".format(*s.view.camera)),
+        Binding("drag", "turn the spheres", {}, lambda s: describe_camera(s.view)),
         Binding("double click", "face that point", {}),
         Binding("scroll", "zoom", {}, lambda s: f"{s.view.zoom:.2f} x"),
-        Binding("F", "camera back", {"F": partial(changed, camera=CAMERA_HOME, zoom=1.0)}),
+        Binding("F", "face the light", {"F": partial(changed, camera=None, zoom=1.0)}),
         Binding("R", "all but the light as at the start", {"R": do.reset}),
     ),
     "Program": (

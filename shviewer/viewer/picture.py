@@ -22,7 +22,7 @@ from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
-from shviewer.viewer.derived import error_scale, exposure_stops, reconstruction_map, surfaces
+from shviewer.viewer.derived import camera_of, error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
 from shviewer.viewer.error_scale import ErrorScale
 from shviewer.viewer.state import FRONT, State, changed
@@ -101,10 +101,14 @@ class Picture:
         return replace(
             self,
             state=changed(self.state, **live),
-            world_from_view=camera.world_from_view(*view.camera),
+            world_from_view=camera.world_from_view(*camera_of(view, self.subject.whole)),
             light_from_world=camera.light_from_world(view.light_rotation),
             exposure_stops=stops,
         )
+
+    def placed(self, state: State) -> State:
+        """The state, with the camera where this picture's light has it, if the state does not say where."""
+        return changed(state, camera=camera_of(state.view, self.subject.whole))
 
     def rest_at(self, directions: Array) -> Array:
         """Radiance of the coefficients, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
@@ -185,7 +189,7 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
         suns=_sun_lobes(found.subject, recipe.quantity),
         coefficients=found.coefficients,
         drawn=drawn,
-        world_from_view=camera.world_from_view(*view.camera),
+        world_from_view=camera.world_from_view(*camera_of(view, whole)),
         light_from_world=camera.light_from_world(view.light_rotation),
         exposure_stops=stops,
         error_scale=scale,

@@ -103,6 +103,11 @@ def describe_exposure(view: View) -> str:
     return base if not view.exposure_offset else f"{base} {view.exposure_offset:+g}"
 
 
+def describe_camera(view: View) -> str:
+    """ "30, 10 deg", or "at the light" """
+    return "at the light" if view.camera is None else "{:z.0f}, {:z.0f} deg".format(*view.camera)
+
+
 def describe_basis(view: View) -> str:
     """ "Y(2,-1)", or "" """
     return "" if view.basis is None else "Y({},{})".format(*view.basis)

@@ -17,9 +17,6 @@ ERRORS = ("off", "signed", "absolute", "relative")
 
 SHEETS = ("", "plane", "convergence")
 EVALUATIONS = ("auto", "direct", "map")
-CAMERA_HOME = (78.0, 22.0)
-"""Azimuth and elevation of the camera, degrees: both lobes of Green's light are in sight."""
-
 MAX_EXPOSURE = 64.0
 ZOOM_RANGE = (0.25, 16.0)
 
@@ -91,13 +88,14 @@ class View:
         "--evaluate",
         "E",
     )
-    camera: tuple[float, float] = option(
-        CAMERA_HOME,
-        Pair("azimuth and elevation in degrees, such as (30, 10)"),
-        "where the camera stands, degrees",
+    camera: tuple[float, float] | None = option(
+        None,
+        Pair("azimuth and elevation in degrees, such as (30, 10)", optional=True),
+        "where the camera stands, degrees; facing the light unless given",
         "--camera",
         ("AZIMUTH", "ELEVATION"),
     )
+    """None: where `derived.camera_of` puts it."""
     light_rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
     zoom: float = option(
         1.0,

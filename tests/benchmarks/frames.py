@@ -81,7 +81,7 @@ def event_costs() -> None:
             {"picture": press, "overlay": lambda p=picture: draw_overlay(p, COMPOSITION)}, 25, wall_milliseconds
         )
         print(f"key to {n_bands:>3} bands: picture {times['picture']:6.2f} ms, overlay {times['overlay']:6.2f} ms")
-    turned = state_of(n_bands=32)
+    turned = state_of(n_bands=32, camera=(98.0, 22.0))
 
     def turn() -> None:
         nonlocal turned

@@ -138,7 +138,7 @@ def _reference(path: Path, data: bytes) -> Iterator[object]:
 def _stamp(path: Path, data: bytes) -> Iterator[object]:
     state = state_of_stamp(data.decode("utf-8", "surrogateescape"))
     state.check()
-    yield from (state.view.camera, state.view.zoom, state.view.light_rotation)
+    yield from (state.view.camera or 0.0, state.view.zoom, state.view.light_rotation)
 
 
 def _arguments(path: Path, data: bytes) -> Iterator[object]:

@@ -57,17 +57,21 @@ def test_a_band_key_projects_nothing_again(counted: tuple[LobeLight, list[int]])
     light, calls = counted
     for n_bands in (5, 6, 1, 32, 16):
         picture_of(light, n_bands=n_bands, muted=frozenset({1}))
-    assert sorted(calls) == [32, 128]  # the picture, and the band counts that radiance and irradiance need
+    assert sorted(calls) == [
+        2,
+        32,
+        128,
+    ]  # the camera, the picture, and the band counts that radiance and irradiance need
     picture_of(light, n_bands=33)
     picture_of(light, n_bands=40)
-    assert sorted(calls) == [32, 128]
+    assert sorted(calls) == [2, 32, 128]
 
 
 def test_neither_exposure_nor_camera_nor_light_rotation_projects_again(counted: tuple[LobeLight, list[int]]) -> None:
     light, calls = counted
     for change in ({}, {"exposure_stops": 2.0}, {"camera": (1.0, 2.0)}, {"light_rotation": (0.0, 0.0, 1.0, 0.0)}):
         picture_of(light, **change)
-    assert sorted(calls) == [32, 128]
+    assert sorted(calls) == [2, 32, 128]
 
 
 def test_a_band_key_compiles_no_shader_and_reads_no_light_again(

@@ -76,10 +76,10 @@ class Walk:
                 session.save(self.renderer, self.composition())
         elif choice < 0.76:
             self.trail.append(f"drag {turn}")
-            session.state = orbit(state, *turn)
+            session.state = orbit(session.placed, *turn)
         elif choice < 0.8:
             self.trail.append(f"Shift+drag {turn}")
-            session.state = rotate_light(state, *turn)
+            session.state = rotate_light(session.placed, *turn)
         elif choice < 0.84:
             self.trail.append(f"scroll {turn[0]}")
             session.state = zoom(state, 12 * turn[0])

@@ -83,6 +83,8 @@ def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SEC
     """The camera once round in equal steps, beginning where it stands. UsageError for a number of frames out of range."""
     if not 2 <= frames <= MAX_FRAMES:
         raise UsageError(f"--frames {frames}: a turn has 2 to {MAX_FRAMES}")
+    state = prepare(state).placed(state)
+    assert state.view.camera is not None
     azimuth, elevation = state.view.camera
     states = [changed(state, camera=((azimuth + 360 * k / frames) % 360, elevation)) for k in range(frames)]
     return _checked(states, [_milliseconds(seconds)] * frames, state, {"kind": "turntable"})

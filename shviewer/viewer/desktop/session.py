@@ -100,6 +100,11 @@ class Session:
         self._said = ""
 
     @property
+    def placed(self) -> State:
+        """The state, with the camera where the picture has it."""
+        return self.picture.placed(self.state)
+
+    @property
     def title(self) -> str:
         return f"shviewer - {self.picture.light.name}"
 

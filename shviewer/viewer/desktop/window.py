@@ -318,7 +318,7 @@ class Window:
         self.dragged_to = self.mouse
         shift = any(glfw.get_key(self.handle, key) for key in (glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT))
         turns_light = shift or self.pressed == glfw.MOUSE_BUTTON_RIGHT
-        self.change((rotate_light if turns_light else orbit)(self.session.state, right, up))
+        self.change((rotate_light if turns_light else orbit)(self.session.placed, right, up))
 
     def _hover(self, composition: Composition) -> None:
         """Show the values under the mouse, or take them away."""

@@ -93,7 +93,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "basis": state.view.basis,
         "evaluated": EVALUATED[type(picture.drawn)],
         "size": [composition.width, composition.height],
-        "camera_degrees": list(state.view.camera),
+        "camera_degrees": picture.placed(state).view.camera,
         "zoom": state.view.zoom,
         "world_from_view": picture.world_from_view.tolist(),
         "light_from_world": picture.light_from_world.tolist(),

@@ -96,9 +96,9 @@ with window.open_window((800, 400)) as handle:
     said["evaluated"] = type(shown.session.picture.drawn).__name__
     before, count = [*vars(shown.session.picture.drawn).values()], len(drawn)
     for _ in range(5):
-        shown.change(orbit(shown.session.state, 0.1, 0.05))
+        shown.change(orbit(shown.session.placed, 0.1, 0.05))
         shown.frame()
-        shown.change(rotate_light(shown.session.state, 0.1, 0.05))
+        shown.change(rotate_light(shown.session.placed, 0.1, 0.05))
         shown.frame()
     shown._on_cursor(handle, 200.0, 150.0)
     shown.frame()
