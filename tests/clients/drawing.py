@@ -22,7 +22,6 @@ from clients.light import Array, light_file
 import shviewer
 from shviewer.cli.main import main
 from shviewer.coefficients.parts.axes import Axes, all_axes
-from shviewer.coefficients.programs import CONVENTIONS
 
 SIZE = 128
 """Pixels of a view along each side, as in browser/page.mjs."""
@@ -58,9 +57,9 @@ def write_job(folder: Path) -> None:
     (folder / "normals.f32").write_bytes(
         (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype("<f4").tobytes()
     )
-    for name in PROGRAMS:
+    for name, program in PROGRAMS.items():
         for light, out in (("light.hdr", folder / f"{name}.json"), ("constant.toml", folder / f"{name}-constant.json")):
-            options = ["--bands", "3", "--convention", name, "--force", "-o", str(out)]
+            options = ["--bands", "3", "--convention", program.convention, "--force", "-o", str(out)]
             assert main(["project", str(folder / light), *options]) == 0
 
 
@@ -88,7 +87,7 @@ class Drawn:
 
     @property
     def axes(self) -> Axes:
-        return CONVENTIONS[self.name].axes
+        return self.program.axes
 
     @property
     def failed(self) -> str:

@@ -8,6 +8,9 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from shviewer.coefficients.parts.axes import Axes
+from shviewer.coefficients.programs import CONVENTIONS
+
 HERE = Path(__file__).parent
 MODULES = HERE / "node_modules"
 
@@ -19,8 +22,16 @@ class Program:
     called: str
     package: str
     """Its name on npm."""
+    convention: str
+    """The name that `shviewer project --convention` is given."""
     hand: int = 1
     """1 if its axes are right-handed, -1 if left-handed: which way is right in a picture of it."""
+    turned: str = ""
+    """The axes in which it shows the light, if they are not the convention's."""
+
+    @property
+    def axes(self) -> Axes:
+        return Axes(self.turned) if self.turned else CONVENTIONS[self.convention].axes
 
     @property
     def version(self) -> str:
@@ -30,14 +41,15 @@ class Program:
 
 
 PROGRAMS = {
-    "three": Program("three.js", "three"),
-    "babylon": Program("Babylon.js", "babylonjs", hand=-1),
-    "gltf": Program("glTF in Babylon.js", "babylonjs-loaders", hand=-1),
-    "filament": Program("Filament", "filament"),
-    "playcanvas": Program("PlayCanvas", "playcanvas"),
-    "cesium": Program("Cesium", "cesium"),
+    "three": Program("three.js", "three", "three"),
+    "babylon": Program("Babylon.js", "babylonjs", "babylon", hand=-1),
+    "babylon-right": Program("Babylon.js, right-handed", "babylonjs", "babylon", turned="-y+z-x"),
+    "gltf": Program("glTF in Babylon.js", "babylonjs-loaders", "gltf", hand=-1),
+    "filament": Program("Filament", "filament", "filament"),
+    "playcanvas": Program("PlayCanvas", "playcanvas", "playcanvas"),
+    "cesium": Program("Cesium", "cesium", "cesium"),
 }
-"""By the name that `shviewer project --convention` is given."""
+"""By the names of their files in browser/programs/."""
 
 
 class Missing(Exception):
@@ -49,9 +61,8 @@ def chromium() -> str:
     found = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
     if found is None or shutil.which("node") is None:
         raise Missing("the programs need Node.js and Chromium: apt-get install nodejs npm chromium")
-    absent = [
-        name for name in ("playwright-core", *(p.package for p in PROGRAMS.values())) if not (MODULES / name).is_dir()
-    ]
+    packages = ["playwright-core", "playcanvas-1", *(program.package for program in PROGRAMS.values())]
+    absent = [name for name in packages if not (MODULES / name).is_dir()]
     if absent:
         raise Missing(f"{absent[0]} is not installed: npm ci --prefix tests/clients")
     return found

@@ -53,7 +53,7 @@ def stated(drawn: Drawn) -> Measured:
         drawn.white("usual" if drawn.has("usual-sphere.f32") else "constant"),
         surroundings,
         factor,
-        own_projection(drawn, drawn.name)[1] if drawn.has("own.json") else "",
+        own_projection(drawn, drawn.program.convention)[1] if drawn.has("own.json") else "",
     )
 
 
@@ -94,6 +94,13 @@ def table() -> str:
         seen = "not shown" if row.surroundings is None else percent(row.surroundings)
         own = row.own.partition(" to ")[2].partition(" over")[0]
         white = "{:.3f} in the middle, {:.3f} on average".format(*row.white)
-        cells = (f"{PROGRAMS[name].called} {row.version}", f"`{name}`", percent(row.sphere), white, seen, own or "-")
+        cells = (
+            f"{PROGRAMS[name].called} {row.version}",
+            f"`{PROGRAMS[name].convention}`",
+            percent(row.sphere),
+            white,
+            seen,
+            own or "-",
+        )
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join([*lines, "", ""])

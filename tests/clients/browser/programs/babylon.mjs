@@ -2,11 +2,12 @@
 // CubeMapToSphericalPolynomialTools makes of it.
 import {script} from '../loading.mjs';
 
-export async function open(canvas, size) {
+export async function open(canvas, size, rightHanded = false) {
   await script('/node_modules/babylonjs/babylon.js');
   const {BABYLON} = window;
   const engine = new BABYLON.Engine(canvas, false);
-  const scene = new BABYLON.Scene(engine); // left-handed, as it is if nobody asks for anything else
+  const scene = new BABYLON.Scene(engine); // left-handed if nobody asks for anything else
+  scene.useRightHandedSystem = rightHanded;
   scene.imageProcessingConfiguration.applyByPostProcess = true; // materials give linear radiance
   scene.clearColor = new BABYLON.Color4(0, 0, 0, 1);
   const camera = new BABYLON.TargetCamera('camera', BABYLON.Vector3.Zero(), scene);

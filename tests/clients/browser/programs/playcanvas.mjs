@@ -1,4 +1,5 @@
-// PlayCanvas: ambientSH of a white StandardMaterial, a lat-long image as skybox.
+// PlayCanvas: ambientSH of a white StandardMaterial, a lat-long image as skybox, and what shFromCubemap makes of it, which went with
+// version 2.
 import * as pc from 'playcanvas';
 
 export async function open(canvas, size) {
@@ -22,6 +23,16 @@ export async function open(canvas, size) {
   camera.addComponent('camera', {renderTarget: target, toneMapping: pc.TONEMAP_NONE, gammaCorrection: pc.GAMMA_NONE, nearClip: 0.1, farClip: 10});
   app.root.addChild(camera);
   app.root.addChild(body);
+  const panorama = async (url) => {
+    const asset = new pc.Asset('light', 'texture', {url}, {type: pc.TEXTURETYPE_RGBE, mipmaps: false});
+    app.assets.add(asset);
+    await new Promise((done, failed) => {
+      asset.ready(done);
+      asset.on('error', failed);
+      app.assets.load(asset);
+    });
+    return asset.resource;
+  };
   return {
     light(json) {
       material.ambientSH = new Float32Array(json.coefficients.flat());
@@ -52,14 +63,17 @@ export async function open(canvas, size) {
       material.update();
     },
     async surround(url) {
-      const asset = new pc.Asset('light', 'texture', {url}, {type: pc.TEXTURETYPE_RGBE, mipmaps: false});
-      app.assets.add(asset);
-      await new Promise((done, failed) => {
-        asset.ready(done);
-        asset.on('error', failed);
-        app.assets.load(asset);
-      });
-      app.scene.skybox = pc.EnvLighting.generateSkyboxCubemap(asset.resource, size);
+      app.scene.skybox = pc.EnvLighting.generateSkyboxCubemap(await panorama(url), size);
+    },
+    async project(url) {
+      const cube = new pc.Texture(device, {width: size, height: size, cubemap: true, format: pc.PIXELFORMAT_RGBA32F, mipmaps: false});
+      pc.reprojectTexture(await panorama(url), cube, {numSamples: 1});
+      const faces = await Promise.all([0, 1, 2, 3, 4, 5].map((face) => cube.read(0, 0, size, size, {face, immediate: true})));
+      const old = await import('playcanvas-1');
+      // It takes 8 bits a channel, of the power 1/2.2: half the light fits.
+      const encoded = faces.map((face) => Uint8Array.from(face, (value) => Math.round(255 * (value / 2) ** (1 / 2.2))));
+      const texture = {format: old.PIXELFORMAT_RGBA8, type: old.TEXTURETYPE_DEFAULT, width: size, _levels: [encoded]};
+      return Array.from(old.shFromCubemap(null, texture, false), (value) => 2 * value);
     },
   };
 }
