@@ -184,8 +184,8 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
     return Picture(
         state=state,
         subject=found.subject,
-        original=Source(whole.lobes, whole.map),
-        compared=Source(light.lobes, light.map),
+        original=_source(whole),
+        compared=_source(light),
         suns=_sun_lobes(found.subject, recipe.quantity),
         coefficients=found.coefficients,
         drawn=drawn,
@@ -197,6 +197,13 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
         figures=found.sums,
         needs_unsplit=PENDING if found.subject.suns else None,
     )
+
+
+def _source(light: Light) -> Source:
+    """The form of a light for the shader. How its texels are held is found out here, so that OpenGL's thread need not."""
+    if light.map is not None:
+        _ = light.map.halves
+    return Source(light.lobes, light.map)
 
 
 def _scale(state: State, light: Light, projection: Projection, found: Extremes | None = None) -> ErrorScale | None:

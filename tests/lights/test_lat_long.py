@@ -144,3 +144,27 @@ def test_rows_grow_from_the_north(rows_on_poles, top, middle, bottom):
 
 def test_values_are_float64():
     assert random_map(2, 4).sample(towards(1.0, [0, 1, 2])).dtype == np.float64
+
+
+SMALLEST = 2.0**-24
+"""The smallest half float above 0."""
+
+
+@pytest.mark.parametrize(
+    ("value", "halves"),
+    [
+        *(
+            (value, True)
+            for value in (0.0, 1.0, -1.0, 65504.0, -65504.0, 2.0**-14, SMALLEST, -3 * SMALLEST, 1 + 2.0**-10)
+        ),
+        *((value, False) for value in (65520.0, 65536.0, -70000.0, SMALLEST / 2, 1 + 2.0**-11, 0.1, 1e30, 2049.0)),
+        *((value, False) for value in (2.0**-14 + 2.0**-25, 1.5 * SMALLEST, 2.0**-40)),
+    ],
+)
+def test_a_map_knows_whether_half_floats_hold_all_its_texels(value: float, halves: bool) -> None:
+    texels = np.ones((40, 3000, 3), np.float32)
+    assert LatLongMap(texels).halves
+    texels[33, 2999, 2] = value
+    assert LatLongMap(texels).halves is halves
+    with np.errstate(over="ignore"):
+        assert halves is bool(np.float32(np.float16(value)) == np.float32(value))

@@ -5,7 +5,8 @@ hangs or answers rubbish becomes one LightError; the child's own errors come bac
 
     to the child, stdin:     {"limits": ..., "layer": ..., "kind": ..., "folder": ..., "bytes": n} newline, the file's n bytes;
                              closed when the answer is there
-    from the child, stdout:  {"height": ..., "width": ..., ...} or {"error": ...} newline, the pixels as float32
+    from the child, stdout:  {"height": ..., "width": ..., ...} or {"error": ...} newline, the pixels as float32, or as
+                             float16 if those are all that the file has: then the child never holds them as float32
 
 Nothing that the child says is executed, and sizes are checked against the limits before memory is taken.
 
@@ -24,16 +25,18 @@ import subprocess
 import sys
 import tempfile
 import threading
+from collections.abc import Iterable
 from dataclasses import asdict
 from typing import IO, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.children import watch_stdin
 from shviewer.ending import at_the_end, temporary_folder
 from shviewer.errors import LightError
 from shviewer.lights.images.decoded import Decoded
-from shviewer.lights.images.openexr import decode_openexr
+from shviewer.lights.images.openexr import Planes, float32_of, read_openexr
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
 OPENEXR = "OpenEXR"
@@ -43,6 +46,7 @@ TIME_LIMIT = 60.0
 
 # The child imports what this process would, wherever it was started, and nothing from the folder of the file.
 _CHILD = "import sys; sys.path[:] = sys.argv[1:]; from shviewer.lights.images.isolated import answer; answer()"
+_ROWS = 64  # read at a time
 _LONGEST_LINE = 2**20  # bytes of the first line of an answer
 _BYTES_PER_TEXEL = 4 * 4 + 3 * 4 + 2 * 4  # RGBA from the library, the result, and chroma at full resolution
 _COPIES_OF_FILE = 4
@@ -145,13 +149,14 @@ def _read_answer(stdout: IO[bytes], limits: Limits) -> Decoded | None:
             "encoding": str(encoding),
             "notes": [*notes],
             "layout": (str() | None) as layout,
+            "halves": bool(halves),
         }:
             try:
                 limits.check_size(width, height)
             except LightError:
                 return None
             pixels = np.empty((height, width, 3), np.float32)
-            if _read_into(stdout, pixels.data.cast("B")):
+            if _read_halves(stdout, pixels) if halves else _read_into(stdout, pixels.data.cast("B")):
                 return Decoded(pixels, encoding, tuple(map(str, notes)), layout)
     return None
 
@@ -159,6 +164,18 @@ def _read_answer(stdout: IO[bytes], limits: Limits) -> Decoded | None:
 def _read_into(stdout: IO[bytes], wanted: memoryview) -> bool:
     """Fill `wanted`; return whether there were enough bytes."""
     return stdout.readinto(wanted) == len(wanted)  # type: ignore[attr-defined, no-any-return]
+
+
+def _read_halves(stdout: IO[bytes], pixels: NDArray[np.float32]) -> bool:
+    """Fill the pixels with half floats; return whether there were enough bytes."""
+    some = np.empty((_ROWS, *pixels.shape[1:]), np.float16)
+    for top in range(0, len(pixels), _ROWS):
+        rows = pixels[top : top + _ROWS]
+        block = some[: len(rows)]
+        if not _read_into(stdout, block.data.cast("B")):
+            return False
+        rows[:] = float32_of(block)
+    return True
 
 
 def _how_it_ended(status: int | None) -> str:
@@ -178,29 +195,41 @@ def answer() -> None:
         watch_stdin()
         limits = Limits(**request["limits"])
         _bound_resources(limits, len(data))
-        pixels = None
+        pixels: Iterable[NDArray[np.floating]] = ()
         head: dict[str, Any]
         try:
-            decoded = _decoded(data, limits, request)
+            head, pixels = _answered(data, limits, request)
         except LightError as error:
             head = {"error": str(error)}
         except MemoryError:
             head = {"memory": True}
         except Exception as error:
             head = {"failure": f"{type(error).__name__}: {error}"}
-        else:
-            pixels = decoded.pixels
-            height, width = pixels.shape[:2]
-            head = {"height": height, "width": width, "encoding": decoded.encoding}
-            head |= {"notes": decoded.notes, "layout": decoded.layout}
         out.write(json.dumps(head).encode() + b"\n")
-        if pixels is not None:
-            out.write(pixels.data.cast("B"))
+        for rows in pixels:
+            out.write(rows.data.cast("B"))
 
 
-def _decoded(data: bytes, limits: Limits, request: dict[str, Any]) -> Decoded:
+def _answered(
+    data: bytes, limits: Limits, request: dict[str, Any]
+) -> tuple[dict[str, Any], Iterable[NDArray[np.floating]]]:
+    """The first line of an answer, and the pixels in pieces."""
+    decoded = _decoded(data, limits, request)
+    if isinstance(decoded, Planes):
+        window, layout, pixels = decoded.part.window, decoded.part.layout, decoded.rows()
+        height, width = window.height, window.width
+    else:
+        layout, pixels = decoded.layout, iter([decoded.pixels])
+        height, width = decoded.pixels.shape[:2]
+    head = {"height": height, "width": width, "encoding": decoded.encoding, "notes": decoded.notes}
+    return {**head, "layout": layout, "halves": isinstance(decoded, Planes)}, pixels
+
+
+def _decoded(data: bytes, limits: Limits, request: dict[str, Any]) -> Decoded | Planes:
+    """The radiance; as planes, if those are half floats that nothing changes."""
     if request["kind"] == OPENEXR:
-        return decode_openexr(data, limits, request["layer"])
+        planes = read_openexr(data, limits, request["layer"])
+        return planes if planes.halves else planes.decoded()
     from shviewer.lights.images.others.openimageio import decode_openimageio
 
     tempfile.tempdir = request["folder"]

@@ -5,8 +5,10 @@ Alpha is ignored: colour in an OpenEXR file is premultiplied, and what is seen t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +30,7 @@ _SMALL_TILE = 2**22  # values: 1024 x 1024 RGBA
 _ROWS = 64  # of an image at a time, so that they stay in the cache
 _KINDS = {"float16": "half", "float32": "float", "uint32": "uint"}
 
-_Plane = NDArray[np.floating]
+_Plane: TypeAlias = NDArray[np.floating]
 
 
 def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "") -> Decoded:
@@ -39,6 +41,58 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     Raises LightError, without the name of the file, if it is damaged, too large, deep, or does not say which of its
     channels are the radiance. Raises MemoryError.
     """
+    return read_openexr(data, limits, layer).decoded()
+
+
+@dataclass(frozen=True, eq=False)
+class Planes:
+    """The planes of the wanted channels as the library gives them, and what makes them radiance."""
+
+    planes: list[_Plane]
+    part: Part
+    source: Source
+    matrix: NDArray[np.float64] | None
+    """To linear Rec. 709; None for no change."""
+    encoding: str
+    notes: tuple[str, ...]
+
+    @property
+    def halves(self) -> bool:
+        """Whether they are the radiance as it stands, in half floats."""
+        changed = self.source.luminance_chroma or self.matrix is not None or self.part.window != self.part.display
+        return not changed and all(plane.dtype == np.float16 for plane in self.planes)
+
+    def rows(self) -> Iterator[_Plane]:
+        """The values as they stand, a few rows at a time, (rows, width, 3)."""
+        for top in range(0, self.part.window.height, _ROWS):
+            yield np.stack([plane[top : top + _ROWS] for plane in self._three], axis=2)
+
+    def decoded(self) -> Decoded:
+        """The radiance on the display window."""
+        pixels = self._radiance()
+        convert(pixels, self.matrix)
+        pixels, cut = on_display_window(pixels, self.part.window, self.part.display)
+        return Decoded(pixels, self.encoding, (*self.notes, *cut), self.part.layout)
+
+    @property
+    def _three(self) -> list[_Plane]:
+        return self.planes * 3 if self.source.grey else self.planes
+
+    def _radiance(self) -> NDArray[np.float32]:
+        """(height, width, 3) on the data window, in the file's own primaries."""
+        if self.source.luminance_chroma:
+            luminance, chroma_red, chroma_blue = self.planes
+            return rgb_from_luminance_chroma(luminance, (chroma_red, chroma_blue), self.part.chromaticities)
+        pixels = np.empty((self.part.window.height, self.part.window.width, 3), np.float32)
+        for top in range(0, len(pixels), _ROWS):
+            rows = slice(top, top + _ROWS)
+            for i, plane in enumerate(self._three):
+                pixels[rows, :, i] = float32_of(plane[rows])
+        return pixels
+
+
+def read_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "") -> Planes:
+    """`decode_openexr` up to the planes. Raises the same."""
     openexr = import_openexr()
     data = with_readable_strings(data)
     parts = read_headers(openexr, data)
@@ -51,22 +105,18 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
         data = part_alone(data, source.part)
     planes = _planes(open_openexr(openexr, data, header_only=False), part, source)
     kinds = "/".join(dict.fromkeys(_KINDS.get(str(plane.dtype), str(plane.dtype)) for plane in planes))
-    pixels = _radiance(planes, part, source)
-    convert(pixels, matrix)
-    pixels, cut = on_display_window(pixels, part.window, part.display)
-
     words = ["OpenEXR", kinds, *part.storage]
     if source.grey or source.luminance_chroma:
         words.append("luminance" if source.grey else "luminance-chroma")
     if len(parts) > 1:
         words.append(f"part {source.part + 1} of {len(parts)}")
-    return Decoded(pixels, ", ".join(words), (*notes, *converted, *cut), part.layout)
+    return Planes(planes, part, source, matrix, ", ".join(words), (*notes, *converted))
 
 
 def _check_size(part: Part, limits: Limits, file_bytes: int, source: Source) -> None:
     """LightError for a part that is too large, or would take too much memory."""
     window, display = (frame.width * frame.height for frame in (part.window, part.display))
-    decoding = 4 * part.samples + (28 if source.luminance_chroma else 12) * window
+    decoding = part.plane_bytes + (28 if source.luminance_chroma else 12) * window
     decoding += (12 * display if part.window != part.display else 0) + 4 * file_bytes
     limits.check_size(part.window.width, part.window.height, "data window")
     limits.check_image(part.display.width, part.display.height, decoding, "display window")
@@ -111,20 +161,7 @@ def _planes(file: Any, part: Part, source: Source) -> list[_Plane]:
     return planes
 
 
-def _radiance(planes: list[_Plane], part: Part, source: Source) -> NDArray[np.float32]:
-    """(height, width, 3) on the data window, in the file's own primaries."""
-    if source.luminance_chroma:
-        luminance, chroma_red, chroma_blue = planes
-        return rgb_from_luminance_chroma(luminance, (chroma_red, chroma_blue), part.chromaticities)
-    pixels = np.empty((part.window.height, part.window.width, 3), np.float32)
-    for top in range(0, part.window.height, _ROWS):
-        rows = slice(top, top + _ROWS)
-        for i, plane in enumerate(planes * 3 if source.grey else planes):
-            pixels[rows, :, i] = _float32(plane[rows])
-    return pixels
-
-
-def _float32(plane: _Plane) -> _Plane:
+def float32_of(plane: _Plane) -> _Plane:
     """The plane as float32; halves go through a table, which takes three quarters of the time of a cast."""
     return _every_half().take(plane.view(np.uint16)) if plane.dtype == np.float16 else plane
 

@@ -19,6 +19,7 @@ _LONGEST_NAME = 255
 _MOST_ATTRIBUTES = 2**15  # of all parts; files of hundreds of passes have thousands
 _MOST_OF_A_PART = 2**12  # the library takes a time that grows with their square: 0.1 s
 _LONGEST_CHANNELS = 2**17  # bytes of the list of channels, which is as slow: 4000 channels of 15 letters
+_OF_A_CHANNEL = 16  # bytes behind its name: type, flags and subsampling
 _LONGEST_HEADERS = 2**24  # bytes; previews of a thousand texels a side are within
 
 
@@ -69,6 +70,18 @@ def count_in(field: bytes) -> int:
     if len(field) != 4 or field[3] > 127:
         raise broken("a count in a header is none")
     return int.from_bytes(field, "little")
+
+
+def channels_in(value: bytes) -> list[tuple[bytes, bytes]]:
+    """The name of each channel and what is said of it."""
+    channels, at = [], 0
+    while value[at : at + 1] not in (b"\0", b""):
+        end = value.find(b"\0", at)
+        if end < 0 or end + 1 + _OF_A_CHANNEL > len(value):
+            raise broken("its list of channels does not end")
+        channels.append((value[at:end], value[end + 1 : end + 1 + _OF_A_CHANNEL]))
+        at = end + 1 + _OF_A_CHANNEL
+    return channels
 
 
 def broken(reason: str) -> LightError:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from shviewer.lights.images.openexr_attributes import read_attributes
+from shviewer.lights.images.openexr_attributes import RawHeader, channels_in, read_attributes
 from shviewer.lights.images.openexr_library import damaged, open_openexr
+
+_HALF = 1  # a pixel type in the file
 
 
 class Window(NamedTuple):
@@ -30,6 +32,8 @@ class Channel(NamedTuple):
     name: str
     subsampling: tuple[int, int]
     """The steps in x and y between samples, counted from 0 in the file's coordinates."""
+    value_bytes: int
+    """The bytes of a value: 2 of a half float."""
 
 
 class Part(NamedTuple):
@@ -54,8 +58,16 @@ class Part(NamedTuple):
     @property
     def samples(self) -> int:
         """The number of values in all channels of the finest level."""
-        across, down = self.window.width, self.window.height
-        return sum(-(-across // c.subsampling[0]) * -(-down // c.subsampling[1]) for c in self.channels)
+        return sum(map(self._samples, self.channels))
+
+    @property
+    def plane_bytes(self) -> int:
+        """The bytes of these values as the library gives them."""
+        return sum(channel.value_bytes * self._samples(channel) for channel in self.channels)
+
+    def _samples(self, channel: Channel) -> int:
+        across, down = channel.subsampling
+        return -(-self.window.width // across) * -(-self.window.height // down)
 
 
 def read_headers(openexr: ModuleType, data: bytes) -> tuple[Part, ...]:
@@ -68,7 +80,8 @@ def read_headers(openexr: ModuleType, data: bytes) -> tuple[Part, ...]:
     try:  # the library converts an attribute when it is asked for: UnicodeDecodeError, KeyError, ...
         headers = [part.header for part in file.parts]
         shared = _chromaticities(openexr, headers[0])  # one attribute for all parts, often in the first only
-        return tuple(_plain(openexr, *both, shared) for both in zip(headers, windows, strict=True))
+        kinds = [_pixel_types(own) for own in raw]
+        return tuple(_plain(openexr, *three, shared) for three in zip(headers, windows, kinds, strict=True))
     except Exception as error:
         raise damaged(f"header unreadable ({error})") from None
 
@@ -77,9 +90,13 @@ def _plain(
     openexr: ModuleType,
     header: dict[str, Any],
     windows: tuple[Window, Window],
+    kinds: dict[bytes, int],
     chromaticities: tuple[float, ...] | None,
 ) -> Part:
-    """The part that a header of the library describes. windows: the data window and the display window."""
+    """The part that a header of the library describes. windows: the data window and the display window.
+
+    kinds: the pixel type of each channel.
+    """
     tiles = header.get("tiles")
     return Part(
         name=str(header.get("name", "")),
@@ -90,11 +107,21 @@ def _plain(
         window=windows[0],
         display=windows[1],
         channels=tuple(
-            Channel(channel.name, (max(1, channel.xSampling), max(1, channel.ySampling)))
+            Channel(
+                channel.name,
+                (max(1, channel.xSampling), max(1, channel.ySampling)),
+                2 if kinds[channel.name.encode()] == _HALF else 4,
+            )
             for channel in header["channels"]
         ),
         tile=None if tiles is None else (int(tiles.xSize), int(tiles.ySize)),
     )
+
+
+def _pixel_types(header: RawHeader) -> dict[bytes, int]:
+    """The pixel type of each channel, which the library does not tell before it decodes."""
+    channels = channels_in(header.attributes[b"channels"].value)
+    return {name: int.from_bytes(rest[:4], "little") for name, rest in channels}
 
 
 def _storage(openexr: ModuleType, header: dict[str, Any]) -> tuple[str, ...]:

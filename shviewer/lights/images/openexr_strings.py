@@ -12,11 +12,10 @@ import struct
 
 import numpy as np
 
-from shviewer.lights.images.openexr_attributes import Attribute, broken, read_attributes
+from shviewer.lights.images.openexr_attributes import Attribute, channels_in, read_attributes
 
 _LONG_NAMES, _SEVERAL_PARTS = 0x400, 0x1000  # flags of the version field
 _FIRST_HEADER = 8  # bytes; before it a magic number and the version field
-_OF_A_CHANNEL = 16  # bytes behind its name: type, flags and subsampling
 
 
 def with_readable_strings(data: bytes) -> bytes:
@@ -49,7 +48,7 @@ def _readable(name: bytes, attribute: Attribute) -> tuple[bytes, Attribute]:
         if not all(map(_is_utf8, texts)):
             value = b"".join(struct.pack("<i", len(text)) + text for text in map(_utf8, texts))
     elif kind == b"chlist":
-        channels = _channels(value)
+        channels = channels_in(value)
         if not all(_is_utf8(channel) for channel, _ in channels):  # all of them, to keep their order
             value = b"".join(_from_latin1(channel) + b"\0" + rest for channel, rest in channels) + b"\0"
     return _utf8(name), Attribute(_utf8(kind), value)
@@ -68,18 +67,6 @@ def _texts(value: bytes) -> list[bytes]:
         texts.append(value[at + 4 : at + 4 + size])
         at += 4 + size
     return texts
-
-
-def _channels(value: bytes) -> list[tuple[bytes, bytes]]:
-    """The name of each channel and what is said of it."""
-    channels, at = [], 0
-    while value[at : at + 1] not in (b"\0", b""):
-        end = value.find(b"\0", at)
-        if end < 0 or end + 1 + _OF_A_CHANNEL > len(value):
-            raise broken("its list of channels does not end")
-        channels.append((value[at:end], value[end + 1 : end + 1 + _OF_A_CHANNEL]))
-        at = end + 1 + _OF_A_CHANNEL
-    return channels
 
 
 def _is_utf8(text: bytes) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobe import Lobe
 from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Composition
@@ -75,16 +76,16 @@ class Renderer:
         """
         original = picture.original.map
         compared = picture.compared.map if picture.error_scale is not None else None
-        texels = None if original is None else original.texels
-        other = None if compared is None or compared is original else compared.texels
-        if not (self.original_map.bring(texels, seconds) and self.compared_map.bring(other, seconds)):
+        maps = [(self.original_map, *_held(original))]
+        maps.append((self.compared_map, *_held(None if compared is original else compared)))
+        if not all(texture.bring(texels, seconds, halves) for texture, texels, halves in maps):
             return False
         lobes = *picture.original.lobes, *picture.compared.lobes, *picture.suns
         if lobes != self.lobes:
             self.lobe_buffer.write(pack_lobes(lobes))
             self.lobes = lobes
-        self.original_map.follow(texels)
-        self.compared_map.follow(other)
+        for texture, texels, halves in maps:
+            texture.follow(texels, halves)
         self._show_reconstruction(picture.drawn)
         if picture.error_scale is not None:
             self.colour_map.follow(self._colours(colour_maps.map_of(picture.error_scale.kind)))
@@ -264,6 +265,11 @@ class Renderer:
         if name not in self.colours:
             self.colours[name] = colour_maps.linear(colour_maps.table(name))[None].astype(np.float32)
         return self.colours[name]
+
+
+def _held(shown: LatLongMap | None) -> tuple[NDArray[np.float32] | None, bool]:
+    """The texels of a map, and whether half floats hold them."""
+    return (None, False) if shown is None else (shown.texels, shown.halves)
 
 
 def _pixel_box(pane: Pane, height: int) -> tuple[int, int, int, int]:

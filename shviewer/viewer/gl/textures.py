@@ -17,7 +17,7 @@ BAND_BYTES = 2**23
 class ArrayTexture:
     """The texture of one array (height, width, components), float32 or uint8, known by its identity; or no texture.
 
-    Three components are held as four, with 1 for the last: graphics processors read those faster.
+    It has the array's components, and half floats where the caller knows that those are exact: less memory loses nothing.
     """
 
     def __init__(self, context: moderngl.Context) -> None:
@@ -26,9 +26,12 @@ class ArrayTexture:
         self._texture: moderngl.Texture | None = None
         self._next: _Upload | None = None
 
-    def follow(self, array: NDArray[np.generic] | None) -> None:
-        """Upload `array` unless it is the one held. GraphicsError if this OpenGL has no textures that large."""
-        self.bring(array)
+    def follow(self, array: NDArray[np.generic] | None, halves: bool = False) -> None:
+        """Upload `array` unless it is the one held. GraphicsError if this OpenGL has no textures that large.
+
+        halves: whether all values are exact as half floats.
+        """
+        self.bring(array, halves=halves)
         if array is None:
             self.release()
         elif array is not self._array and self._next is not None:
@@ -37,23 +40,22 @@ class ArrayTexture:
                 self._texture.release()
             self._array, self._texture = array, upload.texture
 
-    def bring(self, array: NDArray[np.generic] | None, seconds: float | None = None) -> bool:
+    def bring(self, array: NDArray[np.generic] | None, seconds: float | None = None, halves: bool = False) -> bool:
         """Upload `array` for at most about `seconds`, beside the one held; return whether all of it is there."""
         if self._next is not None and self._next.array is not array:
             self._drop_upload()
         if array is None or array is self._array:
             return True
         if self._next is None:
-            self._next = self._begin(array)
+            self._next = self._begin(array, halves)
         return self._next.go_on(None if seconds is None else perf_counter() + seconds)
 
-    def _begin(self, array: NDArray[np.generic]) -> _Upload:
+    def _begin(self, array: NDArray[np.generic], halves: bool) -> _Upload:
         height, width, components = array.shape
         limit = self._context.info["GL_MAX_TEXTURE_SIZE"]
         if max(height, width) > limit:
             raise GraphicsError(f"a map of {width} x {height} texels: this OpenGL takes at most {limit} a side")
-        components = 4 if components == 3 else components
-        dtype = "f4" if array.dtype == np.float32 else "f1"
+        dtype = "f1" if array.dtype == np.uint8 else "f2" if halves else "f4"
         held = self._texture
         alike = held is not None and (held.size, held.components, held.dtype) == ((width, height), components, dtype)
         if held is None or not alike or array.nbytes > BAND_BYTES:  # a small one is written over the one held
@@ -87,14 +89,12 @@ class _Upload:
 
     def go_on(self, end: float | None) -> bool:
         """Upload until `end` on the clock, at least one band; return whether all rows are there."""
-        height, width, components = self.array.shape
+        height, width = self.array.shape[:2]
+        halves = self.texture.dtype == "f2"
         step = max(1, BAND_BYTES // max(self.array[0].nbytes, 1))
         while self._row < height:
             rows = self.array[self._row : self._row + step]
-            data = np.ascontiguousarray(rows)
-            if components == 3:
-                data = np.ones((len(rows), width, 4), self.array.dtype)
-                data[..., :3] = rows
+            data = rows.astype(np.float16) if halves else np.ascontiguousarray(rows)
             self.texture.write(data, viewport=(0, self._row, width, len(rows)), alignment=1)
             self._row += len(rows)
             if end is not None and perf_counter() > end:

@@ -68,8 +68,10 @@ def refusal(data=GOOD, limits=DEFAULT_LIMITS, layer=""):
         (luminance_chroma_exr(PLANE, PLANE[::2, ::2], PLANE[::2, ::2]), ""),
         (exr_file({f"key.{c}": PLANE for c in "RGB"}), "key"),
         (exr_file({"RGB": halves(24, 4)}, envmap=1), ""),
+        (exr_file({"Y": halves(130, 7)[..., 0].copy()}), ""),
+        (exr_file({"R": PLANE, "G": PLANE.astype(np.float16), "B": PLANE.astype(np.float16)}), ""),
     ],
-    ids=["plain", "converted", "luminance-chroma", "layer", "attribute"],
+    ids=["plain", "converted", "luminance-chroma", "layer", "attribute", "grey", "mixed"],
 )
 def test_a_child_gives_the_pixels_and_notes_of_this_process(data, layer):
     here, there = decode_openexr(data, layer=layer), decode_isolated(data, layer=layer)
@@ -132,7 +134,7 @@ def test_a_child_that_takes_nothing_in_is_ended(child_answer, monkeypatch):
     assert "decoding it took more than 1 s" in refusal(bytes(10**6))  # more than a pipe holds
 
 
-HEAD = {"height": 1, "width": 1, "encoding": "OpenEXR", "notes": [], "layout": None}
+HEAD = {"height": 1, "width": 1, "encoding": "OpenEXR", "notes": [], "layout": None, "halves": False}
 
 
 @pytest.mark.parametrize(
@@ -149,6 +151,8 @@ HEAD = {"height": 1, "width": 1, "encoding": "OpenEXR", "notes": [], "layout": N
         json.dumps({**HEAD, "height": -1}).encode() + b"\n",
         json.dumps({**HEAD, "height": 10**9, "width": 10**9}).encode() + b"\n",
         json.dumps({**HEAD, "width": 1.0}).encode() + b"\n" + bytes(12),
+        json.dumps({**HEAD, "halves": True}).encode() + b"\n" + bytes(5),
+        json.dumps({**HEAD, "halves": 1}).encode() + b"\n" + bytes(12),
         json.dumps({**HEAD, "layout": 3}).encode() + b"\n" + bytes(12),
     ],
     ids=lambda answer: ascii(answer[:40]),
