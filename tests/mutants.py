@@ -127,8 +127,8 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ),
         (
             "rows in the inverse order",
-            "found = found[self.rows(n_bands)]",
-            "found = found[np.argsort(self.rows(n_bands))]",
+            "self.factor * found[self.rows(n_bands)]",
+            "self.factor * found[np.argsort(self.rows(n_bands))]",
         ),
         ("the mean not shifted", "found[0] -= self._shift", "found[0] -= 0"),
     ),

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.recognised import Recognised, recognise
 from shviewer.analysis.subjects import load_light
-from shviewer.coefficients.finding import FITS, Found, find_convention
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.reading import interpreted, read_numbers
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
@@ -19,7 +19,7 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import built_in_lights, read_from
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.limits import MAX_BANDS
-from shviewer.words import brief_percent, one_line
+from shviewer.words import one_line
 
 
 def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple[Recipe, str]:
@@ -38,33 +38,22 @@ def compared_with(recipe: Recipe, text: str, option: str = "--compare") -> tuple
     with naming(text):
         listed = read_numbers(file, recipe.reading.limits)
         if listed.stamp or listed.implied or recipe.reading.convention:
-            read, found = interpreted(listed, recipe.reading.convention), None
+            read, found = interpreted(listed, recipe.reading.convention, overrule=True), None
         else:
-            found = _found(recipe, listed)
-            read = interpreted(listed, found.best.text)
+            found = _recognised(recipe, listed)
+            read = found.file
     name = one_line(file.name)
     light = read_from(CoefficientLight.of_file(read, name), file, version)
     said = [] if found and found.fits else [f"{name}: {note}" for note in read.notes]  # what fits was guessed rightly
-    return replace(recipe, compare=light), "; ".join([*said, *([_said(name, found)] if found else [])])
+    found_out = [f"{name} does not name its convention: {found.said}"] if found else []
+    return replace(recipe, compare=light), "; ".join([*said, *found_out])
 
 
-def _found(recipe: Recipe, listed: Listed) -> Found:
-    """The conventions in which the numbers fit the radiance of the light that is projected."""
+def _recognised(recipe: Recipe, listed: Listed) -> Recognised:
+    """The convention in which the numbers fit the radiance of the light that is projected."""
     light = load_light(replace(recipe, quantity="radiance"))
     most = min(MAX_BANDS, max(1, ceil(sqrt(listed.numbers.size))))  # the bands of a grey list; others have fewer
-    return find_convention(listed, project(light, *BEST, most).coefficients)
-
-
-def _said(name: str, found: Found) -> str:
-    best = found.best
-    if not found.fits:
-        return (
-            f"{name} does not name its convention, and none fits within {brief_percent(FITS)}; the nearest is {best.text}, "
-            f"{brief_percent(best.error)} off"
-        )
-    alike = " and ".join(filter(None, [", ".join(found.alike[:-1]), *found.alike[-1:]]))
-    others = f", as {alike} would" if alike else ""
-    return f"{name} does not name its convention: {best.text} fits{others}"
+    return recognise(listed, project(light, *BEST, most).coefficients)
 
 
 def _kind(text: str) -> str:

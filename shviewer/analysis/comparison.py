@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -11,18 +10,24 @@ from numpy.typing import NDArray
 from shviewer.analysis.cache import remember
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.subjects import subject
-from shviewer.coefficients.finding import FITS
-from shviewer.coefficients.programs import CONVENTIONS, OURS
-from shviewer.coefficients.suspects import usual_suspects
+from shviewer.analysis.subjects import load_light, subject
+from shviewer.coefficients.diagnosis.chance import CHANCE
+from shviewer.coefficients.diagnosis.search import explain
+from shviewer.coefficients.diagnosis.sentences import words
+from shviewer.coefficients.numbers import Listed
+from shviewer.coefficients.parts.quantities import RADIANCE
+from shviewer.coefficients.programs import OURS
+from shviewer.coefficients.reading import interpreted
+from shviewer.coefficients.texts import convention_text
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.words import brief_percent
 
-BAD = FITS
+FITS = 0.02
 """Given coefficients that are off by more than this share of the light's own, in the same bands, are examined."""
 
 FAINT = 1e-3
@@ -36,6 +41,9 @@ EXACT = 1e-6
 
 EXPLAINED = 0.25
 """A suspected mistake is named if the error without it is at most this, and at most this share of the error with it."""
+
+ALL, MOST = 0.05, 0.5
+"""A factor is all, or most, of an error, of which at most this share is left without it."""
 
 
 def as_the_file_holds(recipe: Recipe, *, quantity: bool, bands: bool) -> tuple[Recipe, str]:
@@ -63,29 +71,80 @@ def caption(recipe: Recipe) -> str:
     return f"{name if len(name) <= LONGEST_NAME else f'{name[:11]}...{name[-14:]}'}: "
 
 
+def verdict_of(recipe: Recipe) -> str:
+    """The verdict on the coefficients that the recipe compares with; "" if with none. LightError if the light is bad."""
+    return verdict(load_light(replace(recipe, quantity=RADIANCE)), recipe.compare) if recipe.compare else ""
+
+
 @remember(most=4, doing="comparing conventions")
 def verdict(light: Light, given: CoefficientLight) -> str:
-    """One line on given coefficients: how well they agree with the light's own, or which usual mistake explains that not."""
+    """One line on given coefficients of the radiance of a light: how well they agree with its own, or what explains that not.
+
+    Both are compared as what the file holds, radiance or irradiance, whatever is shown.
+    """
     exact = project(light, *BEST, given.n_bands).coefficients
-    shown = project(light, given, 0, 0, given.n_bands).coefficients
-    norm, off = float(np.linalg.norm(exact)), float(np.linalg.norm(exact - shown))
-    if off <= BAD * norm:
+    wanted, held = _held(exact, given.quantity), _numbers(given)
+    norm, off = float(np.linalg.norm(wanted)), float(np.linalg.norm(wanted - held))
+    if off <= FITS * norm:
         over = f"its {given.n_bands} bands" if given.n_bands > 1 else "its one band"
         error = brief_percent(max(off / norm if norm else 0.0, EXACT))
-        return f"{given.name} agrees with the light's own to {error} over {over}"
+        return f"{given.name} agrees with the light's own to {error} over {over}{_factor(wanted, held)}"
     says = f"{given.name} is {brief_percent(off / norm) if norm else 'wholly'} off"
-    if not shown.any():
+    if not held.any():
         return f"{says}: its numbers are all zero"
-    best = usual_suspects(exact, shown, _readings(light, given))[0]
-    if not best.changes or best.error > EXPLAINED * min(1.0, off / norm if norm else 0.0):
-        return f"{says}, which no usual mistake explains{_where(exact, shown)}"
-    left = "not at all" if best.error < EXACT else brief_percent(best.error)
-    return f"{says}, but {left} if its numbers are {best.words}"
+    explained = _explained(exact, given, off / norm if norm else np.inf)
+    return f"{says}, {explained or f'which no usual mistake explains{_where(wanted, held)}'}"
 
 
 def agrees(said: str) -> bool:
     """Whether a verdict says that the coefficients agree."""
     return " agrees with the light's own " in said
+
+
+def error_of(exact: Array, coefficients: Array, quantity: str) -> float:
+    """The relative L2 error of our coefficients of a quantity. exact: the radiance, of at least as many bands."""
+    wanted = _held(exact[: len(coefficients)], quantity)
+    norm = float(np.linalg.norm(wanted))
+    return float(np.linalg.norm(coefficients - wanted)) / norm if norm else np.inf
+
+
+def _held(exact: Array, quantity: str) -> Array:
+    """The coefficients of a quantity, of a light whose radiance has these."""
+    return exact if quantity == RADIANCE else exact * per_coefficient(irradiance_factors(count_bands(exact)))
+
+
+def _numbers(given: CoefficientLight) -> Array:
+    return given.given if given.file is None else given.file.coefficients
+
+
+def _factor(wanted: Array, held: Array) -> str:
+    """Words for the factor that is all or most of a small error; "" if none is."""
+    norm, off = float((wanted**2).sum()), float(np.linalg.norm(wanted - held))
+    factor = float((wanted * held).sum()) / norm if norm else 1.0
+    left = float(np.linalg.norm(factor * wanted - held))
+    if off <= 10 * EXACT * np.sqrt(norm) or left > MOST * off:
+        return ""
+    return f", {'all' if left <= ALL * off else 'most'} of it a factor of {factor:.5g}"
+
+
+def _explained(exact: Array, given: CoefficientLight, off: float) -> str:
+    """What makes the numbers right, in words and as a text to be pasted; "" if nothing does."""
+    file = given.file
+    listed, named = (file.listed, file.convention) if file and file.listed else (Listed(given.given), OURS)
+    try:
+        found = explain(listed, exact, named)
+        if found is None or found.chance > CHANCE:
+            return ""
+        text = convention_text(found.convention)
+        read = interpreted(listed, text, overrule=True)
+        error = error_of(exact, read.coefficients, read.quantity)
+    except LightError:  # of numbers that are too large, read so
+        return ""
+    if error > EXPLAINED * min(1.0, off):
+        return ""
+    left = "not at all" if error < EXACT else brief_percent(error)
+    paste = f": --convention {text}" if file else ""
+    return f"but {left} if its numbers are {words(found.convention, named)}{paste}"
 
 
 def _where(exact: Array, shown: Array) -> str:
@@ -97,7 +156,7 @@ def _where(exact: Array, shown: Array) -> str:
         return ""
     share = off / np.maximum(own, FAINT * own.max())
     worst = int(share.argmax())
-    bad = np.flatnonzero(share > BAD)
+    bad = np.flatnonzero(share > FITS)
     others = "the others fit" if len(bad) == 1 else "most of all" if len(bad) == len(own) else _bad_bands(bad, worst)
     return f": band {worst} is {brief_percent(share[worst])} off, {others}"
 
@@ -105,28 +164,3 @@ def _where(exact: Array, shown: Array) -> str:
 def _bad_bands(bad: NDArray[np.int64], worst: int) -> str:
     others = [str(band) for band in bad if band != worst]
     return f"{', '.join(others[:6])}{' and more' if len(others) > 6 else ''} less, the others fit"
-
-
-def _readings(light: Light, given: CoefficientLight) -> dict[tuple[str, ...], Array]:
-    """Words for other conventions and layouts -> the coefficients, of the quantity shown, if the numbers were meant so."""
-    numbers = given.given if given.file is None else given.file.numbers
-    own = OURS if given.file is None else replace(given.file.convention, quantity=None)
-    layouts: dict[tuple[str, ...], NDArray[np.generic]] = {(): numbers}
-    if given.n_bands > 1:
-        layouts[("listed channel by channel",)] = numbers.reshape(3, -1).T
-        layouts[("listed row by row",)] = numbers.T.reshape(-1, 3)
-    found: dict[tuple[str, ...], Array] = {}
-    for convention in CONVENTIONS.values() if given.file else (OURS,):
-        if (convention.most_bands or MAX_BANDS) < given.n_bands or np.iscomplexobj(numbers) != convention.complex:
-            continue
-        same = replace(convention, quantity=None) == own
-        if same and given.file:
-            convention = given.file.convention
-        for layout, table in layouts.items():
-            if same and not layout:
-                continue
-            words = (*layout, *(() if same else (f"in the convention of {convention.name}",)))
-            with suppress(ValueError, LightError):  # complex numbers of no real function, or more than can be shown
-                radiance = CoefficientLight.of_numbers(table, convention).given
-                found[words] = light.from_source(radiance)
-    return found

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shviewer.analysis.comparison import verdict
+from shviewer.analysis.comparison import verdict_of
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.subjects import load_light, subject
+from shviewer.analysis.subjects import subject
 from shviewer.coefficients.suns import sun_left_out
 from shviewer.words import counted, one_line
 
@@ -26,7 +26,7 @@ def print_notes(recipe: Recipe) -> None:
     shown = subject(recipe)
     notes = [f"note: {shown.light.name}: {note}" for note in shown.light.notes]
     notes += [f"note: {shown.refusal}"] if shown.refusal else []
-    notes += [verdict(load_light(recipe), recipe.compare)] if recipe.compare else []
+    notes += [said] if (said := verdict_of(recipe)) else []
     for note in notes:
         _say(note)
 

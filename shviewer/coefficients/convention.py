@@ -8,6 +8,7 @@ coefficients of a function, those of another program are, step by step,
     scale      times f(l, m) of SCALES (scales.py), since the program's basis functions are ours over f;
     shift      the first row less by what the program adds to the sum;
     index      c(l, m) at the index l(l+1) + m, or at l(l+1) - m, and these rows in another order (rows.py);
+    list       times a factor, and the channels in another order (channels.py), where a list has such mistakes;
     complex    c(l, +-m) of both signs of m as one complex number and its partner (SciPy).
 """
 
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.coefficients.parts.axes import Axes, alternating, mirrored_orders, orders, turn
+from shviewer.coefficients.parts.channels import RGB, channel_places
 from shviewer.coefficients.parts.quantities import RADIANCE, is_over_pi, to_quantity
 from shviewer.coefficients.parts.rows import ACN, ORDERS, Order, row_order
 from shviewer.coefficients.parts.scales import SCALES
@@ -50,6 +52,12 @@ class Convention:
     """The order of the rows, one of ORDERS."""
     shift: float = 0.0
     """What the program adds to the sum of its basis functions: the mean of the function that its first row lacks."""
+    channels: str = RGB
+    """The order of the columns, one of CHANNEL_ORDERS."""
+    sequence: str = ""
+    """How a list is read: "" as it stands, one of SEQUENCES, or FLAT_BY_CHANNEL. What is written are rows."""
+    factor: float = 1.0
+    """The numbers are so many times those of the rest of the convention."""
     most_bands: int | None = None
     fewest_bands: int = 1
     """The fewest bands that the program has; fewer are filled up with zeros."""
@@ -107,7 +115,9 @@ class Convention:
             found = found * alternating(orders(n_bands))
         found = found * self._scale(n_bands)[:, None]
         found[0] -= self._shift
-        found = found[self.rows(n_bands)]
+        found = self.factor * found[self.rows(n_bands)]
+        if self.channels != RGB:
+            found = found[:, channel_places(self.channels)]
         return to_complex(found) if self.complex else found + 0.0  # no negative zeros
 
     def to_ours(self, numbers: NDArray[np.generic]) -> Array:
@@ -118,8 +128,10 @@ class Convention:
         n_bands = count_bands(numbers)
         self.check_bands(n_bands)
         listed = from_complex(numbers) if self.complex else np.asarray(numbers, dtype=np.float64)
+        if self.channels != RGB:
+            listed = listed[:, np.argsort(channel_places(self.channels))]
         found = np.empty_like(listed)
-        found[self.rows(n_bands)] = listed
+        found[self.rows(n_bands)] = listed / self.factor
         found[0] += self._shift
         found = found / self._scale(n_bands)[:, None]
         if not self.phase:

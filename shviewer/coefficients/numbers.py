@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.coefficients.parts.channels import FLAT_BY_CHANNEL, INTERLEAVED
 from shviewer.coefficients.stamp import Stamp
 from shviewer.errors import LightError
 from shviewer.limits import MAX_BANDS
@@ -38,6 +39,8 @@ class Listed:
     """The convention that the kind of file implies, a text for parse_convention; "" for none."""
     implied_by: str = ""
     """One line on why."""
+    planar: bool = False
+    """Whether the file has a row for each channel, so that `numbers` are its transpose."""
     placed: bool = False
     """Whether the file names l and m, so that its rows are in our order, whichever the program has."""
 
@@ -55,9 +58,8 @@ def arranged(numbers: Numbers, *, wrapped: bool = False) -> Listed:
         return found
     if rows == 3 and columns > 3 and _is_square(columns):
         kind = "lines" if wrapped else "rows"
-        return Listed(
-            numbers.T, notes=(f"three {kind} of {columns}: taken as red, green and blue, one after the other",)
-        )
+        note = f"three {kind} of {columns}: taken as red, green and blue, one after the other"
+        return Listed(numbers.T, notes=(note,), planar=True)
     if columns in (2, 4) and _is_square(rows) and rows > 1:
         if _counts_up(numbers[:, 0]):
             return Listed(numbers[:, 1:], notes=("the first of its columns is the index of the row",))
@@ -72,6 +74,23 @@ def arranged(numbers: Numbers, *, wrapped: bool = False) -> Listed:
                 " blue, or put all of one list on one line"
             )
     return Listed(numbers)
+
+
+def in_sequence(listed: Listed, sequence: str) -> Numbers:
+    """The numbers with their channels in a sequence of parts/channels.py, as rows of three.
+
+    LightError if they are no list of three channels that could be in one.
+    """
+    numbers = listed.numbers
+    if sequence == FLAT_BY_CHANNEL and numbers.ndim > 1:
+        return numbers
+    flat = numbers.T.reshape(-1) if listed.planar else numbers.reshape(-1)
+    if listed.placed or np.iscomplexobj(flat) or flat.size % 3 or not holds_light(flat.size):
+        if sequence == FLAT_BY_CHANNEL:
+            return numbers
+        what = "rows that name their l and m" if listed.placed else f"{flat.size} numbers"
+        raise LightError(f"{what} are not read {sequence}, which is for 3 n^2 numbers of three channels: leave it out")
+    return flat.reshape(3, -1).T if sequence != INTERLEAVED else flat.reshape(-1, 3)
 
 
 def _in_one_list(numbers: Numbers) -> Listed:

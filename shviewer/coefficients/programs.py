@@ -76,6 +76,7 @@ from __future__ import annotations
 
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import Axes
+from shviewer.coefficients.parts.channels import FLAT_BY_CHANNEL
 from shviewer.coefficients.parts.quantities import IRRADIANCE, OVER_PI, RADIANCE, RADIANCE_OVER_PI
 
 OURS = Convention()
@@ -225,6 +226,7 @@ _PROGRAMS = (
             most_bands=3,
             fewest_bands=3,
             layout=layout,
+            sequence=FLAT_BY_CHANNEL if name == "arkit" else "",
         )
         for name, program, layout in (
             ("webxr", "WebXR, XRLightEstimate", "27 numbers, row by row"),

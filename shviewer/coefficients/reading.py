@@ -22,10 +22,9 @@ from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.lists.scan import plain_numbers
 from shviewer.coefficients.lists.structures import read_structure, rows_of_numbers
 from shviewer.coefficients.lists.text import read_list
-from shviewer.coefficients.numbers import Listed, as_table
+from shviewer.coefficients.numbers import Listed, as_table, in_sequence
 from shviewer.coefficients.parts.quantities import RADIANCE, whole
 from shviewer.coefficients.parts.rows import ACN, row_order
-from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp, safe
 from shviewer.coefficients.suffixes import HOLDS
 from shviewer.coefficients.texts import parse_convention
@@ -57,6 +56,8 @@ class CoefficientFile:
     """One line on each thing that was assumed."""
     implied: bool = False
     """Whether the convention is the one that the kind of file implies."""
+    listed: Listed | None = None
+    """The numbers before they were read in the convention."""
 
     @property
     def n_bands(self) -> int:
@@ -83,18 +84,21 @@ def read_numbers(path: Path, limits: Limits = DEFAULT_LIMITS) -> Listed:
     return _READERS[HOLDS[path.suffix.lower()]](read_bytes(path, limits, MAX_FILE_BYTES, rule))
 
 
-def interpreted(listed: Listed, named: str) -> CoefficientFile:
+def interpreted(listed: Listed, named: str, *, overrule: bool = False) -> CoefficientFile:
     """Interpret numbers in the convention of their stamp, the one that was named, or the one that their file implies.
 
-    LightError if that is impossible.
+    overrule: the stamp, by what was named, with a note. LightError if it is impossible.
     """
     stamp, notes = safe(listed.stamp), listed.notes
     if listed.stamp:
         convention = read_stamp(stamp)
         if named and parse_convention(named) != parse_convention(str(stamp["convention"])):
-            raise LightError(
-                f"says itself that its convention is {stamp['convention']}; leave out --convention {named}"
-            )
+            if not overrule:
+                raise LightError(
+                    f"says itself that its convention is {stamp['convention']}; leave out --convention {named}"
+                )
+            convention = parse_convention(named)
+            notes = (*notes, f"says that its convention is {stamp['convention']}; read as {named}")
     elif named or listed.implied:
         try:
             convention = parse_convention(named or listed.implied)
@@ -103,11 +107,13 @@ def interpreted(listed: Listed, named: str) -> CoefficientFile:
         notes = notes if named else (*notes, listed.implied_by)
     else:
         raise LightError(
-            f"a bare list of numbers; name its convention: --convention {', '.join(CONVENTIONS)}, such as --convention three "
-            "(in Python convention='three'); "
+            "a bare list of numbers; name its convention, such as --convention three (in Python convention='three'; shviewer "
+            "project --help names them all); "
             "if the light is at hand, --compare finds it out: shviewer LIGHT --compare FILE"
         )
-    table = as_table(listed.numbers, complex_pairs=convention.complex)
+    sequence = convention.sequence if not stamp else ""
+    numbers = in_sequence(listed, sequence) if sequence else listed.numbers
+    table = as_table(numbers, complex_pairs=convention.complex)
     if stamp and "bands" in stamp and str(stamp["bands"]) != str(count_bands(table)):
         raise LightError(
             f"says {stamp['bands']} bands but has {len(table)} rows; n bands have n^2: project the light again"
@@ -125,7 +131,7 @@ def interpreted(listed: Listed, named: str) -> CoefficientFile:
     if np.abs(table).max() > LARGEST:
         raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")
     try:
-        return CoefficientFile(table, convention, convention.to_ours(table), stamp, notes, not (stamp or named))
+        return CoefficientFile(table, convention, convention.to_ours(table), stamp, notes, not (stamp or named), listed)
     except ValueError as error:
         raise LightError(str(error)) from error
 

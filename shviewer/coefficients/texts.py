@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import NAMED_AXES, Axes
+from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, SEQUENCES
 from shviewer.coefficients.parts.quantities import QUANTITIES
 from shviewer.coefficients.parts.rows import ACN, ORDERS
 from shviewer.coefficients.parts.scales import SCALES
 from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
 
 SHIFTED = "shifted"
-"""The modifier of a list whose mean is less by 0.5, as 3D Gaussian splatting has it."""
+"""The modifier of a list whose mean is less by SHIFT, as 3D Gaussian splatting has it."""
 
-MODIFIERS = ("phase", "no-phase", "m-swapped", SHIFTED, *QUANTITIES, *SCALES, *list(ORDERS)[1:], *NAMED_AXES)
+SHIFT = CONVENTIONS["3dgs"].shift
+
+MODIFIERS = (
+    *("phase", "no-phase", "m-swapped", SHIFTED),
+    *QUANTITIES,
+    *SCALES,
+    *list(ORDERS)[1:],
+    *NAMED_AXES,
+    *CHANNEL_ORDERS,
+    *SEQUENCES,
+)
+_TIMES = "times="
+LARGEST_FACTOR = 1e30
 
 
 def parse_convention(text: str) -> Convention:
@@ -48,19 +62,36 @@ def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
         return "quantity", convention.holding(modifier)
     if modifier in NAMED_AXES or modifier[:1] in ("+", "-"):
         return "axes", replace(convention, axes=Axes.named(modifier))
+    if modifier in CHANNEL_ORDERS:
+        return "channels", replace(convention, channels=modifier)
+    if modifier in SEQUENCES:
+        return "sequence", replace(convention, sequence=modifier)
+    if modifier.startswith(_TIMES):
+        return "factor", replace(convention, factor=_factor(modifier))
     if modifier in ("phase", "no-phase"):
         return "phase", _if_free(convention, modifier, "phase", modifier == "phase")
     if modifier == "m-swapped":
         return "sign of m", _if_free(convention, modifier, "mirrored", True)
     if modifier == SHIFTED:
-        return "shift", _if_free(convention, modifier, "shift", CONVENTIONS["3dgs"].shift)
+        return "shift", _if_free(convention, modifier, "shift", SHIFT)
     if modifier in ORDERS and modifier != ACN:
         return "order", _if_free(convention, modifier, "order", modifier)
     if modifier in SCALES:
         return "scale", _if_free(convention, modifier, "scale", modifier)
     raise ValueError(
-        f"convention modifier {modifier!r}: it must be one of {', '.join(MODIFIERS)}, or axes such as +x+z-y"
+        f"convention modifier {modifier!r}: it must be one of {', '.join(MODIFIERS)}, times=2 or another factor, or axes such"
+        " as +x+z-y"
     )
+
+
+def _factor(modifier: str) -> float:
+    try:
+        factor = float(modifier.removeprefix(_TIMES))
+    except ValueError:
+        factor = math.nan
+    if not 1 / LARGEST_FACTOR <= factor <= LARGEST_FACTOR:
+        raise ValueError(f"convention modifier {modifier!r}: a factor is a number above 0, such as times=2")
+    return factor
 
 
 def _if_free(convention: Convention, modifier: str, field: str, value: object) -> Convention:
@@ -101,4 +132,10 @@ def convention_text(convention: Convention) -> str:
         parts.append(SHIFTED)
     if convention.quantity != base.quantity and convention.quantity:
         parts.append(convention.quantity)
+    if convention.channels != base.channels:
+        parts.append(convention.channels)
+    if convention.sequence != base.sequence and convention.sequence in SEQUENCES:
+        parts.append(convention.sequence)
+    if convention.factor != base.factor:
+        parts.append(f"{_TIMES}{convention.factor!r}".removesuffix(".0"))
     return ",".join(parts)

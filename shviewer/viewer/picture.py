@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shviewer.analysis.comparison import verdict
+from shviewer.analysis.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.reconstruction import reconstruction_of
@@ -148,7 +148,7 @@ def completed(picture: Picture) -> Picture:
     if isinstance(picture.needs, Needs):
         return picture
     unsplit = needs(replace(recipe, split_sun=False)) if picture.subject.suns else None
-    said = verdict(picture.light, recipe.compare) if recipe.compare else ""
+    said = verdict_of(recipe)
     return replace(picture, needs=needs(recipe), needs_unsplit=unsplit, verdict=said)
 
 

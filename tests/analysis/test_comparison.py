@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from functools import cache
 from pathlib import Path
 
@@ -14,10 +14,9 @@ import pytest
 from coefficients.peer_cases import spoiled
 
 from shviewer.analysis.compared_files import compared_with
-from shviewer.analysis.comparison import as_the_file_holds, caption, verdict
+from shviewer.analysis.comparison import agrees, as_the_file_holds, caption, verdict, verdict_of
 from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.subjects import load_light
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
@@ -110,7 +109,10 @@ def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("names", "words"),
     [
-        (("phase",), "without the Condon-Shortley phase"),
+        (
+            ("phase",),
+            "without the Condon-Shortley phase, or of a map that is turned by half a turn, which is the same",
+        ),
         (("y-up", "pi"), "in axes +x+z-y (y-up) and divided by pi"),
         (("order", "4pi"), "with m and -m swapped and divided by sqrt(4 pi)"),
         (("A",), "multiplied by A(l), as irradiance"),
@@ -129,8 +131,9 @@ def test_another_programs_file_is_recognised_by_its_numbers(tmp_path: Path) -> N
         path.write_text(json.dumps(np.asarray(CONVENTIONS[name].from_ours(venice().coefficients(3))).tolist()))
         file = CoefficientLight.read(path, Reading(convention="shviewer"))
         for quantity in ("radiance", "irradiance"):
-            light = load_light(Recipe(venice(), quantity=quantity))
-            assert verdict(light, file).endswith(f"not at all if its numbers are in the convention of {name}")
+            assert verdict_of(Recipe(venice(), quantity=quantity, compare=file)).endswith(
+                f"not at all if its numbers are in the convention of {name}: --convention {name}"
+            )
 
 
 def test_what_nothing_explains_is_said_to_be_so() -> None:
@@ -200,7 +203,12 @@ def test_only_coefficients_are_compared(text: str, kind: str, capsys: pytest.Cap
 
 def test_small_disagreement_is_a_figure() -> None:
     exact = venice().coefficients(3)
-    assert compared(given(1.005 * exact)).verdict == "theirs.txt agrees with the light's own to 0.5 % over its 3 bands"
+    agreement = "theirs.txt agrees with the light's own to 0.5 % over its 3 bands"
+    assert compared(given(1.005 * exact)).verdict == f"{agreement}, all of it a factor of 1.005"
+    noise = np.random.default_rng(2).normal(size=exact.shape)
+    noise *= 0.005 * np.linalg.norm(exact) / np.linalg.norm(noise)
+    assert compared(given(exact + noise)).verdict == agreement
+    assert compared(given(1.01 * (exact + noise))).verdict.endswith(" bands, most of it a factor of 1.0097")
     assert compared(given(exact[:1])).verdict.endswith("over its one band")
 
 
@@ -213,10 +221,10 @@ def test_small_disagreement_is_a_figure() -> None:
         (lambda c: c[:, ::-1], "with channels in the order B G R"),
         (
             lambda c: 2 * spoiled(c, "phase")[:, ::-1],
-            "without the Condon-Shortley phase, with channels in the order B G R and times 2",
+            "without the Condon-Shortley phase, or of a map that is turned by half a turn, which is the same, with channels"
+            " in the order B G R and times 2",
         ),
         (lambda c: c.T.reshape(9, 3), "listed channel by channel"),
-        (lambda c: c.reshape(3, 9).T, "listed row by row"),
     ],
 )
 def test_factors_channels_and_the_order_of_the_list_are_usual_mistakes(
@@ -235,6 +243,7 @@ def test_mistakes_are_found_together_whichever_convention_was_named(named: str, 
     assert "multiplied by sqrt(4 pi)" in explained
     assert "with channels in the order B G R" in explained
     assert "in the convention of three" in explained or "y-up" in explained
+    assert explained.endswith(("--convention three,bgr,times=3.544907702", "no-phase,bgr,times=3.544907702"))
 
 
 def test_where_nothing_explains_it_the_band_is_named() -> None:
@@ -247,14 +256,17 @@ def test_where_nothing_explains_it_the_band_is_named() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["shviewer", "filament", "three", "unity", "unreal", "ambix", "sphericart", "scipy", "shviewer,irradiance"]
+    "text", [name for name, one in CONVENTIONS.items() if name not in ("spharpy", "arcore-phase", "arkit-phase")]
 )
 def test_a_convention_that_nobody_names_is_found(text: str, tmp_path: Path) -> None:
     numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
     file = tmp_path / "bare.npy"
     np.save(file, numbers)
     recipe, said = compared_with(Recipe(venice()), str(file))
-    assert said == f"bare.npy does not name its convention: {text} fits"
+    same = {"webxr-no-phase": "three", "arcore-no-phase": "three", "arkit-no-phase": "three"}
+    named = "shviewer, in axes +x+z-y (y-up), fits, as webxr-phase would: --convention shviewer,y-up"
+    found = named if text == "webxr-phase" else f"{same.get(text, text)} fits"
+    assert said == f"bare.npy does not name its convention: {found}"
     assert verdict(venice(), recipe.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
 
 
@@ -265,27 +277,115 @@ def test_a_bent_convention_is_found_too(text: str, tmp_path: Path) -> None:
     numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
     (tmp_path / "bare.json").write_text(json.dumps(numbers.tolist()))
     recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.json"))
-    assert said.endswith(" fits")
+    assert ", fits: --convention " in said
     if text.startswith("shviewer"):  # the simplest of several that fit as well
-        assert parse_convention(said.split()[-2]) == parse_convention(text)
+        assert parse_convention(said.split()[-1]) == parse_convention(text)
     assert "agrees" in verdict(venice(), recipe.compare)
 
 
-def test_where_no_convention_fits_the_nearest_is_named_and_what_is_wrong(tmp_path: Path) -> None:
+def test_finder_and_comparison_are_one(tmp_path: Path) -> None:
+    """What the finder takes agrees; a list that is off by a constant is said to be so, in a plain sentence."""
     numbers = 2 * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
     (tmp_path / "bare.txt").write_text(" ".join(map(str, numbers.reshape(-1))))
     recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.txt"))
-    assert re.search(r"none fits within 2 %; the nearest is \S+, \d+ % off$", said)
-    assert "times 2" in verdict(venice(), recipe.compare)
+    assert said == "bare.txt does not name its convention: three, times 2, fits: --convention three,times=2"
+    assert verdict(venice(), recipe.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
+
+
+def test_where_no_convention_fits_the_nearest_is_named_and_where_it_fails(tmp_path: Path) -> None:
+    (tmp_path / "bare.npy").write_bytes(b"")
+    np.save(tmp_path / "bare.npy", np.random.default_rng(3).normal(size=(9, 3)))
+    recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.npy"))
+    assert re.search(r"convention: no usual one fits; read as \S+, which is \d+ % off$", said)
+    assert "which no usual mistake explains" in verdict(venice(), recipe.compare)
+
+
+def hints(said: str) -> list[str]:
+    return re.findall(r"--convention (\S+)", said)
+
+
+PASTED = (
+    *("filament,+x+z-y", "three,y-up-left", "shviewer,irradiance", "shviewer,irradiance-over-pi,y-up", "three,-x+z+y"),
+    *("shviewer,order-fuma,4pi", "babylon,bgr,times=1.3", "shviewer,polynomial,order-xyz", "e3nn,+y-x+z", "3dgs,gbr"),
+    *(
+        "shviewer,m-swapped,-z-y+x,times=0.017",
+        "shtools,y-up",
+        "scipy,+x+z-y,times=2",
+        "godot,times=2",
+        "ambix,times=0.5",
+    ),
+)
+
+
+@pytest.mark.parametrize("text", PASTED)
+@pytest.mark.parametrize("n_bands", [3, 4, 5])
+def test_every_hint_that_is_printed_can_be_pasted_and_gives_what_it_says(
+    text: str, n_bands: int, tmp_path: Path
+) -> None:
+    convention = parse_convention(text)
+    try:
+        numbers = np.asarray(convention.from_ours(venice().coefficients(n_bands)))
+    except ValueError:
+        pytest.skip("a program with fewer bands")
+    file = tmp_path / "bare.npy"
+    np.save(file, numbers)
+    recipe, found = compared_with(Recipe(venice()), str(file))
+    assert "agrees" in verdict(venice(), recipe.compare)
+    named = [*hints(found), "shviewer", "three", "filament", "unity,z-up", "ambix"]
+    for start in named:
+        with suppress(LightError):  # a convention that cannot hold it
+            reading = Reading(convention=start)
+            said = verdict(venice(), compared_with(Recipe(venice(), reading=reading), str(file))[0].compare)
+            for hint in hints(said):
+                pasted = compared_with(Recipe(venice(), reading=Reading(convention=hint)), str(file))[0]
+                assert agrees(verdict(venice(), pasted.compare)), (start, hint)
+            assert agrees(said) or hints(said), start
+
+
+def test_a_hint_on_a_stamped_file_can_be_pasted_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "stamped.json"
+    assert main(["project", "venice_sunset", "--bands", "3", "--convention", "three", "-o", str(file)]) == 0
+    file.write_text(file.read_text().replace('"light": "venice', '"light": "other'))
+    rows = json.loads(file.read_text())
+    rows["coefficients"] = (np.array(rows["coefficients"]) * 3).tolist()
+    file.write_text(json.dumps(rows))
+    (hint,) = hints(verdict(venice(), compared_with(Recipe(venice()), str(file))[0].compare))
+    assert hint == "three,times=3"
+    recipe, said = compared_with(Recipe(venice(), reading=Reading(convention=hint)), str(file))
+    assert said == "stamped.json: says that its convention is three; read as three,times=3"
+    assert agrees(verdict(venice(), recipe.compare))
+
+
+@pytest.mark.parametrize("n_bands", [3, 4, 5])
+def test_what_is_irradiance_is_measured_as_irradiance(n_bands: int, tmp_path: Path) -> None:
+    """From 4 bands on the radiance of band 3 cannot be had from it; read as radiance it is named."""
+    np.save(
+        tmp_path / "e.npy",
+        np.asarray(parse_convention("shviewer,irradiance").from_ours(venice().coefficients(n_bands))),
+    )
+    recipe = compared_with(Recipe(venice(), reading=Reading(convention="shviewer")), str(tmp_path / "e.npy"))[0]
+    said = verdict(venice(), recipe.compare)
+    assert said.endswith(
+        "not at all if its numbers are multiplied by A(l), as irradiance: --convention shviewer,irradiance"
+    )
+    recipe = compared_with(
+        Recipe(venice(), reading=Reading(convention="shviewer,irradiance")), str(tmp_path / "e.npy")
+    )[0]
+    assert agrees(verdict(venice(), recipe.compare))
+
+
+def test_three_lines_that_are_row_by_row_after_all(tmp_path: Path) -> None:
+    rows = venice().coefficients(3).reshape(3, 9)
+    (tmp_path / "lines.txt").write_text("\n".join(" ".join(map(repr, row)) for row in rows.tolist()))
+    said = compared_with(Recipe(venice()), str(tmp_path / "lines.txt"))[1]
+    assert said.endswith("shviewer, listed row by row, fits: --convention shviewer,interleaved")
 
 
 def test_what_fits_alike_is_said(tmp_path: Path) -> None:
     """A constant light tells neither phases nor axes apart."""
     (tmp_path / "bare.txt").write_text("3.5449077018110318 " * 3 + "0 " * 24)
     said = compared_with(Recipe("constant"), str(tmp_path / "bare.txt"))[1]
-    others = (
-        "three, unreal, sphericart, babylon, directxmath, e3nn, mitsuba, webxr-phase and shviewer,irradiance-over-pi"
-    )
+    others = "three, unreal, sphericart, babylon, directxmath, e3nn, mitsuba and webxr-phase"
     assert said == f"bare.txt does not name its convention: shviewer fits, as {others} would"
 
 

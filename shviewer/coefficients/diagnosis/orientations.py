@@ -1,0 +1,70 @@
+"""Orientations: phase, sign of m and axes, alone and together, and the matrices that undo them."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from shviewer.coefficients.parts.axes import NAMED_AXES, Axes, all_axes, alternating, mirrored_orders, orders, turn
+from shviewer.harmonics.basis import Array
+
+USUAL_AXES = {"+y+z+x": "z forward", "+z+x+y": "y polar"} | {text: name for name, text in NAMED_AXES.items()}
+"""Axes that programs have; any others cost as much as two mistakes."""
+
+TURNS = {
+    "-x-y+z": "with its map turned by half a turn",
+    "+y-x+z": "with its map turned by a quarter, its left in the middle",
+    "-y+x+z": "with its map turned by a quarter, its right in the middle",
+    "+x-y+z": "with its map mirrored, left and right exchanged",
+    "+x+y-z": "with its map upside down, mirrored",
+    "-x-y-z": "with every direction opposite",
+}
+"""What happened to a light, if the axes are these against those that were meant -> words. Our y is left, our x the middle."""
+
+CYCLE = Axes("+y+z+x")
+"""Any axes are this, repeated as needed, and then axes that keep z in its place, whose turns are exact and quick."""
+
+
+class Orientation(NamedTuple):
+    """What was done to coefficients: the phase left out, m and -m swapped, other axes."""
+
+    phase: bool
+    mirrored: bool
+    axes: Axes
+
+
+@cache
+def orientations() -> list[Orientation]:
+    """All 192: for each choice of phase and sign of m all axes, our own first."""
+    return [Orientation(phase, swap, axes) for swap in (False, True) for phase in (True, False) for axes in all_axes()]
+
+
+@cache
+def undoing(n_bands: int) -> Array:
+    """The matrices that undo each orientation, (192, n_bands**2, n_bands**2)."""
+    identity = np.eye(n_bands**2)
+    cycle = turn(identity, CYCLE)
+    turned = [_turning(axes.inverse, identity, cycle) for axes in all_axes()]
+    phases, swapped = alternating(orders(n_bands)) * identity, identity[mirrored_orders(n_bands)]
+    starts = (identity, phases, swapped, swapped @ phases)
+    return np.array([one @ start for start in starts for one in turned])
+
+
+def _turning(axes: Axes, identity: Array, cycle: Array) -> Array:
+    """The matrix (n**2, n**2) of `turn`."""
+    rest, turned = axes, identity
+    while rest.text[5] != "z":
+        rest, turned = CYCLE.inverse.then(rest), cycle @ turned
+    return turn(turned, rest)
+
+
+def between(meant: Axes, found: Axes) -> Axes:
+    """What was done to our light, if it was written in `found` for a program with the axes `meant`."""
+    return found.then(meant.inverse)
+
+
+def axes_name(axes: Axes) -> str:
+    name = USUAL_AXES.get(axes.text)
+    return f"{axes.text} ({name})" if name else axes.text

@@ -1,0 +1,272 @@
+"""The search for the convention in which a list would be the coefficients of a known light.
+
+A list is numbers g; were it right, they would be our coefficients c of the light, times the factors f(l) of what it holds
+and of its normalisation. The usual mistakes are few: the phase, m and -m, the axes, a constant, the clamped cosine A(l),
+another normalisation, the order of the rows or the channels, the sequence of the numbers. All combinations are tried.
+
+Phase, m and axes are orthogonal and keep the power of each degree; factors multiply a degree. With g' the numbers after one
+of the `ways` to take the rows and one of the orientations undone, e = sum of c^2, d = sum of c g' and p = sum of g'^2 per
+degree, the best constant is K = sum p / sum f d, and the squared error that is left, relative to K f c, is
+1 - (sum f d)^2 / (sum p sum f^2 e). So each g' serves all factors, channels and constants at once. Degrees that the list
+cannot tell, A(3) = 0, must be empty in it.
+
+Among errors that are about equal the explanation decides that costs least: 1 for each thing that must have gone wrong, more
+for odd ones, and no more for a program's own convention, which explains many things at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.diagnosis.chance import chance
+from shviewer.coefficients.diagnosis.orientations import TURNS, USUAL_AXES, Orientation, between, orientations, undoing
+from shviewer.coefficients.diagnosis.ways import Way, sequence_of, ways
+from shviewer.coefficients.numbers import Listed
+from shviewer.coefficients.parts.axes import Axes, all_axes
+from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, FLAT_BY_CHANNEL, channel_places
+from shviewer.coefficients.parts.quantities import IRRADIANCE, QUANTITIES, RADIANCE, is_over_pi, whole
+from shviewer.coefficients.parts.rows import ACN
+from shviewer.coefficients.parts.scales import SCALES
+from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
+from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.filters import irradiance_factors
+
+MOST_BANDS = 6
+"""The most bands compared: enough to tell all mistakes apart, and fast to turn."""
+
+ALIKE = 1.5
+"""Errors within this factor of the smallest count as equal: what is left then is noise of sampling and digits."""
+
+TINY = 1e-6
+"""Relative errors below this count as none: single precision, or six printed digits."""
+
+NO_FACTOR = 0.02
+"""A constant that differs from 1 by no more is no mistake: it is said beside the agreement."""
+
+CONSTANTS = {
+    "multiplied by pi": np.pi,
+    "divided by pi": 1 / np.pi,
+    "multiplied by sqrt(4 pi)": np.sqrt(4 * np.pi),
+    "divided by sqrt(4 pi)": 1 / np.sqrt(4 * np.pi),
+    "times 2": 2.0,
+    "times 0.5": 0.5,
+    "multiplied by 4 pi": 4 * np.pi,
+    "divided by 4 pi": 1 / (4 * np.pi),
+}
+"""Words -> a factor that the numbers often have."""
+
+NAMED_FACTOR, ANY_FACTOR = 1.02, 1.4
+"""The cost of one of these, which may be part of a quantity or normalisation, and of any other."""
+
+ODD_AXES, HALF_TURN, ANOTHER_PROGRAM, PROGRAM, OPEN_READING = 2.05, 1.02, 1.1, 0.9, 1.02
+"""The cost of axes that no program has; of half a turn, which the phase is, too; of a program, where another was named and
+where none was; and of one of the two readings of a program whose phase nobody documents.
+"""
+
+CHANNEL_COSTS = np.array([0.0 if order == "rgb" else 1.0 if order == "bgr" else 2.0 for order in CHANNEL_ORDERS])
+
+Combination = tuple[str, str]
+"""A quantity and a normalisation."""
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A convention (`base` with what differs), the relative error of the numbers in it, and by how much chance explains it."""
+
+    convention: Convention
+    error: float
+    chance: float
+    """The expected number of explanations at most so costly that fit a list of random directions so well."""
+
+
+def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Explanation | None:
+    """The simplest convention in which the list fits about as well as in any; None if there is nothing to compare.
+
+    exact: the radiance of the light, our coefficients, with at least the bands of the list. named: the convention in which
+    it was read. LightError if the numbers are no table.
+    """
+    found = list(ways(listed, named.sequence if named else ""))
+    n_bands = min(count_bands(exact), count_bands(found[0].table), MOST_BANDS)
+    exact = exact[: n_bands**2]
+    if not exact.any() or not found[0].table[: n_bands**2].any():
+        return None
+    tried = [_Tried(way, exact, n_bands) for way in found]
+    costs = [_costs(one.way, one.combinations, n_bands, named, listed) for one in tried]
+    for one, (cost, _) in zip(tried, costs, strict=True):
+        one.misfits[:, np.isinf(cost)] = np.inf
+    least = min(float(one.misfits.min()) for one in tried)
+    good = max(ALIKE * least, TINY)
+    best, most = None, np.inf
+    for one, (cost, _) in zip(tried, costs, strict=True):
+        near = one.misfits <= good
+        if near.any():
+            total = np.where(near, cost + CHANNEL_COSTS[:, None, None] + one.constant_costs(good), np.inf)
+            place = int(total.argmin())
+            if total.flat[place] < most - 1e-9:
+                best, most = (one, np.unravel_index(place, total.shape)), float(total.flat[place])
+    if best is None:
+        return None
+    one, (channels, orientation, combination) = best
+    bases = next(bases for other, (_, bases) in zip(tried, costs, strict=True) if other is one)
+    base = CONVENTIONS[list(CONVENTIONS)[bases[orientation, combination]]]
+    factor = one.constant(channels, orientation, combination, good)
+    convention = _convention(
+        base, one.way, orientations()[orientation], CHANNEL_ORDERS[channels], one.combinations[combination], factor
+    )
+    within = sum(
+        int((CHANNEL_COSTS[:, None, None] + cost <= most + 1e-9).sum()) * (1 + len(CONSTANTS)) for cost, _ in costs
+    )
+    return Explanation(
+        convention,
+        float(one.misfits[channels, orientation, combination]),
+        within * chance(*one.by_degree(channels, orientation, combination), exact),
+    )
+
+
+class _Tried:
+    """All that is tried with one way to take the rows; arrays over channels, orientations and combinations."""
+
+    def __init__(self, way: Way, exact: Array, n_bands: int) -> None:
+        self.way = way
+        self.combinations: list[Combination] = list(product(QUANTITIES, way.scales))
+        self.factors = np.array([_factors(*combination, n_bands) for combination in self.combinations])
+        starts = np.arange(n_bands) ** 2
+        turned = undoing(n_bands) @ way.table[: n_bands**2]  # (192, n**2, 3)
+        pairs = np.add.reduceat(exact[None, :, :, None] * turned[:, :, None, :], starts, axis=1)
+        self.own = np.add.reduceat((turned**2).sum(axis=2), starts, axis=1)  # (192, n)
+        self.exact = np.add.reduceat((exact**2).sum(axis=1), starts)
+        places = [np.argsort(channel_places(order)) for order in CHANNEL_ORDERS]
+        self.with_exact = np.stack([sum(pairs[:, :, i, at[i]] for i in range(3)) for at in places])  # (6, 192, n)
+        self.linear = self.with_exact @ self.factors.T
+        power, model = self.own.sum(axis=1)[:, None], self.factors**2 @ self.exact
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(self.linear > 0, self.linear**2 / (power * model), 0.0)
+            self.constants = np.where(self.linear > 0, power / self.linear, 1.0)
+        self.misfits = np.sqrt(np.maximum(1 - np.nan_to_num(share), 0.0))
+        if way.shift:  # what is shifted has no factor: it would shift, too
+            self.misfits[np.abs(self.constants - 1) > NO_FACTOR] = np.inf
+
+    def constant_costs(self, good: float) -> Array:
+        off = np.abs(self.constants - 1)
+        costs = np.where(off <= NO_FACTOR, 0.0, ANY_FACTOR)
+        for value in CONSTANTS.values():
+            costs = np.where(np.abs(self.constants / value - 1) <= good, NAMED_FACTOR, costs)
+        return np.asarray(costs)
+
+    def constant(self, channels: np.intp, orientation: np.intp, combination: np.intp, good: float) -> float:
+        """The factor of the numbers: 1, one of CONSTANTS, or any, to six digits."""
+        found = float(self.constants[channels, orientation, combination])
+        if abs(found - 1) <= NO_FACTOR:
+            return 1.0
+        near = [value for value in CONSTANTS.values() if abs(found / value - 1) <= good]
+        return float(f"{near[0]:.10g}" if near else f"{found:.7g}")
+
+    def by_degree(
+        self, channels: np.intp, orientation: np.intp, combination: np.intp
+    ) -> tuple[Array, NDArray[np.bool_]]:
+        """The relative error of each degree, each with its best constant, and whether the degree tells anything."""
+        model = self.factors[combination] ** 2 * self.exact
+        linear = self.factors[combination] * self.with_exact[channels, orientation]
+        told = (model > 0) & (self.own[orientation] > 0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(told & (linear > 0), linear**2 / (model * self.own[orientation]), 0.0)
+        return np.sqrt(np.maximum(1 - share, 0.0)), told
+
+
+@cache
+def _factors(quantity: str, scale: str, n_bands: int) -> Array:
+    """What multiplies our coefficients of the radiance, per degree."""
+    factors = irradiance_factors(n_bands) if whole(quantity) == IRRADIANCE else np.ones(n_bands)
+    if whole(quantity) == IRRADIANCE:
+        factors = np.where((np.arange(n_bands) > 1) & (np.arange(n_bands) % 2 == 1), 0.0, factors)
+    if scale in ("polynomial", "fuma"):  # undone before anything was turned
+        scale = "orthonormal"
+    return np.asarray(
+        factors * SCALES[scale][0](n_bands)[np.arange(n_bands) ** 2] / (np.pi if is_over_pi(quantity) else 1.0)
+    )
+
+
+def _costs(
+    way: Way, combinations: list[Combination], n_bands: int, named: Convention | None, listed: Listed
+) -> tuple[Array, NDArray[np.int64]]:
+    """The cost of each orientation and combination, (192, k), without channels and constant, and the base that has it."""
+    best = np.full((len(orientations()), len(combinations)), np.inf)
+    bases = np.zeros(best.shape, dtype=np.int64)
+    for number, base in enumerate(CONVENTIONS.values()):
+        if n_bands > (base.most_bands or n_bands) or way.complex != base.complex:
+            continue
+        if base is not OURS and (way.order, way.shift) != (base.order, base.shift):
+            continue
+        at_base = named is not None and named.name == base.name
+        cost = 0.0 if at_base or (named is None and base is OURS) else PROGRAM if named is None else ANOTHER_PROGRAM
+        if not at_base and any(base.name in readings for readings in READINGS.values()):
+            cost = OPEN_READING if named is None else ANOTHER_PROGRAM
+        sequence = sequence_of(listed, base.sequence)
+        if base.sequence == FLAT_BY_CHANNEL and way.sequence != sequence:
+            continue
+        cost += way.sequence != (sequence_of(listed, named.sequence) if at_base and named else sequence)
+        cost += (way.order != base.order) + (way.shift != base.shift)
+        turned = _axes_costs(base.basis_axes, base is OURS)
+        for first in range(0, len(best), len(turned)):
+            phase, mirrored, _ = orientations()[first]
+            if "polynomial" in way.scales and (phase or (mirrored and n_bands > 2)):
+                continue  # the phase of polynomials is a half turn, and their factors are those of m and not of -m
+            if base is not OURS and (phase, mirrored) != (base.phase, base.mirrored):
+                continue
+            free = (phase != base.phase and "polynomial" not in way.scales) + (mirrored != base.mirrored)
+            for column, (quantity, scale) in enumerate(combinations):
+                held = base.quantity or (named.quantity if at_base and named else None) or RADIANCE
+                if base is not OURS and (scale != base.scale or (base.quantity and quantity != base.quantity)):
+                    continue
+                other = whole(quantity) != whole(held)
+                changed = other + (0.6 if other else 1.0) * (is_over_pi(quantity) != is_over_pi(held))
+                total = cost + free + turned + changed + (scale != base.scale)
+                rows = slice(first, first + len(turned))
+                better = total < best[rows, column]
+                best[rows, column] = np.where(better, total, best[rows, column])
+                bases[rows, column] = np.where(better, number, bases[rows, column])
+    return best, bases
+
+
+@cache
+def _axes_costs(meant: Axes, ours: bool) -> Array:
+    """The cost of each of all axes where these were meant."""
+    return np.array(
+        [
+            0.0
+            if axes == meant
+            else HALF_TURN
+            if between(meant, axes).text == "-x-y+z"
+            else 1.0
+            if between(meant, axes).text in TURNS or (ours and axes.text in USUAL_AXES)
+            else ODD_AXES
+            for axes in all_axes()
+        ]
+    )
+
+
+def _convention(
+    base: Convention, way: Way, orientation: Orientation, channels: str, combination: Combination, factor: float
+) -> Convention:
+    quantity, scale = combination
+    held = quantity if quantity != RADIANCE or base.quantity else None
+    phase = base.phase if scale == "polynomial" and base is not OURS else orientation.phase
+    return replace(
+        base,
+        phase=phase,
+        mirrored=orientation.mirrored,
+        axes=orientation.axes.then(base.pole.inverse),
+        scale=scale,
+        quantity=held,
+        order=way.order if way.order != ACN else base.order,
+        shift=way.shift,
+        sequence=base.sequence if base.sequence == FLAT_BY_CHANNEL else way.sequence,
+        channels=channels,
+        factor=factor,
+    )
