@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 from harmonics.independent import scipy_basis
+from mpmath import mp
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.special import roots_legendre
 
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import (
@@ -12,6 +14,7 @@ from shviewer.harmonics.quadrature import (
     fejer,
     fibonacci,
     gauss_legendre,
+    gauss_legendre_rows,
     jittered,
     uniform_random,
 )
@@ -153,6 +156,39 @@ def test_gauss_legendre_of_r_rows_integrates_products_of_two_functions_of_r_band
     values = scipy_basis(points.directions, rows)
     # SciPy's 3e-14 at 24 bands, twice
     assert_allclose(values.T @ (points.weights[:, None] * values), np.eye(rows**2), rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("rows", [1, 2, 3, 16, 161, 1000])
+def test_gauss_legendre_nodes_are_scipys_and_their_weights_where_scipys_keep_their_digits(rows):
+    theta, weights = gauss_legendre_rows(rows)
+    nodes, scipys = roots_legendre(rows)
+    assert_allclose(np.cos(theta)[::-1], nodes, rtol=0, atol=1e-15)
+    assert_allclose(weights, scipys[::-1], rtol=0, atol=1e-15 * rows)  # SciPy's lose digits with the square of the rows
+    assert_allclose(weights.sum(), 2, rtol=1e-14, atol=0)
+    assert (np.diff(theta) > 0).all()
+
+
+def test_4096_gauss_legendre_nodes_are_exact_to_rounding_and_their_weights_to_1e13_next_to_the_poles_too():
+    """Against Newton's method and Bonnet's recurrence with 40 digits."""
+    theta, weights = gauss_legendre_rows(4096)
+    with mp.workdps(40):
+        for row in (0, 1, 100, 2047):
+            found = mp.mpf(theta[row])
+            for _ in range(2):
+                value, slope = legendre_and_slope(4096, found)
+                found -= value / slope
+            slope = legendre_and_slope(4096, found)[1]
+            assert abs(found - theta[row]) < 4e-16 * found
+            assert abs(weights[row] / (2 / slope**2) - 1) < 1e-13
+
+
+def legendre_and_slope(n, theta):
+    """P(n)(cos theta) and its derivative by theta."""
+    x = mp.cos(theta)
+    before, value = mp.mpf(1), x
+    for l in range(2, n + 1):
+        before, value = value, ((2 * l - 1) * x * value - (l - 1) * before) / l
+    return value, n * (x * value - before) / mp.sin(theta)
 
 
 @pytest.mark.parametrize("rows", [1, 2, 3, 8, 15, 16, 31])
