@@ -36,10 +36,11 @@ from shviewer.analysis.subjects import load_light
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import read_report
+from shviewer.cli import help as help_pages
 from shviewer.cli import info
 from shviewer.cli.from_options import reading_from, recipe_from, state_from
 from shviewer.cli.info import as_text
-from shviewer.cli.main import MODES, _meant
+from shviewer.cli.main import MODES, _check_first
 from shviewer.cli.options import PARSERS
 from shviewer.cli.project import wanted_convention
 from shviewer.cli.sweep import _check_sweep
@@ -164,7 +165,10 @@ def _single(text: str) -> str:
 
 
 def _parsed(argv: list[str]) -> None:
-    argv = _meant(argv)
+    if argv[:1] == ["help"]:
+        help_pages.run(argv[1:])
+        return
+    _check_first(argv)
     mode, rest = (argv[0], argv[1:]) if argv[:1] and argv[0] in MODES else ("view", argv)
     options = PARSERS[mode]().parse_intermixed_args(rest)
     if (vars(options).get("samples") or 0) > 10_000 or len(vars(options).get("lights") or ()) > 20:

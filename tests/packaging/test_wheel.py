@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
+import tarfile
+import tomllib
 import venv
+import zipfile
 from pathlib import Path
 
 import pytest
+from documents import links
 from PIL import Image
 from places import ROOT
 
@@ -29,12 +32,57 @@ def run(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_an_installed_wheel_draws_every_kind_of_built_in_light_from_another_folder(tmp_path: Path) -> None:
-    built = run(sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "-w", tmp_path, ROOT, cwd=tmp_path)
-    if built.returncode and not os.environ.get("CI"):
-        pytest.skip(f"the wheel cannot be built, perhaps for want of a package registry: {built.stderr.strip()[-200:]}")
-    assert built.returncode == 0, built.stderr
-    (wheel,) = tmp_path.glob("*.whl")
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Two folders, each with a wheel and an sdist that were built on their own."""
+    folder = tmp_path_factory.mktemp("built")
+    venv.create(folder / "tools", with_pip=True)
+    programs = folder / "tools" / ("Scripts" if os.name == "nt" else "bin")
+    needed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["build-system"]["requires"]
+    got = run(programs / "pip", "install", "-q", *needed, "twine", cwd=folder)
+    if got.returncode and not os.environ.get("CI"):
+        pytest.skip(f"nothing can be built, perhaps for want of a package registry: {got.stderr.strip()[-200:]}")
+    assert got.returncode == 0, got.stderr
+    outs = [folder / "one", folder / "two"]
+    for out in outs:
+        done = run(programs / "python", "-m", "hatchling", "build", "-d", out, cwd=ROOT)
+        assert done.returncode == 0, done.stderr
+    checked = run(programs / "twine", "check", "--strict", *outs[0].iterdir(), cwd=folder)
+    assert checked.returncode == 0, checked.stdout
+    return outs
+
+
+def test_two_builds_are_alike_bit_for_bit(built: list[Path]) -> None:
+    one, two = ({path.name: path.read_bytes() for path in out.iterdir()} for out in built)
+    assert len(one) == 2
+    assert one == two
+
+
+def test_the_sdist_holds_every_file_of_the_project(built: list[Path]) -> None:
+    listed = run("git", "ls-files", "-z", cwd=ROOT)
+    if listed.returncode:
+        pytest.skip("not a git checkout, so there is no list of the project's files")
+    (sdist,) = built[0].glob("*.tar.gz")
+    with tarfile.open(sdist) as archive:
+        held = {name.partition("/")[2] for name in archive.getnames()}
+    assert {name for name in listed.stdout.split("\0") if name and (ROOT / name).exists()} <= held
+
+
+def test_the_page_of_the_package_leads_nowhere_that_is_not_there(built: list[Path]) -> None:
+    (wheel,) = built[0].glob("*.whl")
+    assert wheel.stat().st_size < 1.5e6
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        page = archive.read(name).decode().partition("\n\n")[2]
+        assert any(name.endswith("licenses/LICENSE") for name in archive.namelist())
+    assert "# shviewer" in page
+    assert links(page) == []
+
+
+def test_an_installed_wheel_draws_every_kind_of_built_in_light_from_another_folder(
+    built: list[Path], tmp_path: Path
+) -> None:
+    (wheel,) = built[0].glob("*.whl")
     venv.create(tmp_path / "empty", with_pip=True)
     programs = tmp_path / "empty" / ("Scripts" if os.name == "nt" else "bin")
     installed = run(programs / "pip", "install", "-q", "-c", ROOT / "requirements.lock", wheel, cwd=tmp_path)
