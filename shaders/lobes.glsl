@@ -1,4 +1,4 @@
-// Radiance of a sum of lobes: the profiles of shviewer/harmonics/zonal.py, term for term.
+// Radiance of a sum of lobes: the profiles of shviewer/harmonics/zonal.py and glossy.py, term for term.
 //
 // A program knows those kinds whose bit is set in PROFILES. Each profile is a function of |direction - axis|^2, which keeps its digits in float32 where the cosine is close to 1.
 
@@ -23,6 +23,13 @@ float profile_value(int kind, vec2 parameters, float squared_chord) {
 #endif
 #if (PROFILES >> PROFILE_GAUSSIAN) % 2 == 1
     if (kind == PROFILE_GAUSSIAN) return exp(-0.5 * parameters.x * squared_chord);
+#endif
+#if (PROFILES >> PROFILE_GLOSSY) % 2 == 1
+    if (kind == PROFILE_GLOSSY) {
+        float away = 0.5 * squared_chord;
+        float share = 2.0 * parameters.x / (away + parameters.x * (2.0 - away));
+        return max(0.0, 1.0 - away) * share * share;
+    }
 #endif
     return 1.0;
 }

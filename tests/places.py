@@ -17,3 +17,8 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 def hard_cases() -> Any:
     """Reference values with 34 digits; README.md beside them says where they come from."""
     return json.loads((DATA / "hard_cases.json").read_text())
+
+
+def kernels() -> Any:
+    """Reference values of glossy kernels, encodings of irradiance and moving lights; README.md says where they come from."""
+    return json.loads((DATA / "kernels.json").read_text())

@@ -21,6 +21,8 @@ from test_house import ROOMS
 
 import shviewer
 from shviewer.analysis.cache import MEMORY
+from shviewer.analysis.figures import needs
+from shviewer.analysis.recipe import Recipe
 from shviewer.cli.from_options import state_from
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
@@ -207,7 +209,9 @@ def test_a_pixel_is_checked_as_the_page_says(capsys: pytest.CaptureFixture[str])
 
 
 def test_the_band_counts_are_those_that_info_finds(capsys: pytest.CaptureFixture[str]) -> None:
-    (block,) = code_blocks(page("bands"), "sh")
+    block, shiny = code_blocks(page("bands"), "sh")
+    ((light, roughness, count),) = re.findall(r"^shviewer (\S+) --for glossy:(\S+) --tolerance 5% +# (\d+)", shiny)
+    assert needs(Recipe(light, quantity=f"glossy:{roughness}")).shown == int(count)
     checked = 0
     for light, quantity, said in re.findall(
         r"^shviewer (\S+) --tolerance 5%(?: --for (\w+))? +# (.*)$", block, re.MULTILINE

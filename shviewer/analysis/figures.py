@@ -13,13 +13,13 @@ import numpy as np
 
 from shviewer.analysis.cache import remember
 from shviewer.analysis.projections import BEST, Projection, project, sampling_of
-from shviewer.analysis.recipe import QUANTITIES, Recipe, Shown
-from shviewer.analysis.subjects import irradiance_of, load_light
+from shviewer.analysis.recipe import Recipe, Shown
+from shviewer.analysis.subjects import load_light, through
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
 from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
-from shviewer.harmonics.filters import irradiance_factors, per_coefficient, window
+from shviewer.harmonics.filters import per_coefficient, window
 from shviewer.harmonics.metrics import (
     PARSEVAL_FLOOR,
     ChannelFigures,
@@ -34,6 +34,7 @@ from shviewer.harmonics.metrics import (
     squared_error,
 )
 from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.quantity import IRRADIANCE, RADIANCE
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
@@ -60,20 +61,17 @@ PENDING: Final = Pending.PENDING
 
 @dataclass(frozen=True)
 class Needs:
-    """The fewest bands within a tolerance, for the radiance and for the irradiance of a light; None if no count is."""
+    """The fewest bands within a tolerance, for the radiance, the irradiance and the quantity shown; None if no count is."""
 
     tolerance: float
     radiance: int | None
     irradiance: int | None
+    shown: int | None
     best: float
     """The least relative L2 error, of the quantity shown, that any number of bands reaches."""
     best_bands: int
     searched: int
     """The number of bands up to which was searched: fewer for samples, and of given coefficients all that there are."""
-
-    def of(self, quantity: str) -> int | None:
-        """The answer for one of QUANTITIES."""
-        return self.irradiance if quantity == "irradiance" else self.radiance
 
 
 @dataclass(frozen=True)
@@ -106,19 +104,18 @@ class Figures(Sums):
 
 
 def needs(recipe: Recipe) -> Needs:
-    """How many bands the recipe's light needs for its tolerance, for both quantities.
+    """How many bands the recipe's light needs for its tolerance, for radiance, irradiance and the quantity shown.
 
-    Both answers are of what is shown: the light's own coefficients, those of its samples, or those that are compared.
+    The answers are of what is shown: the light's own coefficients, those of its samples, or those that are compared.
     """
     answers = {}
-    for quantity in QUANTITIES:
+    for quantity in dict.fromkeys((RADIANCE, IRRADIANCE, recipe.quantity)):
         errors = errors_of(load_light(replace(recipe, quantity=quantity)), *sampling_of(recipe))
         answers[quantity] = smallest_band_count(errors, recipe.tolerance), errors
-    errors = answers[recipe.quantity][1]
+    radiance, irradiance = answers[RADIANCE][0], answers[IRRADIANCE][0]
+    shown, errors = answers[recipe.quantity]
     best = int(errors.argmin())
-    return Needs(
-        recipe.tolerance, answers["radiance"][0], answers["irradiance"][0], float(errors[best]), best + 1, len(errors)
-    )
+    return Needs(recipe.tolerance, radiance, irradiance, shown, float(errors[best]), best + 1, len(errors))
 
 
 def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
@@ -179,13 +176,13 @@ def sums(light: Light, projection: Projection, what: Shown) -> tuple[Array, Sums
 def figures_of(light: Light, projection: Projection, what: Shown) -> Figures:
     """All figures of a projection as it is shown."""
     shown, known = sums(light, projection, what)
-    exact = project(light, *BEST, projection.n_bands).coefficients[: len(shown)]
-    irradiance = irradiance_of(light)
-    cosine = np.ones((1, 1)) if irradiance is light else per_coefficient(irradiance_factors(what.n_bands))
+    irradiance = through(light, IRRADIANCE)
+    own = project(light, *BEST, projection.n_bands).radiance[: len(shown)]
+    shading = projection.radiance[: len(shown)] * per_coefficient(np.array(known.factors))
     norm = irradiance.products().diagonal()
     return Figures(
         **vars(known),
-        irradiance_relative_l2=relative(sum(squared_error(norm, cosine * exact, cosine * shown)), norm),
+        irradiance_relative_l2=relative(sum(squared_error(norm, *map(irradiance.from_source, (own, shading)))), norm),
         extremes=error_grid(light, grid_rows(what.n_bands)).compare(shown),
     )
 

@@ -13,6 +13,7 @@ from operator import index
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from shviewer.errors import UsageError
+from shviewer.harmonics import quantity
 
 T = TypeVar("T")
 
@@ -158,6 +159,25 @@ class Flag:
 
     def check(self, name: str, value: Any) -> None:
         """Accept both values."""
+
+
+class Quantity:
+    """The name of a quantity."""
+
+    words = (quantity.RADIANCE, quantity.IRRADIANCE, f"{quantity.GLOSSY}0.5")
+    """Some of its names."""
+
+    def taken(self, name: str, value: Any) -> Any:
+        if not isinstance(value, str):
+            raise UsageError(f"{name} {value!r}: {quantity.RULE}")
+        try:
+            return quantity.quantity_of(value)
+        except ValueError as error:
+            raise UsageError(f"{name} {error}") from error
+
+    def check(self, name: str, value: Any) -> None:
+        if self.taken(name, value) != value:
+            raise UsageError(f"{name} {value!r}: it is written {self.taken(name, value)!r}")
 
 
 class Bands(NamedTuple):

@@ -15,7 +15,7 @@ from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import Subject
 from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.parts.quantities import IRRADIANCE, whole
+from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, whole
 from shviewer.coefficients.stamp import Value, stamp_of
 from shviewer.coefficients.suns import sun_keys
 from shviewer.coefficients.texts import parse_convention
@@ -48,7 +48,8 @@ ERRORS = (
 class Projected:
     """Coefficients of a light in our convention, (n**2, 3) float64: muted bands are zero and the window is applied.
 
-    `quantity` is "radiance" or "irradiance"; `figures` compare them with the light. `about` says where they come from.
+    `quantity` is "radiance", "irradiance" or one such as "glossy:0.4"; `figures` compare them with the light. `about` says
+    where they come from.
     """
 
     coefficients: Array
@@ -57,7 +58,7 @@ class Projected:
     about: dict[str, Value]
     name: str
     relative_l2_as: dict[str, float] = field(default_factory=dict)
-    """The relative L2 errors of "radiance" and of "irradiance", whichever the coefficients hold."""
+    """The relative L2 errors of "radiance", of "irradiance" and of the quantity, whichever the coefficients hold."""
     suns: tuple[Sun, ...] = ()
     """The suns left out of the light, and so of the coefficients; the greatest flux first, in our axes."""
     inputs: tuple[Path, ...] = ()
@@ -140,10 +141,11 @@ def project_recipe(recipe: Recipe) -> Projected:
     """The coefficients that the window shows for a recipe. LightError or UsageError, as in `reconstruction_of`."""
     found = reconstruction_of(recipe)
     shown, projection, figures = found.subject, found.projection, found.figures
-    both = {"radiance": figures.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
-    if recipe.quantity == IRRADIANCE:
-        of_radiance = reconstruction_of(replace(recipe, quantity="radiance"))
-        both = {"radiance": of_radiance.figures.relative_l2, IRRADIANCE: figures.relative_l2}
+    of_radiance = figures
+    if recipe.quantity != RADIANCE:
+        of_radiance = reconstruction_of(replace(recipe, quantity=RADIANCE)).figures
+    errors = {RADIANCE: of_radiance.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
+    errors[recipe.quantity] = figures.relative_l2
     about: dict[str, Value] = {
         **_light(recipe, shown),
         "window": _window(recipe),
@@ -158,7 +160,7 @@ def project_recipe(recipe: Recipe) -> Projected:
     inputs = tuple(path for path in map(file_of, given) if path)
     notes = (*shown.light.notes, *([shown.refusal] if shown.refusal else []))
     return Projected(
-        found.coefficients, recipe.quantity, figures, about, shown.light.name, both, shown.suns, inputs, notes
+        found.coefficients, recipe.quantity, figures, about, shown.light.name, errors, shown.suns, inputs, notes
     )
 
 

@@ -38,6 +38,8 @@ class Projection:
     evaluations: int | None
     milliseconds: float | None
     """The time; None if nothing was projected: given coefficients, or some that the light had kept."""
+    radiance: Array
+    """The coefficients of the light's source, from which those of another quantity follow."""
 
     @property
     def n_bands(self) -> int:
@@ -85,7 +87,7 @@ def way_of(recipe: Recipe) -> tuple[str, int, int]:
 
 
 def project(light: Light, method: str | CoefficientLight, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project a light; the irradiance of a sampled light comes from the samples of the light itself.
+    """Project a light; another quantity of a sampled light comes from the samples of the light itself.
 
     method: "best", "jittered" or "gauss-legendre", or given coefficients, which are then used instead.
     """
@@ -106,7 +108,7 @@ def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
 
 
 def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Measurement]:
-    known: OrderedDict[Any, Measurement] = MEMORY.results(light, (Measurement, light is light.source, n_bands))
+    known: OrderedDict[Any, Measurement] = MEMORY.results(light, (Measurement, light.quantity, n_bands))
     return known
 
 
@@ -132,8 +134,8 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
 
 @remember(most=8)
 def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Projection:
-    coefficients = light.from_source(given.coefficients(n_bands))
-    return Projection(coefficients, f"read as {given.convention}", None, None)
+    radiance = given.coefficients(n_bands)
+    return Projection(light.from_source(radiance), f"read as {given.convention}", None, None, radiance)
 
 
 @remember(most=32, doing="projecting")
@@ -149,7 +151,7 @@ def _measured_projection(light: Light, method: str, samples: int, seed: int, n_b
 
 
 def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project and take the time: of an irradiance that of its source, of coefficients that the light has kept none."""
+    """Project and take the time: of a convolved light that of its source, of coefficients that the light has kept none."""
     if light is not light.source:
         source = project(light.source, method, samples, seed, n_bands)
         return replace(source, coefficients=light.from_source(source.coefficients))
@@ -168,4 +170,5 @@ def _timed_projection(light: Light, method: str, samples: int, seed: int, n_band
         kept = n_bands <= light.kept_bands
         coefficients = light.coefficients(n_bands)
         words = light.best_method
-    return Projection(coefficients, words, evaluations, None if kept else 1000 * (perf_counter() - start))
+    spent = None if kept else 1000 * (perf_counter() - start)
+    return Projection(coefficients, words, evaluations, spent, coefficients)

@@ -5,7 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from shviewer.analysis.options import Bands, Choice, Flag, Number, Share, Whole, WholeOr, check_options, option
+from shviewer.analysis.options import (
+    Bands,
+    Choice,
+    Flag,
+    Number,
+    Quantity,
+    Share,
+    Whole,
+    WholeOr,
+    check_options,
+    option,
+)
+from shviewer.harmonics.quantity import RADIANCE
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
 
@@ -14,7 +26,6 @@ if TYPE_CHECKING:
     from shviewer.lights.light import Light
 
 METHODS = ("best", "jittered", "gauss-legendre")
-QUANTITIES = ("radiance", "irradiance")
 WINDOWS = ("none", "hann", "lanczos", "gauss", "dering")
 
 
@@ -49,9 +60,10 @@ class Recipe:
         "T",
     )
     quantity: str = option(
-        "radiance",
-        Choice(QUANTITIES),
-        "radiance (default), or irradiance: what a white Lambertian surface receives",
+        RADIANCE,
+        Quantity(),
+        "radiance (default), irradiance: what a white Lambertian surface receives, or glossy:R, such as glossy:0.4: what a"
+        " glossy surface of roughness R reflects (0.1 to 1)",
         "--for",
         "WHAT",
     )

@@ -10,6 +10,7 @@ from shviewer.analysis.cache import MEMORY, remember
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import LightError
 from shviewer.files import FileVersion
+from shviewer.harmonics.quantity import RADIANCE
 from shviewer.lights.find import built_in_lights, file_version, find_light
 from shviewer.lights.light import Light, Split
 from shviewer.lights.suns.sun import Sun
@@ -29,7 +30,7 @@ class Subject:
 
 
 def subject(recipe: Recipe) -> Subject:
-    """The subject of a recipe: its light or, for that quantity, the irradiance of its light."""
+    """The subject of a recipe: the quantity of its light that the recipe names."""
     light = recipe.light
     if isinstance(light, str):
         light = MEMORY.named(_name(recipe)) or read_again(recipe)
@@ -37,9 +38,10 @@ def subject(recipe: Recipe) -> Subject:
     if recipe.split_sun:
         split = _split(light, recipe.suns)
         found = replace(found, refusal=split) if isinstance(split, str) else Subject(light, split.rest, split.suns)
-    if recipe.quantity == "irradiance":
-        return replace(found, whole=irradiance_of(found.whole), light=irradiance_of(found.light))
-    return found
+    if recipe.quantity == RADIANCE:
+        return found
+    whole, projected = (through(part, recipe.quantity) for part in (found.whole, found.light))
+    return replace(found, whole=whole, light=projected)
 
 
 def load_light(recipe: Recipe) -> Light:
@@ -91,7 +93,7 @@ def _split(light: Light, wanted: int | str) -> Split | str:
     return split
 
 
-@remember(most=4, doing="making the irradiance")
-def irradiance_of(light: Light) -> Light:
-    """The irradiance of a light, remembered with it; an irradiance is its own."""
-    return light.irradiance()
+@remember(most=24, doing="convolving the light")
+def through(light: Light, quantity: str) -> Light:
+    """Another quantity of a light, remembered with it; itself, if it is that."""
+    return light.through(quantity)

@@ -16,6 +16,7 @@ from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.status_line import bar, status_line
 from shviewer.coefficients.convention import Convention
 from shviewer.errors import OutputError, ShviewerError, within_memory
+from shviewer.harmonics.quantity import IRRADIANCE, RADIANCE, in_words
 from shviewer.lights.find import is_code, split_light
 from shviewer.outputs import Replacing, file_stem, write_atomically
 from shviewer.words import one_line
@@ -102,17 +103,23 @@ def _free(folder: Path, stem: str, kind: str, taken: set[str]) -> Path:
 
 
 def summary(rows: Sequence[Row]) -> str:
-    """A table: light, bands, relative L2 errors of both quantities, the minimum of the one that is written, and the file."""
+    """A table: light, bands, relative L2 errors of the quantities, the minimum of the one that is written, and the file."""
     width = max(len("light"), *(min(len(row.light), 40) for row in rows))
-    lines = [f"{'light':<{width}}  bands   radiance  irradiance     minimum  file"]
+    done = [row.projected for row in rows if row.projected is not None]
+    quantities = list(done[0].relative_l2_as) if done else [RADIANCE, IRRADIANCE]
+    heads = "  ".join(f"{in_words(quantity):>10}" for quantity in quantities)
+    lines = [f"{'light':<{width}}  bands {heads}     minimum  file"]
     for row in rows:
         label = row.light if len(row.light) <= 40 else f"...{row.light[-37:]}"
         if row.projected is None:
             lines.append(f"{label:<{width}}  failed")
             continue
-        radiance, irradiance = (error_in_percent(row.projected, quantity) for quantity in ("radiance", "irradiance"))
+        errors = "  ".join(
+            f"{error_in_percent(row.projected, quantity):>{max(10, len(in_words(quantity)))}}"
+            for quantity in quantities
+        )
         minimum = row.projected.figures.extremes.minimum
-        numbers = f"{row.projected.n_bands:>5}  {radiance:>9}  {irradiance:>10}  {minimum:>10.4g}"
+        numbers = f"{row.projected.n_bands:>5} {errors}  {minimum:>10.4g}"
         lines.append(f"{label:<{width}}  {numbers}  {row.file}")
     written = sum(row.projected is not None for row in rows)
     return "\n".join([*lines, f"{written} of {len(rows)} written"])

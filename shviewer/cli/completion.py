@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from shviewer.analysis.options import Choice, WholeOr, options_of
+from shviewer.analysis.options import Choice, Quantity, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.options import PARSERS
 from shviewer.coefficients.programs import CONVENTIONS
@@ -47,7 +47,7 @@ def _flags(mode: str) -> list[_Flag]:
     for action in PARSERS[mode]()._actions:
         kind = kinds.get(action.dest)
         words: Iterable[str] = action.choices or WORDS.get(action.dest, ())
-        if isinstance(kind, Choice | WholeOr):
+        if isinstance(kind, Choice | WholeOr | Quantity):
             words = kind.choices if isinstance(kind, Choice) else kind.words
         help_line = re.sub(r"\s+", " ", (action.help or "").replace("%%", "%"))
         if action.option_strings and action.help != argparse.SUPPRESS:

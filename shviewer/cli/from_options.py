@@ -12,6 +12,7 @@ from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
 from shviewer.errors import UsageError
+from shviewer.harmonics.quantity import IRRADIANCE, RADIANCE, in_words
 from shviewer.outputs import Replacing
 from shviewer.words import one_line
 
@@ -195,11 +196,10 @@ def _fitted(recipe: Recipe) -> Recipe:
     from shviewer.analysis.figures import estimate_from_samples, needs
 
     found = needs(recipe)
-    counts = {"radiance": found.radiance, "irradiance": found.irradiance}
+    counts = {RADIANCE: found.radiance, IRRADIANCE: found.irradiance, in_words(recipe.quantity): found.shown}
     says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
     print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
-    wanted = counts[recipe.quantity]
-    if wanted is None:
+    if found.shown is None:
         print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
     if recipe.method == "jittered":
         guess = estimate_from_samples(recipe)
@@ -208,7 +208,7 @@ def _fitted(recipe: Recipe) -> Recipe:
         else:
             says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
         print(f"shviewer: the samples alone say {says}", file=sys.stderr)
-    return replace(recipe, n_bands=wanted or found.best_bands)
+    return replace(recipe, n_bands=found.shown or found.best_bands)
 
 
 def reading_from(options: argparse.Namespace, start: Reading | None = None) -> Reading:

@@ -8,11 +8,13 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Container
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
-from shviewer.analysis.options import Bands, Number, Option, Pair, Share, Whole, WholeOr, options_of
+from shviewer.analysis.options import Bands, Number, Option, Pair, Quantity, Share, Whole, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
+from shviewer.harmonics.quantity import quantity_of
 from shviewer.words import one_line
 
 LIGHT_HELP = (
@@ -61,6 +63,13 @@ def add_table(parser: OneLineParser, holder: type, names: Container[str] = ()) -
             parser.add_argument(row.flag, dest=row.name, help=row.help.replace("%", "%%"), **takes)
 
 
+def _quantity(text: str) -> str:
+    """The one name of a quantity; a text that is none is refused with the other options."""
+    with suppress(ValueError):
+        return quantity_of(text)
+    return text
+
+
 def _values(row: Option) -> dict[str, Any]:
     """The arguments of `add_argument` about an option's values."""
     if row.name in TEXTS:
@@ -71,6 +80,7 @@ def _values(row: Option) -> dict[str, Any]:
         WholeOr: _whole_or_word,
         Number: finite,
         Bands: _band_list,
+        Quantity: _quantity,
     }
     reader = _count if row.name in LARGE else readers.get(type(row.kind), str)
     if isinstance(row.kind, Pair):

@@ -26,6 +26,7 @@ from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError
+from shviewer.harmonics.quantity import in_words
 from shviewer.harmonics.rotation import turn
 from shviewer.outputs import Replacing, file_stem, write_atomically
 from shviewer.words import counted
@@ -132,9 +133,13 @@ def _project_one(
         replacing.check(path)
         projected = noted()
     write_atomically(path, projected.encode(convention, kind or "json"))
-    radiance, irradiance = (error_in_percent(projected, quantity) for quantity in ("radiance", "irradiance"))
+    radiance, *others = (error_in_percent(projected, quantity) for quantity in projected.relative_l2_as)
+    as_others = "".join(
+        f", as {in_words(quantity)} {error}"
+        for quantity, error in zip([*projected.relative_l2_as][1:], others, strict=True)
+    )
     bands = counted(projected.n_bands, "band")
-    print(f"wrote {path}: {bands}, radiance within {radiance.removeprefix('< ')}, as irradiance {irradiance}")
+    print(f"wrote {path}: {bands}, radiance within {radiance.removeprefix('< ')}{as_others}")
     warn_below_zero(projected)
 
 

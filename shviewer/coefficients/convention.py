@@ -2,7 +2,8 @@
 
 Ours (basis.py): orthonormal, Condon-Shortley phase kept, z polar and up, right-handed, index l(l+1) + m. With c(l, m) our
 coefficients of a function, those of another program are, step by step,
-    quantity   times A(l) for irradiance (filters.py), then over pi where the program does not divide by pi itself;
+    quantity   times A(l) for irradiance (filters.py), then over pi where the program does not divide by pi itself; times f(l)
+               for a glossy quantity (glossy.py);
     axes       the same function in the program's axes (axes.py);
     phase      times (-1)^m where the program's basis has no Condon-Shortley phase;
     scale      times f(l, m) of SCALES (scales.py), since the program's basis functions are ours over f;
@@ -44,7 +45,7 @@ class Convention:
     """Which of the program's axes are x, y and z of its basis, if z is not its polar axis."""
     scale: str = "orthonormal"
     quantity: str | None = None
-    """One of QUANTITIES; None if the program takes any, or if the file has to say."""
+    """One of QUANTITIES, or a glossy one; None if the program takes any, or if the file has to say."""
     mirrored: bool = False
     """Whether c(l, m) is stored at l(l+1) - m."""
     complex: bool = False
@@ -100,9 +101,10 @@ class Convention:
         return np.asarray(mirrored_orders(n_bands)[order]) if self.mirrored else order
 
     def from_ours(self, coefficients: Array, quantity: str = RADIANCE) -> NDArray[np.generic]:
-        """Our coefficients (n**2, k) of `quantity`, "radiance" or "irradiance" -> the program's, float64 or complex128.
+        """Our coefficients (n**2, k) of `quantity`, such as "radiance" -> the program's, float64 or complex128.
 
-        ValueError for too many bands, or if the program wants radiance and the irradiance given tells nothing of some degree.
+        ValueError for too many bands, or if the program wants radiance and the irradiance given tells nothing of some degree,
+        or wants another quantity than a glossy one that is given.
         """
         n_bands = count_bands(coefficients)
         self.check_bands(n_bands)

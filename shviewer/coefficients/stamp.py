@@ -4,7 +4,7 @@ Schema 1. A reader needs the first three keys; the others are for people, and mu
 
     shviewer-coefficients   1
     convention              a text for parse_convention, such as "three" or "shviewer,y-up,no-phase"
-    quantity                radiance or irradiance, perhaps -over-pi
+    quantity                radiance or irradiance, perhaps -over-pi, or glossy:R of a roughness R, such as glossy:0.4
     basis, phase, index, axes, normalisation, one-over-pi     what `convention` and `quantity` mean, in set words
     program, layout         the program that reads it, and how the program itself arranges the numbers
     bands, rows, columns    n, n^2, and the names of the columns
@@ -30,6 +30,7 @@ from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.quantities import QUANTITIES, is_over_pi
 from shviewer.coefficients.texts import convention_text, parse_convention
 from shviewer.errors import LightError
+from shviewer.harmonics.quantity import GLOSSY, quantity_of
 from shviewer.words import one_line
 
 SCHEMA = 1
@@ -78,6 +79,13 @@ def safe(said: Mapping[str, object]) -> Stamp:
     }
 
 
+def _is_glossy(quantity: object) -> bool:
+    try:
+        return isinstance(quantity, str) and quantity.startswith(GLOSSY) and quantity_of(quantity) == quantity
+    except ValueError:
+        return False
+
+
 def read_stamp(stamp: Stamp) -> Convention:
     """The convention that a stamp states, with its quantity.
 
@@ -89,9 +97,10 @@ def read_stamp(stamp: Stamp) -> Convention:
             f"{SCHEMA_KEY} {schema}: this version reads schema {SCHEMA}; update shviewer, or write the file again with this one"
         )
     text, quantity = stamp.get("convention"), stamp.get("quantity")
-    if not isinstance(text, str) or quantity not in QUANTITIES:
+    if not isinstance(text, str) or not (quantity in QUANTITIES or _is_glossy(quantity)):
         raise LightError(
-            f"convention {text!r}, quantity {quantity!r}: a stamp needs both, the latter one of {', '.join(QUANTITIES)}"
+            f"convention {text!r}, quantity {quantity!r}: a stamp needs both, the latter one of {', '.join(QUANTITIES)} or "
+            "glossy:R, such as glossy:0.4"
         )
     try:
         convention = parse_convention(text)

@@ -12,6 +12,7 @@ from shviewer.coefficients.parts.quantities import QUANTITIES
 from shviewer.coefficients.parts.rows import ACN, ORDERS
 from shviewer.coefficients.parts.scales import SCALES
 from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
+from shviewer.harmonics.quantity import GLOSSY, quantity_of
 
 SHIFTED = "shifted"
 """The modifier of a list whose mean is less by SHIFT, as 3D Gaussian splatting has it."""
@@ -55,7 +56,8 @@ def parse_convention(text: str) -> Convention:
 
 def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
     """The aspect that the modifier changes, and the convention changed."""
-    if modifier in QUANTITIES:
+    if modifier in QUANTITIES or modifier.startswith(GLOSSY):
+        modifier = modifier if modifier in QUANTITIES else quantity_of(modifier)
         fixed = CONVENTIONS[convention.name].quantity
         if fixed not in (None, modifier):
             raise ValueError(f"{modifier} contradicts {convention.name}, which takes {fixed}")

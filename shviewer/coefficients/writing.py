@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from collections.abc import Callable, Iterable
 
 import numpy as np
@@ -75,7 +76,7 @@ def _h(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Conven
 def _glsl(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
     factors = convention.basis_factors(count_bands(numbers))
     rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
-    quantity = str(stamp["quantity"]).replace("-", "_")
+    quantity = re.sub(r"\W", "_", str(stamp["quantity"]))
     return glsl_source(
         name, quantity, _comment_lines("//", stamp), rows, factors, convention.shift, convention.pole.text
     ).encode()

@@ -21,7 +21,7 @@ from shviewer.coefficients.stamp import SUNS_KEY
 from shviewer.coefficients.texts import convention_text
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.irradiance import BandLimitedIrradiance, FiniteSum, RadianceLight
+from shviewer.lights.convolved import ConvolvedSum, FiniteSum, RadianceLight, convolved
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import About, Light
 from shviewer.lights.reading import DEFAULT_READING, Reading
@@ -107,10 +107,10 @@ class CoefficientLight(FiniteSum, RadianceLight):
             notes = (*notes, f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright")
         if self.quantity == RADIANCE:
             return notes
-        lost = recovered_radiance(self.file.coefficients)[1]
+        lost = recovered_radiance(self.file.coefficients, self.quantity)[1]
         bands = f"band{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}"
         unknown = f", which tells nothing of {bands}" if lost else ""
-        return (*notes, f"holds irradiance; the radiance is recovered from it{unknown}")
+        return (*notes, f"holds {self.quantity}; the radiance is recovered from it{unknown}")
 
     @cached_property
     def synthesis(self) -> Synthesis:
@@ -129,8 +129,12 @@ class CoefficientLight(FiniteSum, RadianceLight):
     def products(self) -> Array:
         return np.asarray(self.given.T @ self.given)
 
-    def irradiance(self) -> Light:
-        return BandLimitedIrradiance(self, self.n_bands)
+    def through(self, quantity: str) -> Light:
+        return convolved(self, quantity, ConvolvedSum)
+
+    @property
+    def most_bands(self) -> int:
+        return self.n_bands
 
     @cached_property
     def map(self) -> LatLongMap:
@@ -139,4 +143,4 @@ class CoefficientLight(FiniteSum, RadianceLight):
 
 def _radiance(held: Array, quantity: str) -> Array:
     """The radiance of which coefficients (n**2, 3) hold that quantity."""
-    return held if quantity == RADIANCE else recovered_radiance(held)[0]
+    return held if quantity == RADIANCE else recovered_radiance(held, quantity)[0]

@@ -15,8 +15,8 @@ from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
+from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.images.radiance_files import read_radiance_image
-from shviewer.lights.irradiance import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Indices, Layout

@@ -17,7 +17,7 @@ from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
 from shviewer.harmonics.basis import Array, check_bands
 from shviewer.harmonics.sampling.sampled import Sampled, sample
-from shviewer.lights.irradiance import RadianceLight
+from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.limits import DEFAULT_LIMITS, Limits, check_brightness
 from shviewer.words import grouped, theta_phi_degrees
@@ -127,6 +127,10 @@ class FunctionLight(RadianceLight):
     def coefficients(self, n_bands: int) -> Array:
         check_bands(n_bands, SAMPLED_BANDS)
         return self._sampled.coefficients[: n_bands**2]
+
+    @property
+    def most_bands(self) -> int:
+        return SAMPLED_BANDS
 
     @property
     def kept_bands(self) -> int:

@@ -44,9 +44,9 @@ class LatLongMap(Raster):
         return all(_are_halves(self.texels[top : top + rows]) for top in range(0, len(self.texels), rows))
 
     @classmethod
-    def pole_to_pole(cls, rows: Callable[[Array, int], Array]) -> LatLongMap:
-        """The map, of MAP_ROWS rows, of a smooth function: rows(theta (k,), n_columns) -> (k, 3, n_columns)."""
-        values = rows(np.linspace(0, np.pi, MAP_ROWS), 2 * (MAP_ROWS - 1)).transpose(0, 2, 1)
+    def pole_to_pole(cls, rows: Callable[[Array, int], Array], n_rows: int = MAP_ROWS) -> LatLongMap:
+        """The map, of `n_rows` rows, of a smooth function: rows(theta (k,), n_columns) -> (k, 3, n_columns)."""
+        values = rows(np.linspace(0, np.pi, n_rows), 2 * (n_rows - 1)).transpose(0, 2, 1)
         return cls(np.ascontiguousarray(values, dtype=np.float32), rows_on_poles=True)
 
     def sample(self, directions: Array) -> Array:

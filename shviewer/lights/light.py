@@ -13,6 +13,7 @@ from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Form
 from shviewer.harmonics.quadrature import evaluate_rows
+from shviewer.harmonics.quantity import IRRADIANCE
 from shviewer.lights.lat_long import LatLongMap
 
 if TYPE_CHECKING:  # types that only some lights use are imported with those lights
@@ -68,6 +69,10 @@ class Light(Protocol):
         """Coefficients (n_bands**2, 3) by the best way this light knows."""
 
     @property
+    def most_bands(self) -> int:
+        """The most bands that it has: `coefficients` can give no more, or nothing but zeros."""
+
+    @property
     def kept_bands(self) -> int:
         """How many bands `coefficients` has at hand, so that asking for no more takes no time worth measuring."""
 
@@ -86,13 +91,20 @@ class Light(Protocol):
 
     @property
     def source(self) -> Light:
-        """The light whose irradiance it is; itself, if it is radiance."""
+        """The light that was convolved to make it; itself, if it is radiance."""
+
+    @property
+    def quantity(self) -> str:
+        """The quantity that its values are: "radiance", "irradiance" or "glossy:0.4"."""
 
     def from_source(self, coefficients: Array) -> Array:
         """Coefficients (n**2, 3) of the source -> those of this light."""
 
+    def through(self, quantity: str) -> Light:
+        """Another quantity of its source as a light, a new one at each call; itself, if it is that. ValueError if unknown."""
+
     def irradiance(self) -> Light:
-        """Its irradiance as a light, a new one at each call; itself, if it is irradiance."""
+        """`through("irradiance")`"""
 
     def irradiance_up(self) -> Array:
         """The irradiance of a surface that faces +z, (3,)."""
@@ -144,6 +156,9 @@ class LightBase(ABC):
 
     @abstractmethod
     def radiance(self, directions: Array) -> Array: ...
+
+    def irradiance(self: Light) -> Light:
+        return self.through(IRRADIANCE)
 
     def rows(self, theta: Array, n_columns: int) -> Array:
         return evaluate_rows(self.radiance, theta, n_columns)

@@ -13,7 +13,7 @@ from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.extremes.zonal_table import around_edge
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Constant, Disc
-from shviewer.lights.irradiance import UP, LobeIrradiance, RadianceLight
+from shviewer.lights.convolved import UP, ConvolvedLobes, RadianceLight, convolved
 from shviewer.lights.light import Light, Split
 from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.limits import check_brightness
@@ -63,8 +63,8 @@ class LobeLight(RadianceLight):
     def form(self) -> Lobes:
         return lobes_form([lobe.profile for lobe in self.lobes], self.lobes)
 
-    def irradiance(self) -> Light:
-        return LobeIrradiance(self)
+    def through(self, quantity: str) -> Light:
+        return convolved(self, quantity, ConvolvedLobes)
 
     def irradiance_up(self) -> Array:
         return np.asarray(self.irradiance().radiance(UP[None])[0])

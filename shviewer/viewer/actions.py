@@ -10,6 +10,14 @@ from typing import Any
 from shviewer.analysis.options import Choice, options_of
 from shviewer.analysis.recipe import WINDOWS, Recipe, light_name
 from shviewer.harmonics.basis import Array, degree_order, index
+from shviewer.harmonics.quantity import (
+    IRRADIANCE,
+    LEAST_ROUGHNESS,
+    MOST_ROUGHNESS,
+    RADIANCE,
+    glossy,
+    roughness_of,
+)
 from shviewer.lights.find import is_image
 from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES
@@ -51,6 +59,25 @@ def next_choice(state: State, name: str) -> State:
     kind = OPTIONS[name].kind
     assert isinstance(kind, Choice)
     return changed(state, **{name: _after(_held(state, name), kind.choices)})
+
+
+def next_quantity(state: State) -> State:
+    """Go from radiance to irradiance, to the glossy quantity shown last, and back."""
+    match state.recipe.quantity:
+        case "radiance":
+            return changed(state, quantity=IRRADIANCE)
+        case "irradiance":
+            return changed(state, quantity=glossy(state.view.roughness))
+        case shown:
+            return changed(state, quantity=RADIANCE, roughness=roughness_of(shown))
+
+
+def rougher(state: State, step: float) -> State:
+    """Show a glossy quantity of more roughness, or of less; at first that shown last."""
+    now = roughness_of(state.recipe.quantity)
+    wanted = state.view.roughness if now is None else round(now / abs(step)) * abs(step) + step
+    roughness = round(min(max(wanted, LEAST_ROUGHNESS), MOST_ROUGHNESS), 6)
+    return changed(state, quantity=glossy(roughness), roughness=roughness)
 
 
 def toggle(state: State, name: str) -> State:

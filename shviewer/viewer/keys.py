@@ -10,6 +10,7 @@ from functools import partial
 from typing import NamedTuple, TypeVar
 
 from shviewer.analysis.recipe import light_name
+from shviewer.harmonics.quantity import in_words
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import actions as do
 from shviewer.viewer.actions import Command
@@ -22,6 +23,9 @@ from shviewer.viewer.state import (
     describe_muted,
     describe_sanitizing,
 )
+
+ROUGHER = 0.05
+"""A step of roughness."""
 
 T = TypeVar("T")
 
@@ -91,7 +95,8 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
             _each(do.next_light, {"Left": -1, "Right": 1}),
             lambda s: light_name(s.recipe.light),
         ),
-        Binding("I", "radiance or irradiance", _each(do.next_choice, {"I": "quantity"}), lambda s: s.recipe.quantity),
+        Binding("I", "radiance, irradiance or glossy", {"I": do.next_quantity}, lambda s: in_words(s.recipe.quantity)),
+        Binding("K / Shift+K", "rougher, smoother surface", _each(do.rougher, {"K": ROUGHER, "Shift+K": -ROUGHER})),
         Binding(
             "U",
             "sun as a disc of its own",

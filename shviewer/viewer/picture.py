@@ -20,6 +20,7 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
+from shviewer.lights.suns.sun import points_of_suns
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.derived import camera_of, error_scale, exposure_stops, reconstruction_map, surfaces
@@ -30,7 +31,7 @@ from shviewer.viewer.tone import steepest
 
 LIVE = (
     *("camera", "light_rotation", "zoom", "marks", "cursor", "cursor_visible"),
-    *("sweep_to", "help_visible", "message", "layout_tried"),
+    *("sweep_to", "help_visible", "message", "roughness", "layout_tried"),
 )
 """Fields of the view on which nothing depends that takes time."""
 
@@ -228,4 +229,5 @@ def _height(largest: float, scale: ErrorScale | None, exposure: float) -> float:
 
 
 def _sun_lobes(shown: Subject, quantity: str) -> tuple[Lobe, ...]:
-    return tuple(sun.irradiance_lobe if quantity == "irradiance" else sun.lobe for sun in shown.suns)
+    points = points_of_suns(len(shown.suns))
+    return tuple(lobe for sun in shown.suns for lobe in sun.lobes(quantity, points))

@@ -110,6 +110,8 @@ class View:
     """While a sweep plays, the number of bands at which it ends."""
     help_visible: bool = False
     message: str = ""
+    roughness: float = field(default=0.5, compare=False)
+    """The roughness shown last, to which the quantity returns."""
     layout_tried: str = field(default="", compare=False)
     """The layout asked for last, from which the next follows even if the image could not have it; "" for the reading's."""
 

@@ -502,7 +502,8 @@ def test_the_irradiance_lobe_is_exact_but_for_the_horizon():
     for elevation in np.radians([-3, -2, -1, -0.1, 0, 0.1, 1, 2, 3, 30, 90]):  # of the sun's centre
         normal = np.array([np.cos(elevation), 0, np.sin(elevation)])
         truth = np.maximum(points @ normal, 0).mean() * sun.flux
-        shown = sun.irradiance_lobe.profile.value(chord(normal, sun.axis) ** 2) * sun.irradiance_lobe.radiance
+        [lobe] = sun.lobes("irradiance", 7)
+        shown = lobe.profile.value(chord(normal, sun.axis) ** 2) * lobe.radiance
         bound = worst if abs(elevation) < sun.half_angle else 0
         assert (truth - shown >= -1e-5 * sun.irradiance).all()  # 1e-5: the quadrature of a disc that the horizon cuts
         assert (truth - shown <= (bound + 1e-5) * sun.irradiance).all()

@@ -58,7 +58,7 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space Y + - F1 Ctrl+C Ctrl+Shift+C Ctrl+E Ctrl+Q Ctrl+W"
+        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space Y K Shift+K + - F1 Ctrl+C Ctrl+Shift+C Ctrl+E Ctrl+Q Ctrl+W"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -91,6 +91,16 @@ def test_a_key_without_a_binding_changes_nothing() -> None:
     state = changed(START, message="kept")
     for key in ("Q", "", "Shift+Up", "Ctrl+1", "up"):
         assert press(state, key) is state
+
+
+def test_I_goes_round_the_quantities_and_comes_back_to_the_roughness_shown_last() -> None:
+    shown = [pressed(START, *keys.split()).recipe.quantity for keys in ("I", "I I", "I I I", "K", "K K", "K Shift+K")]
+    assert shown == ["irradiance", "glossy:0.5", "radiance", "glossy:0.5", "glossy:0.55", "glossy:0.45"]
+    assert pressed(START, "K", "K", "K", "I", "I", "I").recipe.quantity == "glossy:0.6"
+    assert pressed(changed(START, quantity="glossy:0.33"), "I", "I", "I").recipe.quantity == "glossy:0.33"
+    assert pressed(changed(START, quantity="glossy:0.33"), "K").recipe.quantity == "glossy:0.4"
+    assert pressed(START, *["K"] * 30).recipe.quantity == "glossy:1"
+    assert pressed(START, *["Shift+K"] * 30).recipe.quantity == "glossy:0.1"
 
 
 def test_a_bound_key_takes_the_message_away() -> None:
@@ -247,6 +257,7 @@ def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> 
         help_visible=True,
         sheet="plane",
         message="m",
+        roughness=0.2,
         layout_tried="cube",
     )
     for held in (other.recipe, other.view):

@@ -1,4 +1,4 @@
-"""What coefficients are of: radiance or irradiance, and whether they are divided by pi."""
+"""What coefficients are of: radiance, irradiance or a glossy quantity, and whether they are divided by pi."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
+from shviewer.harmonics.kernels import kernel_of
+from shviewer.harmonics.quantity import GLOSSY
 
 RADIANCE, RADIANCE_OVER_PI, IRRADIANCE, OVER_PI = QUANTITIES = (
     "radiance",
@@ -13,13 +15,19 @@ RADIANCE, RADIANCE_OVER_PI, IRRADIANCE, OVER_PI = QUANTITIES = (
     "irradiance",
     "irradiance-over-pi",
 )
-"""The last is the radiance of a white Lambertian surface; the second what a program holds that divides it before A(l)."""
+"""Those beside glossy ones, such as "glossy:0.4" (harmonics/quantity.py).
+
+The last is the radiance of a white Lambertian surface; the second what a program holds that divides it before A(l).
+"""
+
+LOST = 1e-9
+"""A factor below, of a kernel that is known to 1e-13, leaves no radiance to recover."""
 
 _PER_PI = "-over-pi"
 
 
 def whole(quantity: str) -> str:
-    """The quantity before it is divided by pi: "radiance" or "irradiance"."""
+    """The quantity before it is divided by pi: "radiance", "irradiance" or a glossy one."""
     return quantity.removesuffix(_PER_PI)
 
 
@@ -28,8 +36,10 @@ def is_over_pi(quantity: str | None) -> bool:
 
 
 def to_quantity(coefficients: Array, held: str, wanted: str) -> Array:
-    """Our coefficients of one quantity -> those of another. ValueError where A(l) = 0 hides the radiance."""
+    """Our coefficients of one quantity -> those of another. ValueError where A(l) = 0 hides the radiance, or one is glossy."""
     n_bands = count_bands(coefficients)
+    if held != wanted and GLOSSY in held + wanted:
+        raise ValueError(f"{held} cannot be written as {wanted}: project the light for {whole(wanted)}")
     if (whole(held), whole(wanted)) == (IRRADIANCE, RADIANCE):
         factors = irradiance_factors(n_bands)
         if lost := [int(l) for l in range(n_bands) if l > 1 and l % 2]:
@@ -42,13 +52,12 @@ def to_quantity(coefficients: Array, held: str, wanted: str) -> Array:
     return np.asarray(coefficients)
 
 
-def recovered_radiance(irradiance: Array) -> tuple[Array, list[int]]:
-    """Our coefficients of irradiance (n**2, k) -> those of a radiance with that irradiance, and the degrees that are lost.
+def recovered_radiance(held: Array, quantity: str) -> tuple[Array, list[int]]:
+    """Our coefficients (n**2, k) of a quantity -> those of a radiance with just these, and the degrees that are lost.
 
-    Lost are the odd degrees from 3 on, where A(l) = 0; their coefficients are returned as zero.
+    Lost are those whose factor is 0 or nearly, as A(l) for odd l from 3 on; their coefficients are returned as zero.
     """
-    n_bands = count_bands(irradiance)
-    lost = list(range(3, n_bands, 2))
-    factors = irradiance_factors(n_bands)
+    factors = kernel_of(quantity).factors(count_bands(held)).copy()
+    lost = [int(l) for l in np.flatnonzero(np.abs(factors) < LOST)]
     factors[lost] = np.inf
-    return irradiance / per_coefficient(factors), lost
+    return held / per_coefficient(factors), lost

@@ -22,8 +22,16 @@ import numpy as np
 
 from shviewer.coefficients.suns import DirectionalLight
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes.zonal_table import perpendicular
+from shviewer.harmonics.kernels import kernel_of
+from shviewer.harmonics.quantity import RADIANCE
 from shviewer.harmonics.zonal import ClampedLinear, Disc
 from shviewer.lights.lobe import Lobe
+
+
+def points_of_suns(count: int) -> int:
+    """In how many points each of so many suns is spread, so that all fit the shader."""
+    return 19 if count <= 3 else 7 if count <= 9 else 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +73,30 @@ class Sun:
     def lobe(self) -> Lobe:
         return Lobe(Disc(self.half_angle), self.axis, self.radiance)
 
-    @property
-    def irradiance_lobe(self) -> Lobe:
-        """The irradiance as a function of the surface normal, exact while the disc is all above or all below the horizon.
+    def lobes(self, quantity: str, points: int) -> list[Lobe]:
+        """A quantity of the sun as few lobes, as a function of the direction asked for.
 
-        Where the horizon cuts the disc it is too small: by 2a / 3 pi of `irradiance` if half of it has set, else by less.
+        Irradiance is exact while the disc is all above or all below the horizon. Where the horizon cuts the disc it is too
+        small: by 2a / 3 pi of `irradiance` if half of it has set, else by less. What a glossy surface reflects is that of
+        `points` suns without width, spread over the disc: 4, 7 or 19.
         """
-        return Lobe(ClampedLinear(), self.axis, self.irradiance)
+        kernel = kernel_of(quantity)
+        if kernel.profile is None:
+            return [self.lobe if quantity == RADIANCE else Lobe(ClampedLinear(), self.axis, self.irradiance)]
+        part = self.flux * (kernel.scale / points)
+        return [Lobe(kernel.profile, axis, part) for axis in self._spread(points)]
+
+    def _spread(self, points: int) -> Array:
+        """Directions on the disc, (points, 3), on rings that stand for equal areas and spread as much as the disc does."""
+        rings = {4: [4], 7: [1, 6], 19: [1, 6, 12]}[points]
+        ends = np.cumsum([0, *rings]) / points
+        middles = np.where(np.array(rings) == 1, 0, (ends[:-1] + ends[1:]) / 2)  # shares of the squared radius
+        middles *= 0.5 / (middles @ rings / points)
+        side = perpendicular(self.axis)
+        other = np.cross(self.axis, side)
+        found = []
+        for count, share in zip(rings, middles, strict=True):
+            turn = 2 * np.pi * np.arange(count)[:, None] / count
+            angle = 2 * np.arcsin(np.sin(self.half_angle / 2) * np.sqrt(share))
+            found.append(np.cos(angle) * self.axis + np.sin(angle) * (np.cos(turn) * side + np.sin(turn) * other))
+        return np.concatenate(found)

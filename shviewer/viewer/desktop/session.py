@@ -323,13 +323,12 @@ class Session:
         found = self.picture.needs
         if isinstance(found, Pending):  # never, once the picture is complete
             return
-        wanted = found.of(self.state.recipe.quantity)
-        if wanted is None:
+        if found.shown is None:
             best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"
             message = f"no band count is within {100 * found.tolerance:g} %: {best}"
             self.state = changed(with_bands(self.state, found.best_bands), message=message)
         else:
-            self.state = with_bands(self.state, wanted)
+            self.state = with_bands(self.state, found.shown)
 
     def _face_mark(self) -> None:
         """Turn the spheres so that the next mark is in front."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, index, normalisation
+from shviewer.harmonics.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import MAX_LOBES
@@ -95,6 +96,7 @@ def glsl_constants(chosen: Mapping[str, str | int] = MappingProxyType({})) -> st
         "PROFILE_CLAMPED_LINEAR": ClampedLinear.kind,
         "PROFILE_DISC": Disc.kind,
         "PROFILE_GAUSSIAN": Gaussian.kind,
+        "PROFILE_GLOSSY": Glossy.kind,
     }
     for name, values in (*CHOICES.items(), ("ERROR", ERROR_KINDS)):
         integers |= {f"{name}_{value}": number for number, value in enumerate(values)}

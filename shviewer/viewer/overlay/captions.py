@@ -5,6 +5,7 @@ from __future__ import annotations
 from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.metrics import LUMINANCE
+from shviewer.harmonics.quantity import RADIANCE, in_words
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK
 from shviewer.viewer.overlay.painter import Painter
@@ -20,7 +21,8 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
     left, right = (sphere.x for sphere in at.spheres[:2])
     muted = describe_muted(state.recipe)
     bands = f"{caption(state.recipe)}{counted(state.recipe.n_bands, 'band')}, {counted(state.recipe.n_bands**2, 'coefficient')}"
-    original = "Original" if state.recipe.quantity == "radiance" else "Irradiance"
+    quantity = state.recipe.quantity
+    original = "Original" if quantity == RADIANCE else in_words(quantity).capitalize()
     suns = len(picture.subject.suns)
     surfaces = picture.drawn.shown if isinstance(picture.drawn, Surfaces) else ()
     if surfaces and suns:

@@ -14,6 +14,7 @@ from PIL import Image, ImageDraw
 
 from shviewer.analysis.comparison import agrees
 from shviewer.analysis.figures import PENDING, Pending
+from shviewer.harmonics.quantity import in_words, roughness_of
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.captions import write_captions
 from shviewer.viewer.overlay.colour_bar import draw_colour_bar
@@ -125,6 +126,8 @@ def _write_hint(painter: Painter, picture: Picture, remark: str = "", status: st
         radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
         bands = "band" if needs.radiance == 1 else "bands"
         within = f"within {100 * needs.tolerance:g} %: {radiance} {bands}, for irradiance {irradiance}"
+        if roughness_of(state.recipe.quantity) is not None:
+            within += f", for {in_words(state.recipe.quantity)}: {needs.shown or f'over {needs.searched}'}"
     any(painter.text("exposure", far, y, text, 12, GREY, "rm") for text in (f"{within}     {stops}", within, stops))
     if not message:
         hints = [*_describe_suns(picture), HINT]

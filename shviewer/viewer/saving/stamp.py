@@ -34,7 +34,7 @@ SCHEMA = 1
 EVALUATED = {DirectSum: "direct", SplineMap: "map", Surfaces: "surfaces"}
 """The word in a stamp for each way to draw the reconstruction."""
 
-NOT_SEEN = ("layout_tried",)
+NOT_SEEN = ("roughness", "layout_tried")
 """Fields of the view that no pixel depends on."""
 
 LIMITS = ("side", "texels", "file_bytes")

@@ -26,6 +26,7 @@ from viewer.gl.frames import (
 )
 
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
@@ -120,6 +121,19 @@ def test_the_reconstruction_of_a_real_light_is_drawn_as_projected(renderer: Rend
     picture = picture_of(light, n_bands=n_bands, muted=frozenset({1, 3}))
     assert_sum_is_right(renderer, picture)
     assert isinstance(picture.drawn, DirectSum) == (n_bands <= 32)
+
+
+@pytest.mark.parametrize("roughness", [0.15, 0.3, 0.8])
+def test_the_sun_on_a_glossy_surface_is_drawn_as_the_cpu_computes_it(renderer: Renderer, roughness: float) -> None:
+    """The slope of a kernel is below 1.3 peaks in the angle roughness^2 in which it falls."""
+    view = {"camera": (107.0, 38.0), "split_sun": True, "quantity": f"glossy:{roughness}"}
+    picture = picture_of("sun-sky", n_bands=2, **view)
+    seen = picture_view(square_frame(), RECONSTRUCTION, picture)
+    wanted = picture.rest_at(seen.directions) + picture.suns_at(seen.directions)
+    assert wanted.max() > 10 * picture.rest_at(seen.directions).max()
+    tolerance = (4e-6 + 1.3 / roughness**2 * rounding(seen)) * wanted.max()
+    error = np.abs(linear(renderer, picture)[seen.mask] - wanted).max(axis=1)
+    assert (error <= tolerance).all(), (error / tolerance).max()
 
 
 # --- the original
@@ -446,10 +460,10 @@ def test_the_generated_constants_carry_every_digit() -> None:
     assert (
         f"#define LOBE_SLOTS {2 * MAX_LOBES + MAX_SUNS}\n" in text
     )  # of an original, of it without suns, and the suns
-    kinds = [profile.kind for profile in (Constant(), ClampedLinear(), Disc(1.0), Gaussian(1.0))]
-    names = ("CONSTANT", "CLAMPED_LINEAR", "DISC", "GAUSSIAN")
+    kinds = [profile.kind for profile in (Constant(), ClampedLinear(), Disc(1.0), Gaussian(1.0), Glossy(1.0))]
+    names = ("CONSTANT", "CLAMPED_LINEAR", "DISC", "GAUSSIAN", "GLOSSY")
     assert all(f"#define PROFILE_{name} {kind}\n" in text for name, kind in zip(names, kinds, strict=True))
-    assert len(set(kinds)) == 4
+    assert len(set(kinds)) == 5
     assert "np." not in text
 
 

@@ -199,7 +199,7 @@ def test_a_light_with_its_whole_path_is_found_beside_a_picture_that_was_moved_wi
     assert opened(tmp_path / "new" / "p.png").state.recipe.light == str(tmp_path / "new" / "sky.exr")
 
 
-@pytest.mark.parametrize("quantity", ["radiance", "irradiance"])
+@pytest.mark.parametrize("quantity", ["radiance", "irradiance", "glossy:0.6"])
 def test_where_the_light_is_gone_its_coefficients_are_shown(tmp_path: Path, quantity: str) -> None:
     light = image(tmp_path / "sky.exr")
     state = saved(tmp_path / "p.png", light=str(light), n_bands=3, muted=frozenset({1}), quantity=quantity, tone="log")

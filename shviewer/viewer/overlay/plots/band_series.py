@@ -61,7 +61,7 @@ def band_series(picture: Picture) -> BandSeries:
         exact=on_axis(errors_of(picture.light, *BEST)) if picture.complete and state.recipe.method != "best" else {},
         shown=max(figures.relative_l2, floor) if altered and np.isfinite(figures.relative_l2) else None,
         tolerance=state.recipe.tolerance,
-        needed=needs if isinstance(needs, Pending) else needs.of(state.recipe.quantity),
+        needed=needs if isinstance(needs, Pending) else needs.shown,
         energy=energy,
         kept={band: energy[band] * factor**2 for band, factor in enumerate(factors) if band in energy},
     )
