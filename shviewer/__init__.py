@@ -49,9 +49,18 @@ _HOMES = {
 def __getattr__(name: str) -> object:
     from importlib import import_module
 
+    import shviewer.notebook as notebook
+
     if name not in _HOMES:
         raise AttributeError(f"module 'shviewer' has no attribute {name!r}")
+    notebook.drawing = _drawing
     return getattr(import_module(_HOMES[name]), name)
+
+
+def _drawing(shown: object) -> bytes:
+    from shviewer.pictures import picture_bytes
+
+    return picture_bytes(shown)
 
 
 def __dir__() -> list[str]:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.analysis.options import taken, whole
+from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
-from shviewer.api import LightLike, recipe_of, with_options
+from shviewer.api import LightLike, find_light, recipe_of, with_options
 from shviewer.errors import UsageError
 from shviewer.viewer import screenshot as offscreen
 from shviewer.viewer.composition import compose
 from shviewer.viewer.picture import first_picture, prepare
+from shviewer.viewer.saving.picture_files import png_bytes
+from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.state import State
 from shviewer.viewer.view import View
 
@@ -39,6 +42,20 @@ def screenshot(
         return offscreen.render_rgb(
             renderer, picture, compose(*size, state.view.zoom, n_spheres=state.view.n_spheres), overlay=overlay
         )
+
+
+def picture_bytes(shown: object) -> bytes:
+    """The picture of a light, or of a projection as it was made, as a PNG with its stamp. GraphicsError without OpenGL 3.3."""
+    size = (1280, 640)
+    recipe = shown.recipe if isinstance(shown, Projected) else None
+    if isinstance(shown, Projected) and recipe is None:
+        shown = find_light(shown.coefficients)
+    state = State(recipe, View(), (recipe.light,)) if recipe else _state(cast(LightLike, shown), None, {}, size)
+    picture = prepare(state)
+    with offscreen.headless_renderer() as renderer:
+        composition = compose(*size, state.view.zoom, n_spheres=state.view.n_spheres)
+        pixels = offscreen.render_rgb(renderer, picture, composition)
+        return png_bytes(pixels, metadata(picture, composition, renderer.version))
 
 
 @with_options(Recipe, View)

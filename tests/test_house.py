@@ -25,6 +25,7 @@ ROOMS = (
         "files",
         "limits",
         "memory",
+        "notebook",
         "outputs",
         "progress",
         "resources",

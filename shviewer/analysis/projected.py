@@ -26,6 +26,7 @@ from shviewer.harmonics.extremes.error_grid import Triple
 from shviewer.harmonics.rotation import check_rotation, rotate
 from shviewer.lights.find import file_of
 from shviewer.lights.suns.sun import Sun
+from shviewer.notebook import InNotebooks
 from shviewer.outputs import Replacing, write_atomically
 from shviewer.version import __version__
 from shviewer.words import counted
@@ -45,7 +46,7 @@ ERRORS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Projected:
+class Projected(InNotebooks):
     """Coefficients of a light in our convention, (n**2, 3) float64: muted bands are zero and the window is applied.
 
     `quantity` is "radiance", "irradiance" or one such as "glossy:0.4"; `figures` compare them with the light. `about` says
@@ -65,6 +66,11 @@ class Projected:
     """The files that the light, and coefficients compared with it, were read from."""
     notes: tuple[str, ...] = ()
     """The notes on the light, such as negative texels, and why no sun was found where one was asked for."""
+    recipe: Recipe | None = None
+    """What was asked for: a notebook draws it. It may hold an image, so that it is not pickled."""
+
+    def __getstate__(self) -> dict[str, object]:
+        return vars(self) | {"recipe": None}
 
     @property
     def n_bands(self) -> int:
@@ -160,7 +166,7 @@ def project_recipe(recipe: Recipe) -> Projected:
     inputs = tuple(path for path in map(file_of, given) if path)
     notes = (*shown.light.notes, *([shown.refusal] if shown.refusal else []))
     return Projected(
-        found.coefficients, recipe.quantity, figures, about, shown.light.name, errors, shown.suns, inputs, notes
+        found.coefficients, recipe.quantity, figures, about, shown.light.name, errors, shown.suns, inputs, notes, recipe
     )
 
 

@@ -15,6 +15,7 @@ from shviewer.harmonics.extremes.error_grid import Form
 from shviewer.harmonics.quadrature import evaluate_rows
 from shviewer.harmonics.quantity import IRRADIANCE
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.notebook import InNotebooks
 
 if TYPE_CHECKING:  # types that only some lights use are imported with those lights
     from shviewer.coefficients.reading import CoefficientFile
@@ -147,7 +148,7 @@ class About:
     """The file they were read from."""
 
 
-class LightBase(ABC):
+class LightBase(InNotebooks, ABC):
     """The answers of a light that has no better ones."""
 
     @property

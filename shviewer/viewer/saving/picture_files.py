@@ -20,12 +20,17 @@ from shviewer.version import __version__
 
 def write_png(path: Path, pixels: NDArray[np.uint8], text: str, *, exclusive: bool = False) -> None:
     """Write a PNG with `text` under the key shviewer, or OutputError. exclusive: FileExistsError if `path` exists."""
+    write_atomically(path, png_bytes(pixels, text), exclusive=exclusive)
+
+
+def png_bytes(pixels: NDArray[np.uint8], text: str) -> bytes:
+    """A PNG with `text` under the key shviewer."""
     information = PngInfo()
     information.add_itxt("shviewer", text)
     information.add_text("Software", f"shviewer {__version__}")
     buffer = io.BytesIO()
     Image.fromarray(pixels).save(buffer, "PNG", compress_level=4, pnginfo=information)
-    write_atomically(path, buffer.getvalue(), exclusive=exclusive)
+    return buffer.getvalue()
 
 
 def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
