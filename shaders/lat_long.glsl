@@ -48,12 +48,31 @@ vec3 linear_row(sampler2D map, float row, float column, vec2 size, bool rows_on_
     return mix(texel_at(map, row, left, size.x), texel_at(map, row, left + 1.0, size.x), column - left);
 }
 
-vec3 linear_map_radiance(sampler2D map, vec3 direction, bool rows_on_poles) {
-    vec2 size = vec2(textureSize(map, 0));
-    vec2 position = map_position(direction, size, rows_on_poles);
+vec3 linear_at(sampler2D map, vec2 position, vec2 size, bool rows_on_poles) {
     float top = floor(position.x);
     return mix(linear_row(map, top, position.y, size, rows_on_poles),
                linear_row(map, top + 1.0, position.y, size, rows_on_poles), position.x - top);
+}
+
+// A map that is finer than the pixels is looked up SAMPLES times SAMPLES times in each, or what is bright and small would
+// flicker. Derivatives: to be called by all pixels.
+vec3 linear_map_radiance(sampler2D map, vec3 direction, bool rows_on_poles) {
+    vec2 size = vec2(textureSize(map, 0));
+    vec2 position = map_position(direction, size, rows_on_poles);
+#if SAMPLES == 1
+    return linear_at(map, position, size, rows_on_poles);
+#else
+    vec2 across = dFdx(position), up = dFdy(position);
+    across.y -= size.x * floor(across.y / size.x + 0.5);    // over the seam
+    up.y -= size.x * floor(up.y / size.x + 0.5);
+    vec3 sum = vec3(0.0);
+    for (int j = 0; j < SAMPLES; ++j)
+        for (int i = 0; i < SAMPLES; ++i) {
+            vec2 shift = (vec2(i, j) + 0.5) / float(SAMPLES) - 0.5;
+            sum += linear_at(map, position + shift.x * across + shift.y * up, size, rows_on_poles);
+        }
+    return sum / float(SAMPLES * SAMPLES);
+#endif
 }
 
 // The quadratic B-splines of the nodes at -1, 0 and 1, at t in [-1/2, 1/2].

@@ -23,11 +23,11 @@ from shviewer.viewer.surface import (
     LIGHT_ROWS,
     Surface,
     basis_surface,
-    common_scale,
     rows_for,
     sample_light,
     sample_reconstruction,
     surface,
+    unit_radius,
 )
 from shviewer.viewer.tone import exposed_for
 from shviewer.viewer.view import TONES, View
@@ -40,7 +40,7 @@ WHITE_LEVEL = 0.8
 
 FACING, ASIDE = (0.0, 12.0), (-45.0, 22.0)
 """Degrees to the left of the light's mean direction, and elevation, of the camera that faces a map, and one that sees the sides
-of lobes."""
+of lobes and surfaces."""
 
 LEVEL = 0.012
 """Light whose mean direction is less horizontal than this comes from no side."""
@@ -59,7 +59,7 @@ def camera_of(view: View, light: Light) -> tuple[float, float]:
     """Azimuth and elevation of the camera, degrees: that of the view, or else one that faces the light as it is turned."""
     if view.camera is not None:
         return view.camera
-    aside, elevation = ASIDE if light.source.lobes else FACING
+    aside, elevation = ASIDE if view.lobe_view or light.source.lobes else FACING
     x, y, _ = camera.light_from_world(view.light_rotation).T @ _mean_direction(light.source)
     azimuth = float(np.degrees(np.arctan2(y, x))) + aside if np.hypot(x, y) >= LEVEL else 0.0
     return azimuth % 360, elevation
@@ -104,9 +104,11 @@ def _compared_surfaces(
 ) -> tuple[Surface, Surface, Surface]:
     coefficients = sums(light, projection, shown)[0]
     original, reconstruction = sample_light(light, rows), sample_reconstruction(coefficients, rows)
-    scale = common_scale(original, reconstruction)
-    values = original, reconstruction, reconstruction - original
-    return surface(values[0], scale), surface(values[1], scale), surface(values[2], scale)
+    unit = unit_radius(original, reconstruction)
+    first, second, third = (
+        surface(values, unit, root=True) for values in (original, reconstruction, reconstruction - original)
+    )
+    return first, second, third
 
 
 @remember(most=16)

@@ -150,7 +150,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("O", "tone curve", _each(do.next_choice, {"O": "tone"}), lambda s: s.view.tone),
         Binding(
             "V",
-            "surfaces: radius is magnitude",
+            "surfaces: radius shows magnitude",
             {"V": do.toggle_lobe_view},
             lambda s: "surfaces" if s.view.lobe_view else "spheres",
         ),

@@ -1,4 +1,8 @@
-"""The surfaces of the lobe view: values on the sphere become radii, in one scale where they are compared."""
+"""The surfaces of the lobe view: values on the sphere become radii, in one scale where they are compared.
+
+Those of a light are the square roots of magnitudes: linear ones are needles that hide what is negative. Basis functions keep
+their shape.
+"""
 
 from __future__ import annotations
 
@@ -30,9 +34,6 @@ TIP_PIXELS = 0.25
 ASIDE = 1e-7
 """Radians by which rows are shifted, so that rounding does not decide point by point on which side of an edge they are."""
 
-SPIKE_SHARE, SPIKE_FACTOR = 0.99, 4.0
-"""Radii end at SPIKE_FACTOR times the magnitude below which this share of the sphere stays."""
-
 BLOCK_ROWS = 64
 
 
@@ -43,14 +44,6 @@ class Surface:
     values: Floats
     clipped: bool
     """Whether larger magnitudes were cut off at radius 1."""
-
-
-@dataclass(frozen=True)
-class Scale:
-    """The magnitude that gets radius 1; `spike` if some of the values it was chosen for are larger."""
-
-    magnitude: float
-    spike: bool = False
 
 
 def rows_for(n_bands: int, radius: float) -> int:
@@ -93,31 +86,29 @@ def sample_light(light: Light, rows: int) -> Floats:
     return values
 
 
-def common_scale(*compared: Floats) -> Scale:
-    """The scale for an original and its reconstruction: the largest magnitude of all.
+def unit_radius(original: Floats, reconstruction: Floats) -> float:
+    """The magnitude that gets radius 1: the largest of the reconstruction, or where that is nothing, of the original.
 
-    A sun would shrink everything else to nothing. So radii end at SPIKE_FACTOR times the magnitude that SPIKE_SHARE of the
-    sphere stays below, taken from the one where that is largest, if some magnitude is larger.
+    An original with a sun is longer, and cut: it would shrink everything else to nothing.
     """
-    peak = max(float(np.abs(values).max()) for values in compared)
-    bound = SPIKE_FACTOR * max(_magnitude_below(SPIKE_SHARE, values) for values in compared)
-    return Scale(bound, True) if 0 < bound < peak else Scale(peak)
+    return float(np.abs(reconstruction).max()) or float(np.abs(original).max())
 
 
-def surface(values: Floats, scale: Scale) -> Surface:
-    """The surface of values in units of the scale, cut off at 1."""
-    if scale.magnitude <= 0:
+def surface(values: Floats, unit: float, *, root: bool = False) -> Surface:
+    """The surface of values in units of that magnitude, cut off at 1. root: of their square roots, which show the small."""
+    if unit <= 0:
         return Surface(np.zeros_like(values), False)
-    scaled = values / np.float32(scale.magnitude)
+    scaled = values / np.float32(unit)
     longest = float(np.abs(scaled).max())
-    return Surface(np.clip(scaled, -1, 1), longest > 1 + 1e-5)
+    radii = np.copysign(np.sqrt(np.abs(scaled)), scaled) if root else scaled
+    return Surface(np.clip(radii, -1, 1), longest > 1 + 1e-5)
 
 
 @lru_cache(maxsize=8)
 def basis_surface(l: int, m: int, rows: int) -> Surface:
     """The surface of Y(l, m), its largest magnitude being the radius 1."""
     values = sample_basis(l, m, rows)
-    return surface(values, Scale(float(np.abs(values).max())))
+    return surface(values, float(np.abs(values).max()))
 
 
 def _synthesise(coefficients: Array, rows: int) -> Floats:
@@ -139,11 +130,3 @@ def _raise_landmarks(values: Floats, light: Light) -> None:
         filled = np.abs(values_there[chord < 3 * cell]) > abs(peak) / 2
         if filled.mean() < 0.25:
             values_there[(chord < cell) & (np.abs(values_there) < abs(peak))] = peak
-
-
-def _magnitude_below(share: float, values: Floats) -> float:
-    """The magnitude that this share of the sphere, by solid angle, does not exceed."""
-    intervals = len(values) - 1
-    middles = np.arccos(1 - (2 * np.arange(intervals) + 1) / intervals)  # of zones of equal area
-    rows = np.rint(middles * (intervals / np.pi)).astype(np.int64)
-    return float(np.quantile(np.abs(values[rows]), share))

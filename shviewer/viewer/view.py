@@ -68,7 +68,11 @@ class View:
         const=False,
     )
     lobe_view: bool = option(
-        False, Flag(), "surfaces in place of spheres: radius is magnitude, colour is sign", "--lobes", const=True
+        False,
+        Flag(),
+        "surfaces in place of spheres: radius is root of magnitude, colour is sign",
+        "--lobes",
+        const=True,
     )
     basis: tuple[int, int] | None = option(
         None,

@@ -14,13 +14,12 @@ from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
     MOST_ROWS,
-    Scale,
-    common_scale,
     rows_for,
     sample_basis,
     sample_light,
     sample_reconstruction,
     surface,
+    unit_radius,
 )
 
 
@@ -91,59 +90,37 @@ def test_more_bands_and_larger_pictures_get_more_rows_up_to_a_bound() -> None:
 # --- the scale
 
 
-def test_an_original_and_its_reconstruction_share_the_largest_magnitude_of_both() -> None:
-    original, reconstruction = sample_basis(1, 0, 129), -2 * sample_basis(2, 1, 129)
-    scale = common_scale(original, reconstruction)
-    assert scale == Scale(float(np.abs(reconstruction).max()))
-    shown = [surface(values, scale) for values in (original, reconstruction)]
-    assert [item.clipped for item in shown] == [False, False]
+def test_the_largest_magnitude_of_a_reconstruction_is_the_radius_1_of_it_and_its_original() -> None:
+    original, reconstruction = 3 * sample_basis(1, 0, 129), -2 * sample_basis(2, 1, 129)
+    unit = unit_radius(original, reconstruction)
+    assert unit == float(np.abs(reconstruction).max())
+    shown = [surface(values, unit, root=True) for values in (original, reconstruction)]
+    assert [item.clipped for item in shown] == [bool(np.abs(original).max() > unit), False]
     assert np.abs(shown[1].values).max() == pytest.approx(1)
-    assert np.abs(shown[0].values).max() == pytest.approx(np.abs(original).max() / scale.magnitude)
 
 
-def capped(half_angle: float, height: float) -> np.ndarray:
-    """1, but `height` within an angle of the axis (0.6, 0, 0.8)."""
-    inside = grid(257) @ np.array([0.6, 0.0, 0.8]) > np.cos(half_angle)
-    return np.where(inside, height, 1.0).astype(np.float32)
+def test_radii_of_a_light_are_square_roots_with_its_sign_and_cut_at_1() -> None:
+    values = np.array([[-4.0, -1.0, -0.25, 0.0], [0.0, 0.25, 1.0, 9.0]], np.float32)
+    shown = surface(values, 1.0, root=True)
+    np.testing.assert_allclose(shown.values, [[-1, -1, -0.5, 0], [0, 0.5, 1, 1]])
+    assert shown.clipped
+    np.testing.assert_allclose(surface(values / 9, 1.0).values, values / 9)  # of a basis function they are not
 
 
-@pytest.mark.parametrize(
-    ("share", "height", "expected"),
-    [
-        (0.005, 100.0, Scale(4.0, True)),  # a spike: four times what 99 % stay below
-        (0.005, 3.9, Scale(3.9)),  # not four times as high
-        (0.02, 100.0, Scale(100.0)),  # not so small
-        (0.005, -100.0, Scale(4.0, True)),  # downwards as well
-    ],
-)
-def test_a_spike_does_not_set_the_scale(share: float, height: float, expected: Scale) -> None:
-    half_angle = float(np.arccos(1 - 2 * share))
-    found = common_scale(capped(half_angle, height))
-    assert (found.magnitude, found.spike) == (pytest.approx(expected.magnitude), expected.spike)
-    shown = surface(capped(half_angle, height), found)
-    assert shown.clipped == expected.spike
-    assert np.abs(shown.values).max() == pytest.approx(1)
-
-
-def test_a_share_of_the_sphere_is_by_solid_angle() -> None:
-    """A cap of 0.5 % holds 4.5 % of the rows of a grid."""
-    cap = np.where(np.arange(257)[:, None] < 257 * 0.045, np.float32(50), np.float32(1)) * np.ones(512, np.float32)
-    assert common_scale(cap) == Scale(4.0, True)
-
-
-def test_a_lone_spike_on_nothing_is_not_cut() -> None:
-    values = np.where(capped(0.05, 7.0) > 1, np.float32(7), np.float32(0))
-    assert common_scale(values) == Scale(7.0)
+def test_where_nothing_is_reconstructed_the_original_has_radius_1() -> None:
+    original = sample_basis(1, 0, 129)
+    assert unit_radius(original, np.zeros_like(original)) == float(original.max())
 
 
 def test_an_error_longer_than_the_scale_is_cut_and_says_so() -> None:
     error = sample_basis(1, 0, 129)
-    shown = surface(error, Scale(float(np.abs(error).max()) / 1.5))
+    shown = surface(error, float(np.abs(error).max()) / 1.5)
     assert shown.clipped
     assert np.abs(shown.values).max() == 1
 
 
 def test_zero_has_no_scale_and_no_radius() -> None:
-    shown = surface(np.zeros((129, 256), np.float32), common_scale(np.zeros((129, 256), np.float32)))
+    nothing = np.zeros((129, 256), np.float32)
+    shown = surface(nothing, unit_radius(nothing, nothing), root=True)
     assert not shown.values.any()
     assert not shown.clipped

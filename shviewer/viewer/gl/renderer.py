@@ -34,6 +34,9 @@ from shviewer.viewer.view import ERRORS
 GL_VERSIONS = (450, 410, 330)
 """Versions of OpenGL in the order in which they are asked for; every shader is written for the last."""
 
+MOST_SAMPLES = 6
+"""The most looks at a map along a side of a pixel."""
+
 VEC4 = 16
 """Bytes of a vec4."""
 
@@ -43,7 +46,7 @@ class Renderer:
 
     def __init__(self, context: moderngl.Context) -> None:
         self.context = context
-        self.programs: dict[tuple[str, str, str, str, str, int], Program] = {}
+        self.programs: dict[tuple[str | int, ...], Program] = {}
         """Programs of sphere.frag, by the choices they were made for."""
         self.layer_program = Program(context, "layer.frag")
         self.surfaces: SurfaceRenderer | None = None
@@ -188,7 +191,6 @@ class Renderer:
         box = _pixel_box(pane, composition.height)
         if box[2] <= 0 or box[3] <= 0:
             return
-        program = self._program(picture, shown, pane)
         ends = np.cumsum([0, len(picture.original.lobes), len(picture.compared.lobes), len(picture.suns)]).tolist()
         source, lobes, suns = picture.original, tuple(ends[0:2]), tuple(ends[2:4])
         map_texture = self.original_map
@@ -196,6 +198,7 @@ class Renderer:
             source, lobes, suns = picture.compared, tuple(ends[1:3]), (0, 0)
             map_texture = self.original_map if source.map is picture.original.map else self.compared_map
         map_texture.use(SAMPLERS["original_map"])
+        program = self._program(picture, shown, pane, 1 if linear else _samples(source.map, pane))
         light_from_pane = picture.light_from_world
         if isinstance(pane, Sphere):
             light_from_pane = light_from_pane @ picture.world_from_view
@@ -221,7 +224,7 @@ class Renderer:
         target.viewport = box
         program.draw()
 
-    def _program(self, picture: Picture, shown: str, pane: Pane) -> Program:
+    def _program(self, picture: Picture, shown: str, pane: Pane, samples: int = 1) -> Program:
         """The program that draws `shown`, compiled when first wanted. Choices that it does not read make no new one."""
         original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
         reconstruction = "MAP" if isinstance(picture.drawn, SplineMap) and shown != "ORIGINAL" else "SUM"
@@ -232,9 +235,10 @@ class Renderer:
             "RECONSTRUCTION": picture.suns,
             "ERROR": picture.compared.lobes,
         }[shown]
-        key = shown, original, reconstruction, tone, form, profile_bits(lobes)
+        samples = samples if original == "MAP" else 1
+        key: tuple[str | int, ...] = (shown, original, reconstruction, tone, form, profile_bits(lobes), samples)
         if key not in self.programs:
-            chosen: dict[str, str | int] = dict(zip((*CHOICES, "PROFILES"), key, strict=True))
+            chosen: dict[str, str | int] = dict(zip((*CHOICES, "PROFILES", "SAMPLES"), key, strict=True))
             self.programs[key] = Program(self.context, "sphere.frag", chosen)
         return self.programs[key]
 
@@ -270,6 +274,14 @@ class Renderer:
 def _held(shown: LatLongMap | None) -> tuple[NDArray[np.float32] | None, bool]:
     """The texels of a map, and whether half floats hold them."""
     return (None, False) if shown is None else (shown.texels, shown.halves)
+
+
+def _samples(original: LatLongMap | None, pane: Pane) -> int:
+    """How many times along a side of a pixel a map is looked up: once for each of its texels, within MOST_SAMPLES."""
+    if original is None:
+        return 1
+    turn = 2 * np.pi * pane.radius if isinstance(pane, Sphere) else pane.width
+    return int(min(max(np.ceil(original.texels.shape[1] / turn), 1), MOST_SAMPLES))
 
 
 def _pixel_box(pane: Pane, height: int) -> tuple[int, int, int, int]:

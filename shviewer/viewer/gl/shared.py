@@ -26,7 +26,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "TONE": tuple(tone.upper() for tone in TONES),
     "PANE": ("SPHERE", "MAP"),
 }
-"""The choices that a program of shaders/sphere.frag is compiled for: one of each, and PROFILES."""
+"""The choices that a program of shaders/sphere.frag is compiled for: one of each, and PROFILES and SAMPLES."""
 
 BACKGROUND = (0.0203, 0.0203, 0.0232)
 """Linear RGB around the panes: a little above black, so that an unlit sphere is still seen."""

@@ -8,7 +8,7 @@ import pytest
 from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.viewer.gl.surface_mesh import MAX_TRIANGLES, Mesh, gradient, grid_directions, surface_mesh
-from shviewer.viewer.surface import Surface, basis_surface, common_scale, sample_basis, sample_light, surface
+from shviewer.viewer.surface import Surface, basis_surface, sample_basis, sample_light, surface
 
 
 def grid(rows: int) -> Array:
@@ -111,9 +111,7 @@ def test_an_image_with_bright_texels_gives_finite_triangles() -> None:
     pixels = np.random.default_rng(0).random((32, 64, 3)).astype(np.float32)
     pixels[10, 20] = 1e6
     values = sample_light(EnvironmentLight(pixels), 129)
-    scale = common_scale(values)
-    assert scale.spike
-    shown = surface(values, scale)
+    shown = surface(values, 4.0, root=True)
     assert isinstance(shown, Surface)
     assert shown.clipped
     assert np.isfinite(surface_mesh(shown.values, 1e-3).vertices).all()

@@ -25,7 +25,6 @@ from shviewer.viewer.panes import Box, Sphere
 from shviewer.viewer.surface import (
     Surface,
     basis_surface,
-    common_scale,
     rows_for,
     sample_reconstruction,
     surface,
@@ -128,10 +127,21 @@ def test_a_function_has_the_outline_that_rays_find(frame: Frame, l: int, m: int)
 def test_a_reconstruction_has_the_outline_that_rays_find(frame: Frame) -> None:
     coefficients = np.random.default_rng(0).normal(size=(256, 3)) / np.sqrt(1 + np.arange(256))[:, None]
     values = sample_reconstruction(coefficients, 513)
-    scale = common_scale(values)
-    assert not scale.spike
-    shown = surface(values, scale)
-    assert_outline(frame, shown, lambda d: sum_of_harmonics(d, coefficients) @ LUMINANCE / scale.magnitude)
+    unit = float(np.abs(values).max())
+    assert_outline(frame, surface(values, unit), lambda d: sum_of_harmonics(d, coefficients) @ LUMINANCE / unit)
+
+
+def test_square_roots_have_the_outline_that_rays_find(frame: Frame) -> None:
+    """Of a magnitude that is steep where its sign changes."""
+    coefficients = np.random.default_rng(1).normal(size=(36, 3))
+    values = sample_reconstruction(coefficients, 513)
+    unit = float(np.abs(values).max())
+
+    def radius(directions: Array) -> Array:
+        value = sum_of_harmonics(directions, coefficients) @ LUMINANCE / unit
+        return np.asarray(np.copysign(np.sqrt(np.abs(value)), value))
+
+    assert_outline(frame, surface(values, unit, root=True), radius)
 
 
 def test_an_asymmetric_surface_turns_as_the_spheres_do(frame: Frame) -> None:
@@ -140,7 +150,9 @@ def test_an_asymmetric_surface_turns_as_the_spheres_do(frame: Frame) -> None:
     bump = np.linalg.inv(evaluate_basis(np.eye(3), 2)[:, 1:]) @ axis
     coefficients = np.zeros((4, 3))
     coefficients[1:] = bump[:, None]
-    shown = surface(sample_reconstruction(coefficients, 129), common_scale(sample_reconstruction(coefficients, 129)))
+    shown = surface(
+        sample_reconstruction(coefficients, 129), float(np.abs(sample_reconstruction(coefficients, 129)).max())
+    )
     for turn in (FRONT, SKEW, matrix(towards(-70.0, 40.0)) @ SKEW):
         pixels = frame.draw(shown, turn)
         right, up, to_viewer = turn.T @ axis  # where the middle of the positive ball is; the negative one is opposite
@@ -231,7 +243,7 @@ def test_every_pixel_inside_is_of_one_sign_or_on_an_edge(frame: Frame) -> None:
 
 def test_poles_and_seam_do_not_show(frame: Frame) -> None:
     """A sphere looks the same from everywhere, and so smooth that neighbours differ by little."""
-    shown = surface(np.ones((129, 256), dtype=np.float32), common_scale(np.ones((129, 256), dtype=np.float32)))
+    shown = surface(np.ones((129, 256), dtype=np.float32), 1.0)
     views = [np.eye(3), FRONT, world_from_view(180.0, 0.0), SKEW]
     pictures = [frame.draw(shown, view) for view in views]
     middle = slice(100, 360), slice(100, 360)
@@ -266,7 +278,7 @@ def unit(vectors: Array) -> Array:
 
 
 def test_nothing_but_the_circle_of_radius_1_is_drawn_of_zero(frame: Frame) -> None:
-    pixels = frame.draw(surface(np.zeros((129, 256), np.float32), common_scale(np.zeros((129, 256), np.float32))), SKEW)
+    pixels = frame.draw(surface(np.zeros((129, 256), np.float32), 0.0), SKEW)
     assert (frame.covered() == 0).all()
     y, x = np.nonzero((pixels != EMPTY).any(axis=-1))
     distance = np.hypot(x + 0.5 - SPHERE.x, SPHERE.y - y - 0.5)
