@@ -104,9 +104,9 @@ def _pictured(options: argparse.Namespace) -> Restored | None:
 
     limits = reading_from(options).limits
     if options.like is None:
-        path, part = split_light(options.light)
+        path, part = split_light(lights_of(options)[0])
         return None if part or options.as_image else restored(path, limits)
-    found = restored(options.like, limits, options.light)
+    found = restored(options.like, limits, lights_of(options)[0])
     if found is None:
         raise UsageError(f"--like {options.like}: no picture that shviewer saved; name one, or leave out --like")
     return found
@@ -123,7 +123,8 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
 
     pictured = pictured_by(options)
     start = pictured.state if pictured else State()
-    light = start.recipe.light if pictured else options.light
+    entry = lights_of(options)[0]
+    light = start.recipe.light if pictured else entry
     options.size = tuple(options.size or (pictured and pictured.size) or DEFAULT_SIZE)
     options.no_overlay = vars(options).get("no_overlay") or (pictured is not None and not pictured.overlay)
     view = _view_from(options, start.view)
@@ -131,13 +132,14 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     State(Recipe(n_bands=asked), view).check(options.size)
     recipe, said = recipe_from(options, light, start.recipe if pictured else START)
     lights = tuple(built_in_lights()) if all_lights else (light,)
-    state = open_light(State(recipe, view, lights), light)
+    state = replace(open_light(State(recipe, view, lights), entry if all_lights else light), recipe=recipe)
+    state = replace(state, entry=entry if pictured and all_lights else None)
     state = changed(
         state, message=said or view.message, basis=tuple(options.basis) if options.basis else start.view.basis
     )
     state.check()
     if pictured and pictured.said:
-        print(one_line(f"shviewer: note: {options.like or options.light}: {pictured.said}"), file=sys.stderr)
+        print(one_line(f"shviewer: note: {options.like or entry}: {pictured.said}"), file=sys.stderr)
         state = changed(state, message=pictured.said) if all_lights else state
     return changed(state, sweep_to=None) if all_lights else state  # a window shows the picture, and does not play on
 

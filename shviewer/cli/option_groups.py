@@ -36,9 +36,17 @@ class OneLineParser(argparse.ArgumentParser):
         self.exit(2, f"shviewer: {one_line(message)}; see {self.prog} --help\n")
 
 
-def add_view_options(parser: OneLineParser) -> None:
-    """Add LIGHT and every option that its picture depends on."""
-    parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
+def add_view_options(parser: OneLineParser, *, several: bool = False) -> None:
+    """Add LIGHT and every option that its picture depends on. several: more than one LIGHT, and folders of them."""
+    if several:
+        parser.add_argument(
+            "lights",
+            metavar="LIGHT",
+            nargs="*",
+            help=f"{LIGHT_HELP} (default green); or several, or folders, for Left and Right to go through",
+        )
+    else:
+        parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
     parser.add_argument(
         "--like",
         metavar="PICTURE",

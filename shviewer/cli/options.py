@@ -49,7 +49,7 @@ def view_parser() -> OneLineParser:
         "\nwhat a light is, in figures: shviewer info --help"
         "\nits coefficients as a file: shviewer project --help"
         "\nthe guide, a page for each question: shviewer help TOPIC",
-        usage="shviewer [LIGHT] [options]\n"
+        usage="shviewer [LIGHT ...] [options]\n"
         "       shviewer screenshot OUT [LIGHT] [options]\n"
         "       shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]\n"
         "       shviewer info LIGHT [LIGHT ...] [options]\n"
@@ -57,7 +57,7 @@ def view_parser() -> OneLineParser:
         "       shviewer report [LIGHT ...] [-o DIR] [options]\n"
         "       shviewer help [TOPIC]",
     )
-    add_view_options(parser)
+    add_view_options(parser, several=True)
     parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
     parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
     parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")

@@ -1,12 +1,14 @@
-"""`shviewer [LIGHT]`: the window, or its picture where there is no display."""
+"""`shviewer [LIGHT ...]`: the window, or its picture where there is no display."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from shviewer.cli.from_options import state_from
+from shviewer.cli.from_options import lights_of, state_from
+from shviewer.errors import LightError
 
 if TYPE_CHECKING:
     from shviewer.viewer.picture import Picture
@@ -30,7 +32,6 @@ def run(options: argparse.Namespace) -> int:
         for name in built_in_lights():
             print(f"{name:<20}{find_light(name).description}")
         return 0
-    from shviewer.analysis.subjects import subject
     from shviewer.outputs import file_stem
     from shviewer.viewer.composition import compose
     from shviewer.viewer.desktop import window
@@ -40,24 +41,64 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.viewer.saving.picture_files import write_numbered
     from shviewer.viewer.screenshot import save_picture
 
-    state = state_from(options, all_lights=True)
-    first = Task(lambda: [_announced(state)])
+    state, others = _opened(options)
+    first = Task(lambda: [_announced(state, others, options.as_image)])
     try:
         window.run(first, options.size, verbose=options.verbose, watch=options.watch, as_image=options.as_image)
     except NoDisplayError as error:
-        stem = f"shviewer-{file_stem(subject(state.recipe).light.name)}"
-        composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
         picture = completed(first.result())
+        stem, view = f"shviewer-{file_stem(picture.light.name)}", picture.state.view
+        composition = compose(options.size[0], options.size[1], view.zoom, n_spheres=view.n_spheres)
         out = write_numbered(stem, lambda out: save_picture(picture, composition, out, exclusive=True), first=0)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0
 
 
-def _announced(state: State) -> Picture:
-    """The picture of a state, its figures pending; the notes on its light are printed."""
+def _opened(options: argparse.Namespace) -> tuple[State, list[str]]:
+    """The state of the first light that can be opened, and those to go on to if it turns out that it cannot."""
+    from shviewer.lights.several import several
+
+    given = lights_of(options)
+    found = several(given, code=True)
+    for line in found.said:
+        print(f"shviewer: note: {line}", file=sys.stderr)
+    if len(given) == 1 and found.lights == tuple(given):
+        return state_from(options, all_lights=True), []
+    if not found.lights:
+        raise LightError(f"{given[0]}: no light in it; name a file")
+    bad: list[str] = []
+    for light in found.lights:
+        options.lights = [light]
+        vars(options).pop("pictured", None)
+        try:
+            state = state_from(options, all_lights=True)
+        except LightError as error:
+            bad.append(light)
+            if len(bad) == len(found.lights):
+                raise
+            print(f"shviewer: {error}; skipped", file=sys.stderr)
+            continue
+        left = tuple(one for one in found.lights if one not in bad)
+        return replace(state, lights=left), list(left[1:])
+    raise AssertionError
+
+
+def _announced(state: State, others: list[str], as_image: bool) -> Picture:
+    """The picture of a state, its figures pending, or of the first of the others; the notes on its light are printed."""
     from shviewer.cli.notes import print_notes
+    from shviewer.viewer.actions import show_light
+    from shviewer.viewer.desktop.opening import opened
     from shviewer.viewer.picture import first_picture
 
-    picture = first_picture(state)
-    print_notes(state.recipe)
+    while True:
+        try:
+            picture = first_picture(opened(state, as_image=as_image) if state.entry is None else state)
+            break
+        except LightError as error:
+            if not others:
+                raise
+            print(f"shviewer: {error}; skipped", file=sys.stderr)
+            left = tuple(light for number, light in enumerate(state.lights) if number != state.place)
+            state = replace(show_light(state, others.pop(0)), lights=left)
+    print_notes(picture.state.recipe)
     return picture

@@ -128,8 +128,12 @@ def toggle_cursor(state: State) -> State:
 
 def next_light(state: State, step: int) -> State:
     """Show the light `step` places further in the list, which is a ring."""
-    at = (state.lights.index(state.recipe.light) if state.recipe.light in state.lights else 0) + step
-    return changed(state, light=state.lights[at % len(state.lights)], layout_tried="")
+    return show_light(state, state.lights[((state.place or 0) + step) % len(state.lights)])
+
+
+def show_light(state: State, light: str | Light) -> State:
+    """Show one of the lights."""
+    return changed(state, light=light, entry=None, layout_tried="")
 
 
 def next_layout(state: State) -> State:
@@ -254,7 +258,7 @@ def zoom(state: State, steps: float) -> State:
 def open_light(state: State, light: str | Light) -> State:
     """Show `light`, adding it to those that Left and Right go through."""
     lights = state.lights if light in state.lights else (*state.lights, light)
-    return changed(state, lights=lights, light=light, layout_tried="", message="")
+    return changed(show_light(state, light), lights=lights, message="")
 
 
 def _held(state: State, name: str) -> Any:

@@ -114,7 +114,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("L", "next layout of an image", {"L": do.next_layout}, lambda s: s.recipe.reading.layout),
         Binding("Z", "repair bad values or not", {"Z": do.toggle_sanitizing}, lambda s: describe_sanitizing(s.recipe)),
         Binding("right drag", "turn the light; Shift+drag, too", {}),
-        Binding("drop a file", "open it", {}),
+        Binding("drop files", "open them", {}),
     ),
     "Error": (
         Binding("D", "third sphere: the error", _each(do.next_choice, {"D": "error"}), lambda s: s.view.error),

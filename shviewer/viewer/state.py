@@ -29,6 +29,15 @@ class State:
     start: tuple[Recipe, View] = field(default=(START, FRONT), compare=False)
     """What the command line or an opened picture asked for, to which R goes back. No pixel depends on it."""
 
+    entry: str | Light | None = field(default=None, compare=False)
+    """The one of `lights` that is shown, where that is a picture, and so not the light of the recipe."""
+
+    @property
+    def place(self) -> int | None:
+        """The place in `lights` of the light that is shown; None if it is not among them."""
+        shown = self.recipe.light if self.entry is None else self.entry
+        return self.lights.index(shown) if shown in self.lights else None
+
     @property
     def bands_ahead(self) -> int:
         """The bands that bars and axes need room for: those in use, or during a sweep those at its end."""

@@ -643,3 +643,25 @@ def test_a_misspelt_mode_is_no_light(capsys: pytest.CaptureFixture[str]) -> None
         2,
         "shviewer: 'screnshot' is neither a mode nor a light; did you mean shviewer screenshot?",
     )
+
+
+# --- several lights
+
+
+def test_several_lights_and_folders_are_opened_and_bad_ones_are_named_and_skipped(run: Run, tmp_path: Path) -> None:
+    """Without a display the first that can be opened is written."""
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "sky.toml").write_text('[[lobe]]\nprofile = "constant"\nradiance = 1\n')
+    (tmp_path / "bad.hdr").write_text("no image")
+    done = run("bad.hdr", "gone.exr", "folder", "green", "--size", 160, 80, **WITHOUT_DISPLAY)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "shviewer-sky.png").exists()
+    lines = done.stderr.splitlines()
+    assert [line.endswith("; skipped") for line in lines[:2]] == [True, True]
+    assert ("bad.hdr" in lines[0], "gone.exr" in lines[1]) == (True, True)
+    none = run("bad.hdr", "gone.exr", **WITHOUT_DISPLAY)
+    assert none.returncode == 3
+    assert none.stderr.splitlines()[-1].startswith("shviewer: gone.exr")
+    (tmp_path / "empty").mkdir()
+    empty = run("empty", **WITHOUT_DISPLAY)
+    assert (empty.returncode, "no light in it" in empty.stderr) == (3, True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -19,14 +19,15 @@ from shviewer.analysis.figures import Pending
 from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError, within_memory
-from shviewer.lights.find import is_code
 from shviewer.lights.light import Light
-from shviewer.viewer.actions import Command, open_light, step_sweep, with_bands
+from shviewer.lights.several import several
+from shviewer.viewer.actions import Command, open_light, show_light, step_sweep, with_bands
 from shviewer.viewer.animation.metronome import Metronome
 from shviewer.viewer.camera import facing
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.desktop.errands import save_coefficients, save_picture
 from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
+from shviewer.viewer.desktop.opening import MOST_DROPPED, opened, skipped
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
@@ -34,7 +35,6 @@ from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, prepare, stages, still
-from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
 from shviewer.words import one_line
 
@@ -84,6 +84,10 @@ class Session:
         self._looked_at = perf_counter()
         self._reading: Event | None = None
         """The wish to read the light's file again, set once it has been read; None if there is no such wish."""
+        self._others: list[str | Light] = []
+        """The lights to go on to where the one that was chosen cannot be opened."""
+        self._passed: list[str] = []
+        """The names of those that could not."""
         self._marks_faced = 0
         self._wake = wake
         self._task: Task[tuple[Picture, bool]] | None = None
@@ -116,7 +120,13 @@ class Session:
         done = press(self.state, key)
         if isinstance(done, Command):
             return self.do(done)
-        self.state = done
+        if done.place != self.state.place:
+            around = [done]
+            while len(around) < len(done.lights) and isinstance(one := press(around[-1], key), State):
+                around.append(one)
+            self._open(done, [one.recipe.light for one in around[1:] if one.place != self.state.place])
+        else:
+            self.state = done
         return None
 
     def do(self, command: Command) -> Command | None:
@@ -156,33 +166,52 @@ class Session:
             what = self._task.status.rstrip("0123456789 %")
             self._end_task()
             self._later.clear()
-            self._reading = None
+            self._reading, self._others = None, []
             keep_light(self.picture.state.recipe, self.picture.subject.whole)
             self.state = changed(self.picture.state, message=f"stopped {what}".rstrip(), sweep_to=None)
             self._enough = still(self.picture.state)
 
-    def drop(self, path: str) -> None:
-        """Open a file, which may have been edited since it was last opened; never code, which is no file.
+    def drop(self, *paths: str) -> None:
+        """Open files, which may have been edited since they were last opened, and what folders hold; never code.
 
-        A picture that this program saved is the state that it was saved from.
+        Left and Right go through them. The first that can be opened is shown.
         """
-        if is_code(path):
-            self.say(f"{path}: code runs only when the command line names it")
+        found = several(paths, most=MOST_DROPPED)
+        if not found.lights:
+            self.say("; ".join(found.said) or "nothing that could be opened")
             return
-        try:
-            picture = None if self.as_image else restored(Path(path), self.state.recipe.reading.limits)
-        except ShviewerError as error:
-            self.say(str(error))
-            return
-        if picture is None:
-            self.state = open_light(self.state, path)
-        else:
-            shown = replace(picture.state, lights=self.state.lights)
-            reading = replace(shown.recipe.reading, isolated=True)
-            shown = changed(open_light(shown, shown.recipe.light), reading=reading, sweep_to=None)
-            self.state = started(shown)
-            self.say(picture.said)
+        first, *others = found.lights
+        if others:  # they come together, wherever some of them were
+            lights = (*(light for light in self.state.lights if light not in found.lights), *found.lights)
+            self.state = replace(self.state, lights=lights, entry=self.state.entry or self.state.recipe.light)
         self._reading = Event()
+        self._open(changed(open_light(self.state, first), message="; ".join(found.said)), others)
+
+    def _open(self, state: State, others: Sequence[str | Light]) -> None:
+        """Show the light that the state was given, or where it cannot be opened the next of the others."""
+        self._others, self._passed = list(others), []
+        try:
+            self.state = opened(state, as_image=self.as_image)
+        except ShviewerError as error:
+            if not self._pass_over(state, error):
+                self.say(str(error))
+
+    def _pass_over(self, tried: State, error: ShviewerError) -> bool:
+        """Go on from a light that cannot be opened to the next of those that were asked for; return whether there is one."""
+        while self._others:
+            place, light = tried.place, self._others.pop(0)
+            bad = tried.lights[place] if place is not None else tried.recipe.light
+            self._passed.append(light_name(bad))
+            print(f"shviewer: {error}; skipped", file=sys.stderr, flush=True)
+            left = tuple(one for one in tried.lights if one != bad)
+            message = skipped(self._passed, str(error))
+            tried = changed(show_light(self.picture.state, light), lights=left, message=message)
+            try:
+                self.state = opened(tried, as_image=self.as_image)
+                return True
+            except ShviewerError as another:
+                error = another
+        return False
 
     def say(self, message: str) -> None:
         """Show a message, on one line."""
@@ -247,12 +276,15 @@ class Session:
             with within_memory(light_name(state.recipe.light)):
                 picture, made_by_map = task.result()
         except ShviewerError as error:
+            if self._pass_over(state, error):
+                return self._make(by_map, patience)
             self.keep(error)
             return True
         except Exception as error:  # a fault of this program: the session goes on with the picture there is
             traceback.print_exception(error)
             self.keep(ShviewerError("internal error, see the terminal"))
             return True
+        self._others = []
         self._take(picture, made_by_map, again=reading is not None)
         return made_by_map == by_map or self._make(by_map, patience)
 

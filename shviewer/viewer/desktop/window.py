@@ -335,7 +335,7 @@ class Window:
 
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
-            self.session.drop(paths[0])
+            self.session.drop(*paths)
             self._due()
 
 

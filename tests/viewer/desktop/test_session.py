@@ -33,7 +33,10 @@ def test_a_first_light_that_cannot_be_read_makes_no_session() -> None:
 
 def test_only_what_a_window_can_do_is_given_back() -> None:
     session = Session(state_of())
-    given = {key: session.press(key) for key in ("Up", "F11", "P", "T", "Y", "F5", "Esc")}
+    given = {}
+    for key in ("Up", "F11", "P", "T", "Y", "F5", "Esc"):
+        given[key] = session.press(key)
+        session.prepare()
     commands = {"F11": Command.FULL_SCREEN, "P": Command.SAVE, "Esc": Command.LEAVE}
     assert {key: command for key, command in given.items() if command is not None} == commands
 
@@ -127,7 +130,9 @@ def test_a_picture_that_is_dropped_is_the_state_that_it_was_saved_from(tmp_path:
         "signed",
         (1.0, 2.0),
     )
-    assert state.lights == ("green", "constant", "studio")
+    assert state.lights == ("green", "constant", str(tmp_path / "p.png"))
+    assert pressed(session, "Left").state.recipe.light == "constant"
+    assert changed(pressed(session, "Right").state, message="") == changed(state, message="")
     assert state.view.sweep_to is None  # it is looked at, not played on
     assert session.picture.state == state
     write_png(tmp_path / "p.png", np.zeros((2, 2, 3), np.uint8), "{")

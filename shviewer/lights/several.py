@@ -1,0 +1,80 @@
+"""Several lights at once: files, and what folders hold."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from shviewer.coefficients.stamp import SCHEMA_KEY
+from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+from shviewer.files import opened
+from shviewer.lights.find import is_code, split_light
+from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
+from shviewer.words import one_line
+
+_LOOK = 2**16  # bytes at the beginning of a file that may be something else
+
+
+class Several(NamedTuple):
+    """Lights in the order in which they were named, each once, and a line on each thing that was left out."""
+
+    lights: tuple[str, ...]
+    said: tuple[str, ...]
+
+
+def several(texts: Iterable[str], *, most: int | None = None, code: bool = False) -> Several:
+    """The lights that texts name, folders replaced by what they hold; none of these files is read to its end.
+
+    Of a folder: images, scenes, and coefficients with our stamp, by name, no hidden ones and none of folders within.
+    most: how many are taken. code: whether a function in a Python file may be one.
+    """
+    lights: list[str] = []
+    said: list[str] = []
+    for text in texts:
+        if is_code(text) and not code:
+            said.append(one_line(f"{text}: code runs only when the command line names it"))
+        elif os.path.isdir(split_light(text)[0]):
+            held = list(_lights_in(Path(text)))
+            lights += held
+            if not held:
+                said.append(one_line(f"{text}: a folder without a light"))
+        else:
+            lights.append(text)
+    found = list(dict.fromkeys(lights))
+    if most is not None and len(found) > most:
+        said.append(f"the first {most} of {len(found)} files are opened")
+    return Several(tuple(found[:most]), tuple(said))
+
+
+def _lights_in(folder: Path) -> Iterator[str]:
+    try:
+        names = sorted(os.listdir(folder), key=_natural)
+    except OSError:
+        return
+    for name in names:
+        path = folder / name
+        if not name.startswith(".") and path.is_file() and _is_light(path):
+            yield str(path)
+
+
+def _is_light(path: Path) -> bool:
+    suffix = path.suffix.lower()
+    if suffix in IMAGE_SUFFIXES:
+        return True
+    mark = b"[[lobe]]" if suffix == ".toml" else SCHEMA_KEY.encode() if suffix in COEFFICIENT_SUFFIXES else None
+    if mark is None:
+        return False
+    try:
+        with opened(path) as file:
+            head = file.read(_LOOK)
+    except OSError:
+        return False
+    return mark in head or mark.decode().encode("utf-32-le") in head  # as an NPZ has it
+
+
+def _natural(name: str) -> list[tuple[str, int]]:
+    """A key by which sky-2 comes before sky-10."""
+    return [(text.casefold(), int(digits or 0)) for text, digits in re.findall(r"(\D*)(\d*)", name)]
