@@ -122,7 +122,8 @@ def test_every_command_is_one_that_the_program_understands(path: Path, capsys: p
         try:
             options = parse(rest)
             if mode in ("view", "screenshot", "sweep"):  # the values, without what has to be read or searched for
-                free = {"light": "green", "like": None, "tolerance": None, "compare": None, "input_convention": ""}
+                green: dict[str, object] = {"light": "green", "lights": ["green"], "like": None}
+                free = green | {"tolerance": None, "compare": None, "input_convention": ""}
                 state_from(argparse.Namespace(**{**vars(options), **free}), all_lights=False)
         except shviewer.ShviewerError as error:
             pytest.fail(f"shviewer {' '.join(arguments)}: {error}")

@@ -88,6 +88,8 @@ class Session:
         """The lights to go on to where the one that was chosen cannot be opened."""
         self._passed: list[str] = []
         """The names of those that could not."""
+        self._refused: str | Light | None = None
+        """The light that could not be read just now: the next key may say how to read it."""
         self._marks_faced = 0
         self._wake = wake
         self._task: Task[tuple[Picture, bool]] | None = None
@@ -117,14 +119,18 @@ class Session:
         if key == "Esc" and self.working and (self.status or not self._shown):
             self.stop()
             return None
-        done = press(self.state, key)
+        state, refused = self.state, self._refused
+        self._refused = None
+        if refused is not None and key in ("L", "Z"):
+            state = changed(open_light(state, refused), layout_tried=state.view.layout_tried)
+        done = press(state, key)
         if isinstance(done, Command):
             return self.do(done)
-        if done.place != self.state.place:
+        if done.place != state.place:
             around = [done]
             while len(around) < len(done.lights) and isinstance(one := press(around[-1], key), State):
                 around.append(one)
-            self._open(done, [one.recipe.light for one in around[1:] if one.place != self.state.place])
+            self._open(done, [one.recipe.light for one in around[1:] if one.place != state.place])
         else:
             self.state = done
         return None
@@ -284,7 +290,7 @@ class Session:
             traceback.print_exception(error)
             self.keep(ShviewerError("internal error, see the terminal"))
             return True
-        self._others = []
+        self._others, self._refused = [], None
         self._take(picture, made_by_map, again=reading is not None)
         return made_by_map == by_map or self._make(by_map, patience)
 
@@ -318,6 +324,7 @@ class Session:
         keep_light(shown.state.recipe, shown.subject.whole)
         message = with_keys(str(error), self.state.recipe.light, shown.state.recipe.reading)
         tried = self.state.view.layout_tried
+        self._refused = None if self.state.recipe.light == shown.state.recipe.light else self.state.recipe.light
         self.state = changed(shown.state, message=message, sweep_to=None, layout_tried=tried)
         self.picture = replace(shown, state=self.state)
         self._enough = still(self.state)

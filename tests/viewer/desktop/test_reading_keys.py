@@ -82,14 +82,13 @@ def test_l_goes_past_a_layout_that_does_not_fit_and_the_old_picture_stays(displa
     assert shown[4][-1].startswith("layout mirror-ball")
 
 
-def test_a_dropped_file_with_nan_is_repaired_by_z_and_another_drop(display: str, tmp_path: Path) -> None:
+def test_a_dropped_file_with_nan_is_repaired_by_z(display: str, tmp_path: Path) -> None:
     write_map(tmp_path / "bad.exr", 16, 32, bad=np.nan)
     drop = f"drop {tmp_path / 'bad.exr'}"
-    _, refused, ready, repaired, kept = steps(display, tmp_path, "green", drop, "Z", drop, "Z")
+    _, refused, repaired, kept = steps(display, tmp_path, "green", drop, "Z", "Z")
     assert refused[0] == "green"
     assert refused[-1].startswith("bad.exr: 1 NaN")  # without its folder, so that the end is not cut off
     assert refused[-1].endswith("; Z repairs")
-    assert ready[3:] == (True, "bad values repaired")
     assert repaired[0] == "bad"
     assert "1 NaN -> 0" in repaired[-1]
     assert kept[0] == "bad"
@@ -100,12 +99,22 @@ def test_a_dropped_file_with_nan_is_repaired_by_z_and_another_drop(display: str,
 
 def test_a_layout_holds_for_files_dropped_afterwards(display: str, tmp_path: Path) -> None:
     write_map(tmp_path / "ball.exr", 32, 32)
+    write_map(tmp_path / "other.exr", 32, 32)
     write_map(tmp_path / "wide.exr", 16, 32)
-    shown = steps(display, tmp_path, "green", *"LLLL", "drop ball.exr", "drop wide.exr", "L", "drop wide.exr")
-    assert shown[5][:3] == ("ball", "mirror-ball", "mirror-ball")
-    assert shown[6][0] == "ball"
+    shown = steps(display, tmp_path, "ball.exr", *"LLLL", "drop other.exr", "drop wide.exr", "L", "L")
+    assert shown[5][:3] == ("other", "mirror-ball", "mirror-ball")
+    assert shown[6][0] == "other"
     assert shown[6][-1].endswith("; L changes the layout")
-    assert shown[8][:3] == ("wide", "lat-long", "auto")
+    assert shown[7][:3] == ("wide", "lat-long", "auto")  # the file that was refused, in the next layout
+    assert shown[8][:3] == ("wide", "lat-long", "lat-long")
+
+
+def test_any_other_key_leaves_a_file_that_was_refused_alone(display: str, tmp_path: Path) -> None:
+    write_map(tmp_path / "bad.exr", 16, 32, bad=np.nan)
+    _, refused, moved, said = steps(display, tmp_path, "green", f"drop {tmp_path / 'bad.exr'}", "Up", "Z")
+    assert refused[-1].endswith("; Z repairs")
+    assert (moved[0], said[0]) == ("green", "green")
+    assert said[-1] == "green is no image, and has no values to repair"
 
 
 def test_a_drop_that_no_key_can_help_is_offered_none(display: str, tmp_path: Path) -> None:
