@@ -32,7 +32,7 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.saving.stamp import metadata
-from shviewer.viewer.state import State, state_of
+from shviewer.viewer.state import State, started, state_of
 from shviewer.viewer.view import View
 
 
@@ -154,7 +154,7 @@ def test_no_more_bands_are_shown_than_the_file_has() -> None:
 
 
 def test_keys_keep_the_comparison() -> None:
-    state = state_of(venice(), compare=given(venice().coefficients(3)), n_bands=3)
+    state = started(state_of(venice(), compare=given(venice().coefficients(3)), n_bands=3))
     assert reset(state).recipe.compare is state.recipe.compare
     assert "those of theirs.txt" in next_method(state).view.message
     assert next_method(state).recipe.method == state.recipe.method
