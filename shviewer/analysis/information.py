@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.analysis.figures import error_grid, grid_rows, needs
 from shviewer.analysis.recipe import Recipe
@@ -21,6 +22,7 @@ from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.lights.light import About, Light
 from shviewer.lights.reading import Reading
 from shviewer.lights.suns.sun import Sun
+from shviewer.limits import MAX_BANDS
 from shviewer.words import theta_phi_degrees
 
 TOLERANCES = (0.10, 0.05, 0.01)
@@ -28,9 +30,8 @@ SHOWN_BANDS = 9
 DARK_PERCENTILE = 0.01
 """The dynamic range leaves out this darkest share of the lit sphere, so that no single dark texel makes the range."""
 
-BINS_PER_STOP = 32
-LOWEST_STOP, HIGHEST_STOP = -160, 140
-"""The ends of the luminance histogram: more than float32 holds."""
+LOWER_BITS = 18
+"""The bits of a float32 that its bin of the luminance histogram does not depend on: there are 32 bins to a stop."""
 
 Triple = tuple[float, float, float]
 
@@ -164,7 +165,7 @@ def as_json_object(information: Information) -> dict[str, object]:
 
 def _describe(text: str, reading: Reading) -> Information:
     recipe = Recipe(text, reading)
-    found = reconstruction_of(recipe)
+    found = reconstruction_of(recipe, ahead=MAX_BANDS)
     light = found.subject.light
     about = light.about
     values, peak = (
@@ -193,7 +194,7 @@ def _describe(text: str, reading: Reading) -> Information:
         peak_theta_phi_degrees=theta_phi_degrees(peak),
         irradiance_up=_triple(light.irradiance_up()),
         method=found.projection.method,
-        energy_share=found.figures.energy_share[:SHOWN_BANDS],
+        energy_share=found.sums.energy_share[:SHOWN_BANDS],
         bands_needed=_needed(recipe),
         suns=tuple(_sun(sun, total) for sun in split.suns),
         no_sun=split.refusal,
@@ -253,27 +254,27 @@ def _grid_values(light: Light) -> tuple[Values, Array]:
     return _gather(iter(blocks), f"on a grid of {n_columns} x {n_rows}"), peak
 
 
-def _gather(blocks: Iterator[tuple[Array, Array]], source: str) -> Values:
+def _gather(blocks: Iterator[tuple[NDArray[np.floating], Array]], source: str) -> Values:
     """Gather the values of blocks: radiance (k, 3) and solid angles (k,), which are 0 for extra directions."""
     minimum, maximum, smallest, brightest = np.inf, -np.inf, np.inf, -np.inf
-    negative, dark, lit = 0, 0.0, np.zeros((HIGHEST_STOP - LOWEST_STOP) * BINS_PER_STOP)
+    negative, dark, lit = 0, 0.0, np.zeros(2 ** (31 - LOWER_BITS))
     for radiance, areas in blocks:
         if not len(radiance):
             continue
         minimum, maximum = min(minimum, float(radiance.min())), max(maximum, float(radiance.max()))
         negative += int(np.count_nonzero(radiance < 0))
-        luminance = radiance @ LUMINANCE
+        luminance = (radiance @ LUMINANCE.astype(radiance.dtype)).astype(np.float32)
         brightest = max(brightest, float(luminance.max()))
         above = luminance > 0
         smallest = min(smallest, float(luminance.min(where=above, initial=np.inf)))
         dark += float(areas[~above].sum())
-        bins = np.floor((np.log2(luminance[above]) - LOWEST_STOP) * BINS_PER_STOP).astype(np.int64)
-        lit += np.bincount(bins.clip(0, len(lit) - 1), areas[above], len(lit))
+        bins = np.where(above, luminance, np.float32(0)).view(np.int32) >> LOWER_BITS  # -0.0 would be negative
+        lit += np.bincount(bins, areas * above, len(lit))
     total = float(lit.sum())
     darkest = None
     if total > 0:
         place = int(np.searchsorted(np.cumsum(lit), DARK_PERCENTILE * total))
-        middle = float(2.0 ** (LOWEST_STOP + (place + 0.5) / BINS_PER_STOP))
+        middle = float(np.int32((2 * place + 1) << (LOWER_BITS - 1)).view(np.float32))
         darkest = min(max(middle, smallest), brightest)
     return Values(
         minimum=minimum,

@@ -26,6 +26,7 @@ from shviewer.harmonics.extremes.error_grid import Triple
 from shviewer.harmonics.rotation import check_rotation, rotate
 from shviewer.lights.find import file_of
 from shviewer.lights.suns.sun import Sun
+from shviewer.limits import MAX_BANDS
 from shviewer.notebook import InNotebooks
 from shviewer.outputs import Replacing, write_atomically
 from shviewer.version import __version__
@@ -145,11 +146,11 @@ class Projected(InNotebooks):
 
 def project_recipe(recipe: Recipe) -> Projected:
     """The coefficients that the window shows for a recipe. LightError or UsageError, as in `reconstruction_of`."""
-    found = reconstruction_of(recipe)
+    found = reconstruction_of(recipe, ahead=MAX_BANDS)
     shown, projection, figures = found.subject, found.projection, found.figures
-    of_radiance = figures
+    of_radiance = found.sums
     if recipe.quantity != RADIANCE:
-        of_radiance = reconstruction_of(replace(recipe, quantity=RADIANCE)).figures
+        of_radiance = reconstruction_of(replace(recipe, quantity=RADIANCE)).sums
     errors = {RADIANCE: of_radiance.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
     errors[recipe.quantity] = figures.relative_l2
     about: dict[str, Value] = {

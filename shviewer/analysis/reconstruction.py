@@ -34,11 +34,11 @@ class Reconstruction:
 def reconstruction_of(recipe: Recipe, ahead: int = 0) -> Reconstruction:
     """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range.
 
-    ahead: the number of bands that will be asked for: a light that keeps its coefficients is then projected only once.
+    ahead: the number of bands that will be asked for later: an image, which keeps its coefficients, is projected only once.
     """
     recipe.check()
     found = subject(recipe)
-    if ahead > recipe.projected_bands:
+    if ahead > recipe.projected_bands and found.light.about.size is not None:
         project(found.light, *BEST, ahead)
     projection = project(found.light, *sampling_of(recipe), recipe.projected_bands)
     named = recipe.light if isinstance(recipe.light, str) else found.light.name

@@ -66,6 +66,15 @@ def project_image(image: NDArray[np.floating], n_bands: int, precision: Precisio
     )
 
 
+def project_rows(some: NDArray[np.floating], top: int, height: int, n_bands: int) -> Array:
+    """`project_image` for an image of `height` rows that is black but for some, (rows, width, 3), from row `top` on."""
+    functions = _rows_of_texels(height, n_bands)
+    rows = slice(top, top + len(some))
+    part = RowFunctions(functions.cosines[:, rows], functions.sines[:, rows])
+    sums = row_sums(some, part, np.float64, mirrored=False)
+    return _from_row_sums(*sums, _columns_of_texels(some.shape[1], n_bands))
+
+
 @lru_cache(maxsize=8)
 def _rows_of_texels(height: int, n_bands: int) -> RowFunctions:
     """The integrals of cos(kt) sin(t) and sin(kt) sin(t) over each row.

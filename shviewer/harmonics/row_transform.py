@@ -69,9 +69,12 @@ class RowFunctions:
         return self.exact[0].astype(np.float32), self.exact[1].astype(np.float32)
 
 
-def row_sums(values: Values, functions: RowFunctions, precision: Precision) -> tuple[Array, Array]:
+def row_sums(
+    values: Values, functions: RowFunctions, precision: Precision, mirrored: bool = True
+) -> tuple[Array, Array]:
     """values (rows, columns, 3) -> the sums for even and for odd m, (columns or half of them, 3, n_bands) float64 each.
 
+    mirrored: whether the rows are all of them, so that the last ones mirror the first.
     The last axis has k as in `by_parity`. An even number of columns is folded, and only the left half returned.
     """
     rows, columns = values.shape[:2]
@@ -79,19 +82,19 @@ def row_sums(values: Values, functions: RowFunctions, precision: Precision) -> t
     if columns < NARROW:
         precision = np.float64
     flat = values.reshape(rows, halves, columns // halves * 3)
-    sums = _sum_rows(flat, functions, precision)
+    sums = _sum_rows(flat, functions, precision, mirrored)
     if precision is np.float32:
         _repeat_outstanding(flat, functions, sums)
     even, odd = sums.reshape(2, columns // halves, 3, -1)
     return even, odd
 
 
-def _sum_rows(flat: Values, functions: RowFunctions, precision: Precision) -> Array:
+def _sum_rows(flat: Values, functions: RowFunctions, precision: Precision, mirrored: bool) -> Array:
     """Sums over rows: (rows, halves, width) -> (even and odd m, width, n_bands)."""
     rows, _, width = flat.shape
     n_bands, half = len(functions.cosines), rows // 2
     work = _Pass(flat, functions, np.zeros((2, width, n_bands)), precision)
-    if n_bands < FOLD_BANDS or not half:
+    if n_bands < FOLD_BANDS or not half or not mirrored:
         work.add_rows(0, rows)
     else:
         work.add_pairs(half)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -29,8 +29,14 @@ from shviewer.words import one_line
 MAX_RASTER_WIDTH = 8192
 """The most columns of the lat-long raster that stands for an image in another layout when it is drawn."""
 
-BLOCK_TEXELS = 2**20
+RUN_ROWS = 64
+"""Rows of what was taken that are held in float64 at a time."""
+
+BLOCK_TEXELS = 2**17
 """Texels in one block of `texels`, which bounds the memory."""
+
+SUNS_TO_REST = 1e6
+"""The most times that the squared norm of the whole may be that of the rest, for the rest to be found by subtraction."""
 
 MAX_TEXTURE_SIDE = 16384
 """The largest side of a texture that every desktop GPU of the last ten years takes."""
@@ -49,6 +55,10 @@ class EnvironmentLight(RadianceLight):
     """The file's format in words; None for an image that was not read."""
     limits: Limits
     """The limit of memory counts for what is made of the image, too."""
+    whole: EnvironmentLight | None = field(init=False, repr=False)
+    """The image that this is the rest of, without suns."""
+    changed: NDArray[np.bool_] = field(init=False, repr=False)
+    """The rows (height,) that differ from those of the whole."""
 
     best_method = "exact texel integrals"
     lobes = ()
@@ -66,8 +76,9 @@ class EnvironmentLight(RadianceLight):
         texels = pixels.texels if isinstance(pixels, LatLongMap) else pixels
         check_brightness(max(float(texels.max()), -float(texels.min())), name)
         layout = layout or LatLongLayout(*texels.shape[:2])
-        for field, value in (("pixels", texels), ("layout", layout), ("name", name), ("notes", notes)):
-            object.__setattr__(self, field, value)
+        for part, value in (("pixels", texels), ("layout", layout), ("name", name), ("notes", notes)):
+            object.__setattr__(self, part, value)
+        object.__setattr__(self, "whole", None)
         object.__setattr__(self, "encoding", encoding)
         object.__setattr__(self, "limits", limits)
 
@@ -125,9 +136,25 @@ class EnvironmentLight(RadianceLight):
         """As in Light. The most bands asked for so far are kept; fewer bands are their first rows."""
         held = self._projected[-1:]
         if not held or len(held[0]) < n_bands**2:
-            held = [self.layout.project(self.pixels, n_bands)]
+            found = self._from_whole(n_bands)
+            held = [self.layout.project(self.pixels, n_bands) if found is None else found]
             self._projected[:] = held
         return held[0][: n_bands**2]
+
+    def _from_whole(self, n_bands: int) -> Array | None:
+        """Coefficients as those of the whole minus what was taken from some rows; None if that is impossible or less exact.
+
+        It takes the rounding of the whole, which is 1e-16 of the suns: too much for a rest that is far darker.
+        """
+        if self.whole is None or not isinstance(self.layout, LatLongLayout):
+            return None
+        if np.trace(self.whole.products()) > SUNS_TO_REST * np.trace(self.products()):
+            return None
+        rest = self.whole.coefficients(n_bands).copy()
+        for rows in _runs(self.changed):
+            taken = self.whole.pixels[rows].astype(np.float64) - self.pixels[rows]
+            rest -= self.layout.project_rows(taken, rows.start, n_bands)
+        return rest
 
     @property
     def kept_bands(self) -> int:
@@ -156,7 +183,9 @@ class EnvironmentLight(RadianceLight):
         height, width = self.pixels.shape[:2]
         if self.layout.solid_angles().shape[1] == 1:  # rows of constant theta: the integral of cos(theta) over each
             sines = np.sin(np.minimum(np.linspace(0, np.pi, height + 1), np.pi / 2))
-            return np.asarray(np.diff(sines**2) * (np.pi / width) @ self.pixels.sum(axis=1, dtype=np.float64))
+            upper = self.pixels[: (height + 1) // 2]
+            sums = np.array([np.ones(width) @ row.astype(np.float64) for row in upper])
+            return np.asarray(np.diff(sines**2)[: len(upper)] * (np.pi / width) @ sums)
         places = np.indices(self.pixels.shape[:2]).reshape(2, -1)
         above = (self.layout.centres(*places)[:, 2] > 0).reshape(*self.pixels.shape[:2], 1)
         return np.asarray(self.layout.project(self.pixels * above, 2)[2] * np.sqrt(4 * np.pi / 3))
@@ -176,13 +205,17 @@ class EnvironmentLight(RadianceLight):
     def form(self) -> Raster:
         return self.map
 
-    def texels(self) -> Iterator[tuple[Array, Array]]:
+    def texels(self) -> Iterator[tuple[NDArray[np.floating], Array]]:
         """As in Light: the texels that show something."""
         areas = np.broadcast_to(self.layout.solid_angles(), self.pixels.shape[:2])
         rows = max(1, BLOCK_TEXELS // self.pixels.shape[1])
         for top in range(0, len(self.pixels), rows):
-            shown = areas[top : top + rows] > 0
-            yield self.pixels[top : top + rows][shown].astype(np.float64), areas[top : top + rows][shown]
+            pixels, steradians = self.pixels[top : top + rows], areas[top : top + rows]
+            if steradians.min() > 0:
+                yield pixels.reshape(-1, 3), steradians.ravel()
+            else:
+                shown = steradians > 0
+                yield pixels[shown], steradians[shown]
 
     def split_suns(self, wanted: int | str = "auto") -> Split:
         from shviewer.lights.suns.compact_sources import CompactSources
@@ -196,7 +229,10 @@ class EnvironmentLight(RadianceLight):
         found, why = sources.take_all()
         taken = chosen(self.name, found, wanted, why)
         suns = [found[i].sun for i in taken] if len(taken) == len(found) else sources.keep(taken)
-        return Split(replace(self, pixels=sources.pixels), tuple(suns))
+        rest = replace(self, pixels=sources.pixels)
+        object.__setattr__(rest, "whole", self)
+        object.__setattr__(rest, "changed", sources.changed)
+        return Split(rest, tuple(suns))
 
 
 def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:
@@ -206,3 +242,11 @@ def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:
     texel = max(ends, key=lambda i: abs(values[i])) // 3
     row, column = divmod(texel, pixels.shape[1])
     return np.array([row]), np.array([column])
+
+
+def _runs(rows: NDArray[np.bool_]) -> Iterator[slice]:
+    """The runs of rows that are true, at most RUN_ROWS at a time."""
+    places = np.flatnonzero(rows)
+    for run in np.split(places, np.flatnonzero(np.diff(places) > 1) + 1) if len(places) else []:
+        for top in range(int(run[0]), int(run[-1]) + 1, RUN_ROWS):
+            yield slice(top, min(top + RUN_ROWS, int(run[-1]) + 1))

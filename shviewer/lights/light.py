@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
@@ -63,7 +64,7 @@ class Light(Protocol):
     def integrand(self, directions: Array) -> Array:
         """The function that `coefficients` integrates: the radiance, or for an image its texels as areas, not interpolated."""
 
-    def texels(self) -> Iterator[tuple[Array, Array]]:
+    def texels(self) -> Iterator[tuple[NDArray[np.floating], Array]]:
         """The texels of an image in blocks: radiance (k, 3) and steradians (k,); nothing for other lights."""
 
     def coefficients(self, n_bands: int) -> Array:
@@ -171,7 +172,7 @@ class LightBase(InNotebooks, ABC):
     def kept_bands(self) -> int:
         return 0
 
-    def texels(self) -> Iterator[tuple[Array, Array]]:
+    def texels(self) -> Iterator[tuple[NDArray[np.floating], Array]]:
         return iter(())
 
     def accuracy(self) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection import project_image, project_rows
 from shviewer.harmonics.quadrature import angles_from_directions, directions_from_angles, row_angles
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.layout import Indices
@@ -53,3 +53,7 @@ class LatLongLayout:
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         return project_image(pixels, n_bands)
+
+    def project_rows(self, some: NDArray[np.floating], top: int, n_bands: int) -> Array:
+        """Coefficients of an image that is black but for some rows, (rows, width, 3), from row `top` on."""
+        return project_rows(some, top, self.height, n_bands)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.lights.layouts.layout import Indices, Layout
@@ -72,9 +73,13 @@ class Caps:
         rows, columns = rows[seen], columns[seen]
         return Texels(rows, columns, self._layout.centres(rows, columns), solid_angles[seen])
 
+    def touched(self, axis: Array, half_angle: float) -> NDArray[np.bool_]:
+        """The tiles, row by row, that may have texels within `half_angle` radians of `axis`; true for a NaN middle, too."""
+        return np.asarray(~(chord(self._middles, axis) > self._radii + chord_of(half_angle)))
+
     def cap(self, axis: Array, half_angle: float) -> Texels:
         """Every texel whose centre is within `half_angle` radians of `axis`."""
-        touched = ~(chord(self._middles, axis) > self._radii + chord_of(half_angle))  # true for a NaN middle, too
+        touched = self.touched(axis, half_angle)
         inside = np.arange(TILE)
         rows = (self._top[touched, None, None] + inside[:, None] + 0 * inside).ravel()
         columns = (self._left[touched, None, None] + inside + 0 * inside[:, None]).ravel()

@@ -28,8 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, normalise
+from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
-from shviewer.lights.suns.caps import Caps, Texels, chord, chord_of
+from shviewer.lights.suns.caps import TILE, Caps, Texels, chord, chord_of
 from shviewer.lights.suns.rule import CONTRAST, ENERGY, FEW_TEXELS, MOST, Found, refusal
 from shviewer.lights.suns.sun import Sun
 
@@ -109,10 +110,12 @@ class CompactSources:
         self.pixels = self._given = pixels
         self._layout = layout
         self._solid_angles = layout.solid_angles().astype(np.float32)
-        self._mean = self._mean_of_channels()
+        self._mean = self._mean_of_channels(slice(None))
         self._caps = Caps(layout, *self.pixels.shape[:2])
         self._plateau = self._highest()
         self._axes: list[Array] = []
+        self.changed = np.zeros(len(pixels), dtype=bool)
+        """The rows (height,) of which something was taken."""
 
     def take_all(self) -> tuple[list[Found], str]:
         """Take all sources out; return them and the reason why there are no more."""
@@ -125,8 +128,10 @@ class CompactSources:
 
     def keep(self, taken: list[int]) -> list[Sun]:
         """Take only some of the sources that were found, by their indices, out of the image as it was; return them."""
-        self.pixels = self._given
-        self._mean = self._mean_of_channels()
+        if self.pixels is not self._given:
+            self.pixels[self.changed] = self._given[self.changed]
+            self._mean[self.changed] = self._mean_of_channels(self.changed)
+        self.changed[:] = False
         suns = []
         for i in taken:
             excess = self._excess(self._axes[i])
@@ -134,20 +139,30 @@ class CompactSources:
             self._remove(excess)
         return suns
 
-    def _mean_of_channels(self) -> NDArray[np.float32]:
-        """(height, width), 0 for a texel that shows nothing."""
-        mean: NDArray[np.float32] = self.pixels @ np.full(3, 1 / 3, dtype=np.float32)
-        mean *= self._solid_angles > 0
+    def _mean_of_channels(self, rows: slice | NDArray[np.bool_]) -> NDArray[np.float32]:
+        """(rows, width), 0 for a texel that shows nothing."""
+        mean: NDArray[np.float32] = self.pixels[rows] @ np.full(3, 1 / 3, dtype=np.float32)
+        mean *= self._solid_angles[rows] > 0
         return mean
 
     def _highest(self) -> Texels | None:
         """The texels at the highest value of a channel, if there are so few and so many that they can be a clipped sun."""
-        flat = self.pixels.reshape(-1, 3)
-        ceiling = flat.max(axis=0)
-        at = np.flatnonzero(((flat == ceiling) & (ceiling > 0)).any(axis=1))
-        if not PLATEAU <= len(at) <= len(flat) // 8:
-            return None
-        return self._caps.texels(*np.divmod(at, self.pixels.shape[1]))
+        height, width = self.pixels.shape[:2]
+        flat = self.pixels.reshape(height, -1)
+        ceiling = flat.max(axis=0).reshape(-1, 3).max(axis=0)
+        wanted = np.tile(np.where(ceiling > 0, ceiling, np.nan), width).astype(np.float32)
+        rows, columns = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+        found, block = 0, max(1, BLOCK_VALUES // width)
+        for top in range(0, height, block):
+            there = flat[top : top + block] == wanted
+            if there.any():
+                row, column = np.nonzero(there.reshape(len(there), width, 3).any(axis=2))
+                rows.append(row + top)
+                columns.append(column)
+                found += len(row)
+            if found > height * width // 8:
+                return None
+        return self._caps.texels(np.concatenate(rows), np.concatenate(columns)) if found >= PLATEAU else None
 
     def _take_brightest(self, most: int) -> tuple[list[Found], str]:
         """Take out up to `most` sources; return them and why the first spot that is not compact is none.
@@ -157,7 +172,8 @@ class CompactSources:
         peak = self._mean.max()
         if not peak > 0:
             return [], "nothing in it is above 0"
-        flux, squares = self._flux_and_squares(peak)
+        flux, tiles = self._flux_and_squares(peak)
+        squares = float(tiles.sum())
         least = ENERGY if self._plateau is None else CLIPPED_ENERGY
         dimmest = np.sqrt(least * squares / np.pi) / chord_of(CAP)
         waiting = self._brighter_than(dimmest * peak)
@@ -166,7 +182,11 @@ class CompactSources:
         for _ in range(TRIES):
             if not len(waiting) or len(found) == most:
                 break
-            axis = self._middle(waiting[0])
+            spot = waiting[0]
+            waiting = waiting[chord(waiting, spot) > chord_of(CAP)]
+            if why and not self._may_hold(spot, least * squares, tiles):
+                continue
+            axis = self._middle(spot)
             excess = self._excess(axis)
             mean, weights = excess.mean / peak, excess.texels.solid_angles
             shares = float(weights @ mean) / flux, float(weights @ mean**2) / squares
@@ -185,7 +205,6 @@ class CompactSources:
                     self._axes.append(axis)
                     self._remove(excess)
             why = why or wrong
-            waiting = waiting[chord(waiting, waiting[0]) > chord_of(CAP)]
         return found, why or "no texel is bright enough to hold so much in so small a cap"
 
     def _clipped(self, excess: _Excess) -> bool:
@@ -208,20 +227,32 @@ class CompactSources:
         )
         return peak >= CONTRAST * beyond and near >= max(GLOW * (peak - beyond), FALL * farther)
 
+    @cached_property
+    def _negative(self) -> bool:
+        return bool(self._given.min() < 0)
+
     def _average(self, texels: Texels) -> float:
         """The mean radiance of texels and channels; 0 of none."""
         total = float(texels.solid_angles.sum())
         return float(texels.solid_angles @ self._mean[texels.rows, texels.columns]) / total if total else 0.0
 
-    def _flux_and_squares(self, peak: np.float32) -> tuple[float, float]:
-        """The integrals of |mean| / peak and of its square, in the few digits that a share needs."""
-        flux = squares = 0.0
-        block = max(1, BLOCK_VALUES // self._mean.shape[1])
-        for start in range(0, len(self._mean), block):
-            scaled, weights = self._mean[start : start + block] / peak, self._solid_angles[start : start + block]
+    def _flux_and_squares(self, peak: np.float32) -> tuple[float, Array]:
+        """The integral of |mean| / peak, and that of its square over each tile of `Caps`, in the few digits of a share."""
+        height, width = self._mean.shape
+        flux, squares = 0.0, np.zeros((-(-height // TILE), -(-width // TILE)))
+        for row, top in enumerate(range(0, height, TILE)):
+            scaled, weights = self._mean[top : top + TILE] / peak, self._solid_angles[top : top + TILE]
             flux += float((np.abs(scaled) * weights).sum(axis=1).sum(dtype=np.float64))
-            squares += float((scaled * scaled * weights).sum(axis=1).sum(dtype=np.float64))
-        return flux, squares
+            columns = (scaled * scaled * weights).sum(axis=0, dtype=np.float64)
+            squares[row] = np.add.reduceat(columns, np.arange(0, width, TILE))
+        return flux, squares.ravel()
+
+    def _may_hold(self, spot: Array, least: float, tiles: Array) -> bool:
+        """Whether a source whose brightest texel is at `spot` may hold `least` of the squares, by those of whole tiles.
+
+        It holds no more than all texels within reach, unless some are negative.
+        """
+        return self._negative or float(tiles[self._caps.touched(spot, 2 * CAP)].sum()) >= least
 
     def _brighter_than(self, dimmest: float) -> Array:
         """Directions (k, 3) of the texels brighter than `dimmest`, the brightest first."""
@@ -255,7 +286,11 @@ class CompactSources:
         scale = np.abs(excess.taken).max()
         alone = np.zeros(self.pixels.shape, dtype=np.float32)  # memory pages that stay zero take no memory
         alone[rows, columns] = (excess.taken / scale).astype(np.float32)
-        bands = self._layout.project(alone, 2).mean(axis=1)
+        if isinstance(self._layout, LatLongLayout):
+            some = slice(int(rows.min()), int(rows.max()) + 1)
+            bands = self._layout.project_rows(alone[some], some.start, 2).mean(axis=1)
+        else:
+            bands = self._layout.project(alone, 2).mean(axis=1)
         vector = np.array([-bands[3], -bands[1], bands[2]]) / np.sqrt(3)  # in units of band 0
         length = float(np.linalg.norm(vector))
         smallest = float(excess.texels.solid_angles[excess.mean.argmax()]) / (4 * np.pi)
@@ -267,6 +302,7 @@ class CompactSources:
         if self.pixels is self._given:
             self.pixels = self._given.copy()
         self.pixels[rows, columns] = excess.after
+        self.changed[rows] = True
         self._mean[rows, columns] = excess.after.mean(axis=1)
 
 

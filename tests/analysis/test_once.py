@@ -1,0 +1,46 @@
+"""An image is projected once, to the most bands that will be asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lights.images.hdr_files import exr_file
+
+from shviewer.analysis.cache import MEMORY
+from shviewer.analysis.information import describe
+from shviewer.analysis.projected import project_recipe
+from shviewer.analysis.recipe import Recipe
+from shviewer.lights.layouts.lat_long import LatLongLayout
+from shviewer.lights.reading import DEFAULT_READING
+from shviewer.viewer.picture import prepare
+from shviewer.viewer.state import state_of
+
+
+@pytest.fixture
+def sunny(tmp_path: Path) -> str:
+    pixels = np.ones((128, 256), np.float16)
+    pixels[40:42, 70:72] = 20000
+    path = tmp_path / "sunny.exr"
+    path.write_bytes(exr_file(dict.fromkeys("RGB", pixels)))
+    MEMORY.clear()
+    return str(path)
+
+
+@pytest.mark.parametrize("work", ["project", "picture", "info"])
+def test_an_image_is_projected_once(sunny: str, work: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, real = [], LatLongLayout.project
+
+    def counted(self: LatLongLayout, pixels: np.ndarray, n_bands: int) -> np.ndarray:
+        asked.append(n_bands)
+        return real(self, pixels, n_bands)
+
+    monkeypatch.setattr(LatLongLayout, "project", counted)
+    if work == "project":
+        assert project_recipe(Recipe(sunny)).figures.irradiance_relative_l2 > 0
+    elif work == "picture":
+        assert prepare(state_of(sunny)).complete
+    else:
+        assert describe(sunny, DEFAULT_READING).bands_needed_without_suns
+    assert asked == [128]

@@ -1,0 +1,108 @@
+"""What is left of an image without its suns is not computed twice, and what cannot be a sun is refused cheaply."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from shviewer.errors import LightError
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.layouts.lat_long import LatLongLayout
+from shviewer.lights.suns.compact_sources import PLATEAU, CompactSources
+
+HEIGHT, WIDTH = 256, 512
+
+
+def sky(seed: int, *spots: tuple[int, int, float]) -> np.ndarray:
+    """Smooth light with noise, and spots of 2 x 2 texels: row, column and radiance."""
+    rng = np.random.default_rng(seed)
+    pixels = 1 + 0.5 * np.sin(np.linspace(0, 3, HEIGHT))[:, None, None] * rng.random((HEIGHT, WIDTH, 3))
+    for row, column, radiance in spots:
+        pixels[row : row + 2, column : column + 2] = radiance * np.array([1, 0.9, 0.8])
+    return pixels.astype(np.float32)
+
+
+TWO = (40, 300, 3e4), (180, 20, 2e4)
+
+
+@pytest.mark.parametrize("n_bands", [2, 23, 24, 128])
+def test_the_rest_has_the_coefficients_of_its_own_texels(n_bands: int) -> None:
+    whole = EnvironmentLight(sky(1, *TWO))
+    rest = whole.split_suns().rest
+    own = EnvironmentLight(rest.pixels)
+    np.testing.assert_array_equal(rest.products(), own.products())
+    scale = np.abs(whole.coefficients(n_bands)).max()  # the rounding is that of the suns
+    np.testing.assert_allclose(rest.coefficients(n_bands), own.coefficients(n_bands), atol=2e-14 * scale, rtol=0)
+
+
+def test_the_rest_is_not_projected_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = EnvironmentLight(sky(2, *TWO))
+    rest = whole.split_suns().rest
+    whole.coefficients(32)
+    monkeypatch.setattr(LatLongLayout, "project", None)
+    assert rest.coefficients(32).shape == (32**2, 3)
+    assert 0 < np.count_nonzero(rest.changed) < HEIGHT / 2
+
+
+def test_a_rest_that_is_far_darker_than_its_sun_is_projected_itself() -> None:
+    pixels = sky(3, (60, 100, 1e6)) * np.float32(1)
+    pixels[pixels < 1e5] *= np.float32(1e-3)
+    rest = EnvironmentLight(pixels).split_suns().rest
+    assert isinstance(rest, EnvironmentLight)
+    np.testing.assert_array_equal(rest.coefficients(32), EnvironmentLight(rest.pixels).coefficients(32))
+
+
+SPOTS = [
+    (),
+    TWO,
+    ((40, 300, 3e4), (50, 300, 2e3), (60, 310, 900.0)),
+    tuple((20 * k + 5, 37 * k % 500, 3e3 * 1.1**k) for k in range(12)),
+    ((100, 100, 4e4), *((90 + k, 400 + 2 * k, 500.0) for k in range(20))),
+]
+
+
+@pytest.mark.parametrize("spots", SPOTS)
+@pytest.mark.parametrize("wanted", ["auto", "all"])
+def test_what_is_refused_cheaply_would_be_refused_anyway(
+    spots: tuple[tuple[int, int, float], ...], wanted: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    light = EnvironmentLight(sky(4, *spots))
+
+    def outcome() -> tuple[str, np.ndarray, list[list[float]]]:
+        try:
+            split = light.split_suns(wanted)
+        except LightError as error:
+            return str(error), light.pixels, []
+        return "", split.rest.pixels, [[*sun.axis, sun.half_angle, *sun.radiance] for sun in split.suns]
+
+    cheap = outcome()
+    monkeypatch.setattr(CompactSources, "_may_hold", lambda *_: True)
+    said, rest, suns = outcome()
+    assert (cheap[0], cheap[2]) == (said, suns)
+    np.testing.assert_array_equal(cheap[1], rest)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_plateau_is_every_texel_at_the_highest_value_of_a_channel(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    pixels = rng.random((300, 1000, 3)).astype(np.float32)
+    for channel, value in enumerate(rng.choice([0.5, 1.0, 2.0], 3)):
+        at = rng.integers(0, pixels[..., 0].size, rng.integers(1, 200))
+        plane = pixels[..., channel].ravel()
+        plane[at] = value
+        pixels[..., channel] = plane.reshape(300, 1000)
+    found = CompactSources(pixels, LatLongLayout(300, 1000))._plateau
+    ceiling = pixels.reshape(-1, 3).max(axis=0)
+    expected = np.flatnonzero((pixels.reshape(-1, 3) == ceiling).any(axis=1))
+    assert len(expected) >= PLATEAU
+    assert found is not None
+    np.testing.assert_array_equal(found.rows * 1000 + found.columns, expected)
+
+
+def test_a_channel_that_is_black_has_no_plateau() -> None:
+    pixels = np.zeros((64, 128, 3), np.float32)
+    assert CompactSources(pixels, LatLongLayout(64, 128))._plateau is None
+    pixels[3, 3:5, 0] = 1
+    found = CompactSources(pixels, LatLongLayout(64, 128))._plateau
+    assert found is not None
+    assert found.columns.tolist() == [3, 4]
