@@ -1,6 +1,6 @@
 """What the programs draw, in float32 and in their own axes, and how far that is from what it should be.
 
-Each draws a white sphere from six sides and flat tiles, lit by the coefficients that `shviewer project` writes for it, and once
+Each draws a white sphere from six sides and flat tiles, lit as the guide says, by a file and some lines of code, and once
 more lit by a constant light; where it can, the lat-long image around the camera; and the coefficients that it makes of that
 image itself. What a pixel shows over what it shows under the constant light is the irradiance over pi: with a Lambertian
 material the pixel itself, and with one that takes something off, what it would be without that.
@@ -48,7 +48,7 @@ Seen = tuple[Array, Array]
 
 
 def write_job(folder: Path) -> None:
-    """What browser/page.mjs asks for: light.hdr, normals.f32, and for each program its two files of coefficients."""
+    """What browser/page.mjs asks for: light.hdr, normals.f32, and for each program what the guide says: files and code."""
     (folder / "light.hdr").write_bytes(light_file())
     (folder / "constant.toml").write_text(
         f'[[lobe]]\nprofile = "constant"\nradiance = [{", ".join([str(CONSTANT)] * 3)}]\n'
@@ -58,9 +58,11 @@ def write_job(folder: Path) -> None:
         (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype("<f4").tobytes()
     )
     for name, program in PROGRAMS.items():
-        for light, out in (("light.hdr", folder / f"{name}.json"), ("constant.toml", folder / f"{name}-constant.json")):
-            options = ["--bands", "3", "--convention", program.convention, "--force", "-o", str(out)]
-            assert main(["project", str(folder / light), *options]) == 0
+        command, lines = program.typed
+        (folder / f"{name}.js").write_text(lines, encoding="utf-8")
+        for light, file in (("light.hdr", f"{name}.json"), ("constant.toml", f"{name}-constant.json")):
+            meant = {"sky.hdr": str(folder / light), "sky.json": str(folder / file)}
+            assert main([*(meant.get(word, word) for word in command), "--force"]) == 0
 
 
 def draw(folder: Path) -> None:

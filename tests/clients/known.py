@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
+
+from documents import code_blocks, commands, page
 
 from shviewer.coefficients.parts.axes import Axes
 from shviewer.coefficients.programs import CONVENTIONS
@@ -24,6 +27,8 @@ class Program:
     """Its name on npm."""
     convention: str
     """The name that `shviewer project --convention` is given."""
+    section: str = ""
+    """Where the guide says what to type, if it is not what the program is called."""
     hand: int = 1
     """1 if its axes are right-handed, -1 if left-handed: which way is right in a picture of it."""
     turned: str = ""
@@ -32,6 +37,15 @@ class Program:
     @property
     def axes(self) -> Axes:
         return Axes(self.turned) if self.turned else CONVENTIONS[self.convention].axes
+
+    @property
+    def typed(self) -> tuple[list[str], str]:
+        """What the guide says to type: the arguments of shviewer, and the lines of JavaScript."""
+        (section,) = re.findall(
+            rf"^## {re.escape(self.section or self.called)}\n(.*?)(?=^## |\Z)", page("programs"), re.M | re.S
+        )
+        (command,), (lines,) = commands(section), code_blocks(section, "js")
+        return command, lines
 
     @property
     def version(self) -> str:
@@ -43,7 +57,7 @@ class Program:
 PROGRAMS = {
     "three": Program("three.js", "three", "three"),
     "babylon": Program("Babylon.js", "babylonjs", "babylon", hand=-1),
-    "babylon-right": Program("Babylon.js, right-handed", "babylonjs", "babylon", turned="-y+z-x"),
+    "babylon-right": Program("Babylon.js, right-handed", "babylonjs", "babylon", "Babylon.js", turned="-y+z-x"),
     "gltf": Program("glTF in Babylon.js", "babylonjs-loaders", "gltf", hand=-1),
     "filament": Program("Filament", "filament", "filament"),
     "playcanvas": Program("PlayCanvas", "playcanvas", "playcanvas"),

@@ -92,7 +92,7 @@ def table() -> str:
     lines = ["", f"{head}what it projects itself |", "|---|---|---|---|---|---|"]
     for name, row in MEASURED.items():
         seen = "not shown" if row.surroundings is None else percent(row.surroundings)
-        own = row.own.partition(" to ")[2].partition(" over")[0]
+        own = row.own.partition(" to ")[2].replace(" over its 3 bands", "")
         white = "{:.3f} in the middle, {:.3f} on average".format(*row.white)
         cells = (
             f"{PROGRAMS[name].called} {row.version}",

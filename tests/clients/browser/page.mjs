@@ -14,16 +14,21 @@ const read = async (name) => {
   if (!answer.ok) throw new Error(`${name}: ${answer.status}`);
   return answer;
 };
+const AsyncFunction = (async () => {}).constructor;
 const send = (name, body) => fetch(`/job/${name}`, {method: 'POST', body});
 
-// A program has `light(json)`, what a user types to be lit by a file of coefficients; `shape(geometry)`, what is lit, white and
-// matt; `look(view)`, 4 floats a pixel with rows from below. Some have `usual()`, their physically based material from there on;
+// A program has `light(typed)`, which has the guide's lines run with the names that they take for given: `typed({scene})`;
+// `shape(geometry)`, what is lit, white and matt; `look(view)`, 4 floats a pixel with rows from below. Some have `usual()`, their physically based material from there on;
 // `surround(url)`, a lat-long image around the camera; `project(url)`, coefficients that they make of it themselves.
 async function run(name) {
   const {open} = await import(`./programs/${name}.mjs`);
   const program = await open(document.getElementById('canvas'), SIZE);
   const normals = new Float32Array(await (await read('normals.f32')).arrayBuffer());
-  const lit = async (file) => program.light(await (await read(file)).json());
+  const lines = await (await read(`${name}.js`)).text();
+  const lit = (file) => program.light(async (names) => {
+    const typed = new AsyncFunction('fetch', ...Object.keys(names), lines);
+    await typed(() => read(file), ...Object.values(names)); // whatever they fetch is the file
+  });
   const views = async (what, more = {}) => {
     const floats = new Float32Array(VIEWS.length * SIZE * SIZE * 4);
     for (const [i, view] of VIEWS.entries()) floats.set(await program.look({...view, ...more}), i * SIZE * SIZE * 4);

@@ -16,13 +16,13 @@ export async function open(canvas, size, rightHanded = false) {
   target.activeCamera = camera;
   const cube = new BABYLON.RawCubeTexture(scene, Array.from({length: 6}, () => new Uint8Array([0, 0, 0, 255])), 1);
   const material = new BABYLON.PBRMaterial('white', scene);
-  Object.assign(material, {albedoColor: BABYLON.Color3.White(), metallic: 0, roughness: 1, metallicF0Factor: 0, reflectionTexture: cube, backFaceCulling: false});
+  Object.assign(material, {albedoColor: BABYLON.Color3.White(), metallic: 0, roughness: 1, metallicF0Factor: 0, backFaceCulling: false});
   let mesh = null, sky = null;
   return {
     scene,
-    material,
-    light(json) {
-      cube.sphericalPolynomial = BABYLON.SphericalPolynomial.FromHarmonics(BABYLON.SphericalHarmonics.FromArray(json.coefficients));
+    async light(typed) {
+      scene.environmentTexture = cube;
+      await typed({BABYLON, scene});
     },
     shape(given) {
       mesh?.dispose();

@@ -17,15 +17,15 @@ export async function open(canvas, size) {
   scene.postProcessStages.fxaa.enabled = false;
   const vector = (numbers) => new Cesium.Cartesian3(...numbers);
   scene.camera.frustum = Object.assign(new Cesium.OrthographicOffCenterFrustum(), {left: -1, right: 1, bottom: -1, top: 1, near: 0.1, far: 10});
-  let coefficients = [], geometry = null, model = null;
+  let lit = null, geometry = null, model = null;
   const frame = async () => {
     scene.initializeFrame();
     scene.render();
     await new Promise((done) => setTimeout(done, 0));
   };
   return {
-    light(json) {
-      coefficients = json.coefficients.map(vector);
+    light(typed) {
+      lit = typed;
       model = null;
     },
     shape(given) {
@@ -39,12 +39,10 @@ export async function open(canvas, size) {
         scene.primitives.removeAll();
         model = scene.primitives.add(await Cesium.Model.fromGltfAsync({
           url: URL.createObjectURL(new Blob([file], {type: 'model/gltf+json'})),
-          imageBasedLighting: Object.assign(new Cesium.ImageBasedLighting(), {sphericalHarmonicCoefficients: coefficients}),
           lightColor: Cesium.Cartesian3.ZERO,
-          environmentMapOptions: {enabled: false},
           backFaceCulling: false,
         }));
-        model.environmentMapManager.enabled = false;
+        await lit({Cesium, model});
         while (!model.ready) await frame();
         for (let i = 0; i < 5; i++) await frame();
       }

@@ -22,13 +22,9 @@ export async function open(canvas, size) {
   await new Promise((done) => asset.loadResources(done, () => {}, null, null));
   const manager = engine.getRenderableManager();
   const material = manager.getMaterialInstanceAt(manager.getInstance(asset.getRenderableEntities()[0]), 0);
-  let body = null, light = null;
+  let body = null;
   return {
-    light(json) {
-      if (light) engine.destroyIndirectLight(light);
-      light = Filament.IndirectLight.Builder().irradianceSh(3, json.coefficients.flat()).intensity(1).build(engine);
-      scene.setIndirectLight(light);
-    },
+    light: (typed) => typed({Filament, engine, scene, lux: 1}),
     shape({positions, normals, indices}) {
       const count = positions.length / 3;
       const types = Filament['VertexBuffer$AttributeType'], names = Filament.VertexAttribute;

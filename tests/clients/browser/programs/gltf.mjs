@@ -3,7 +3,7 @@ import {script} from '../loading.mjs';
 import {open as openBabylon} from './babylon.mjs';
 
 export async function open(canvas, size) {
-  const {scene, material, shape, look, usual} = await openBabylon(canvas, size);
+  const {scene, shape, look, usual} = await openBabylon(canvas, size);
   await script('/node_modules/babylonjs-loaders/babylonjs.loaders.js');
   const {BABYLON} = window;
   const black = Object.assign(document.createElement('canvas'), {width: 2, height: 2});
@@ -11,17 +11,10 @@ export async function open(canvas, size) {
   const images = Array.from({length: 6}, () => ({uri: black.toDataURL('image/png')}));
   return {
     shape, look, usual,
-    async light(json) {
-      const light = { // without an intensity it is black
-        intensity: 1, irradianceCoefficients: json.coefficients, specularImages: [[0, 1, 2, 3, 4, 5]], specularImageSize: 2,
-      };
-      const file = {
-        asset: {version: '2.0'}, extensionsUsed: ['EXT_lights_image_based'], images, scene: 0,
-        scenes: [{nodes: [], extensions: {EXT_lights_image_based: {light: 0}}}],
-        extensions: {EXT_lights_image_based: {lights: [light]}},
-      };
-      await BABYLON.ImportMeshAsync(`data:${JSON.stringify(file)}`, scene, {pluginExtension: '.gltf'});
-      material.reflectionTexture = scene.environmentTexture;
+    async light(typed) {
+      const gltf = {asset: {version: '2.0'}, images, scene: 0, scenes: [{nodes: []}]};
+      await typed({gltf, specularImages: [[0, 1, 2, 3, 4, 5]], specularImageSize: 2});
+      await BABYLON.ImportMeshAsync(`data:${JSON.stringify(gltf)}`, scene, {pluginExtension: '.gltf'});
     },
   };
 }

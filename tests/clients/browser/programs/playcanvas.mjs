@@ -34,10 +34,7 @@ export async function open(canvas, size) {
     return asset.resource;
   };
   return {
-    light(json) {
-      material.ambientSH = new Float32Array(json.coefficients.flat());
-      material.update();
-    },
+    light: (typed) => typed({material}),
     shape({positions, normals, indices}) {
       const mesh = new pc.Mesh(device);
       mesh.setPositions(positions);

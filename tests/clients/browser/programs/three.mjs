@@ -6,7 +6,7 @@ import {LightProbeGenerator} from 'three/addons/lights/LightProbeGenerator.js';
 export async function open(canvas, size) {
   const renderer = new THREE.WebGLRenderer({canvas});
   const target = new THREE.WebGLRenderTarget(size, size, {type: THREE.FloatType});
-  const scene = new THREE.Scene(), probe = new THREE.LightProbe();
+  const scene = new THREE.Scene();
   const mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshLambertMaterial({color: 0xffffff}));
   const outside = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10), inside = new THREE.PerspectiveCamera(90, 1, 0.1, 10);
   const panorama = async (url) => {
@@ -15,9 +15,12 @@ export async function open(canvas, size) {
     texture.mapping = THREE.EquirectangularReflectionMapping;
     return texture;
   };
-  scene.add(probe, mesh);
+  scene.add(mesh);
   return {
-    light: (json) => probe.sh.fromArray(json.coefficients.flat()),
+    async light(typed) {
+      scene.remove(...scene.children.filter((child) => child.isLightProbe));
+      await typed({THREE, scene});
+    },
     shape({positions, normals, indices}) {
       mesh.geometry = new THREE.BufferGeometry();
       mesh.geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
