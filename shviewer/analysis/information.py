@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from shviewer.analysis.figures import error_grid, grid_rows, needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import reconstruction_of
+from shviewer.analysis.roughness import TOLD_BANDS, staircase
 from shviewer.analysis.subjects import subject
 from shviewer.coefficients.stamp import stamp_of
 from shviewer.errors import LightError, ShviewerError
@@ -62,6 +63,16 @@ class BandsNeeded:
     radiance: int | None
     irradiance: int | None
     searched: int
+
+
+@dataclass(frozen=True)
+class RoughnessServed:
+    """What glossy surfaces so many bands serve, within 5 %."""
+
+    bands: int
+    ranges: tuple[tuple[float, float], ...]
+    """Ranges of roughness, of 0.1 to 1, each from its least to its most; none if they serve no roughness."""
+    words: str
 
 
 @dataclass(frozen=True)
@@ -133,6 +144,7 @@ class Information:
     energy_share: tuple[float, ...]
     """The share of the light's energy in each band."""
     bands_needed: tuple[BandsNeeded, ...]
+    roughness_served: tuple[RoughnessServed, ...]
     suns: tuple[SunInformation, ...]
     """The suns that --split-sun takes out, the greatest flux first."""
     no_sun: str
@@ -196,6 +208,7 @@ def _describe(text: str, reading: Reading) -> Information:
         method=found.projection.method,
         energy_share=found.sums.energy_share[:SHOWN_BANDS],
         bands_needed=_needed(recipe),
+        roughness_served=_served(recipe),
         suns=tuple(_sun(sun, total) for sun in split.suns),
         no_sun=split.refusal,
         bands_needed_without_suns=_needed(replace(recipe, split_sun=True)) if split.suns else (),
@@ -206,6 +219,12 @@ def _describe(text: str, reading: Reading) -> Information:
 def _needed(recipe: Recipe) -> tuple[BandsNeeded, ...]:
     found = (needs(replace(recipe, tolerance=tolerance)) for tolerance in TOLERANCES)
     return tuple(BandsNeeded(need.tolerance, need.radiance, need.irradiance, need.searched) for need in found)
+
+
+def _served(recipe: Recipe) -> tuple[RoughnessServed, ...]:
+    found = staircase(recipe)
+    counts = [n for n in TOLD_BANDS if n <= found.searched]
+    return tuple(RoughnessServed(n, tuple(found.served(n)), found.words(n)) for n in counts)
 
 
 def _sun(sun: Sun, total: float) -> SunInformation:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from shviewer.benchmark import end_to_end, experiments, projection_rows
+from shviewer.benchmark import end_to_end, experiments, projection_rows, roughness
 from shviewer.benchmark.front import sentences, where_bands_stop_paying
 from shviewer.benchmark.hard_cases import table as stability
 from shviewer.benchmark.hard_cases.shader import renderer_or_reason
@@ -121,7 +121,7 @@ def write_report(
     with at_the_end(run.write):
         _measure_sections(run)
         report.complete = True
-        paths, run.page.plot_message = plots.make_plots(report.rows, folder)
+        paths, run.page.plot_message = plots.make_plots(report.rows, folder, report.extra)
         run.page.plots += [path.name for path in paths]
     run.clock.finish()
     count = sum(row.measured for row in report.rows)
@@ -148,6 +148,9 @@ def _summary(run: Run) -> str:
 
 
 def _measure_sections(run: Run) -> None:
+    found = roughness.staircases(run.page.lights)
+    run.report.extra[roughness.KEY] = roughness.as_extra(found)
+    run.page.hosted[roughness.TITLE] = roughness.as_markdown(found)
     run.measure("projection", _projection)
     run.measure("peers", _peers)
     with renderer_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:

@@ -83,6 +83,7 @@ def as_text(information: Information) -> str:
     shares = " ".join(f"{100 * share:.2f}" for share in information.energy_share)
     rows.append(("energy, %", f"{shares} in bands 0 to {len(information.energy_share) - 1}; {information.method}"))
     rows += _bands("bands", information.bands_needed)
+    rows += _roughness(information)
     rows += _suns(information)
     lines = [one_line(f"{information.light}: {information.description}")]
     return "\n".join(lines + [f"  {label:<18}{one_line(text)}" for label, text in rows])
@@ -99,6 +100,19 @@ def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:
         )
         for quantity in ("radiance", "irradiance")
     ]
+
+
+def _roughness(information: Information) -> list[tuple[str, str]]:
+    """What glossy surfaces some numbers of bands serve, up to the first that serves a mirror."""
+    told = []
+    for served in information.roughness_served:
+        words = served.words.removeprefix("roughness ").replace("no roughness", "none")
+        told.append(
+            f"{served.bands} for {words}".replace(" and rougher", " on").replace("for every roughness from", "from")
+        )
+        if not served.words.startswith(("roughness", "no")):
+            break
+    return [("bands, roughness", f"{', '.join(told)}; for 5 %")] if told else []
 
 
 def _suns(information: Information) -> list[tuple[str, str]]:

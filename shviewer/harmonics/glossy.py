@@ -103,7 +103,7 @@ def glossy_factors(roughness: float, n_bands: int) -> Array:
     return _factors(roughness, -(-n_bands // step) * step)[:n_bands]
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def _factors(roughness: float, n_bands: int) -> Array:
     kernel = Glossy(roughness)
     a, c = kernel.a, kernel.c

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import json
 import re
 import sys
 from dataclasses import replace
@@ -14,6 +15,7 @@ import pytest
 from PIL import Image
 
 from shviewer.benchmark.experiments import METHODS
+from shviewer.benchmark.measured_lights import measured_light
 from shviewer.benchmark.page.plot_marks import DASHES, INCHES, LOOKS, STYLE, nice_ticks
 from shviewer.benchmark.page.plots import (
     FLOOR,
@@ -21,11 +23,14 @@ from shviewer.benchmark.page.plots import (
     error_curves,
     frame_curves,
     make_plots,
+    names_of,
     time_error_curves,
 )
 from shviewer.benchmark.page.tables import plain
 from shviewer.benchmark.reconstruction_rows import CACHED, DIRECT, PER_FRAME
+from shviewer.benchmark.roughness import as_extra, as_markdown, staircases
 from shviewer.benchmark.row import Row
+from shviewer.lights.find import find_light
 
 
 def projected(method: str, milliseconds: float, error: float, light: str = "green") -> Row:
@@ -219,3 +224,18 @@ def test_the_legend_names_every_curve_and_lies_outside_the_axes(matplotlib: Any)
     assert axes.bbox.height > 0.45 * whole.height
     title = figure.get_suptitle(), figure._suptitle.get_window_extent()
     assert title[1].x1 <= whole.x1, title[0]
+
+
+@pytest.mark.usefixtures("matplotlib")
+def test_bands_against_roughness_are_drawn_also_where_a_light_needs_more_than_there_are(tmp_path: Path) -> None:
+    steps = staircases([measured_light(find_light("green")), measured_light(find_light("sun-sky"))])
+    assert steps["sun-sky"][0.05].counts[0] is None
+    extra = {"roughness": json.loads(json.dumps(as_extra(steps)))}
+    files, _ = make_plots([], tmp_path, extra)
+    assert [file.name for file in files] == ["roughness-bands.svg", "roughness-bands.png"]
+    assert {file.name for file in files} <= set(names_of(["green", "sun-sky"]))
+    none = {"roughness": {"roughness": [0.1, 0.2], "fewest_bands": {"dark": {"0.05": [None, None]}}}}
+    assert len(make_plots([], tmp_path, none)[0]) == 2
+    page = as_markdown(steps)
+    assert "- sun-sky: for 5 %: 5 bands serve shading, 3 serve no roughness, 9 serve roughness 0.52 and rougher" in page
+    assert "| 0.76 to 0.89 " in page

@@ -34,7 +34,9 @@ def _on_any_machine() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         for module in (options, projection_rows, timing):
             patch.setattr(module, "perf_counter", lambda: next(ticks) / 1000)
-        patch.setattr(plots, "make_plots", lambda rows, folder: ((folder / "a-b.svg", folder / "a-b.png"), MESSAGE))
+        patch.setattr(
+            plots, "make_plots", lambda rows, folder, extra: ((folder / "a-b.svg", folder / "a-b.png"), MESSAGE)
+        )
         yield
 
 

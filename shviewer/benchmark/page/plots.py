@@ -1,4 +1,4 @@
-"""The report's plots, made from its rows alone: time against error, error against bands, frame time against bands.
+"""The report's plots, made from its rows: time against error, error against bands, frame time against bands.
 
 They fit a column of print: 86 mm wide, 8 pt, with a colour, a marker and a dash for each curve (M. Okabe, K. Ito, "Color
 Universal Design", 2008), and a legend below the axes. Equal rows give equal bytes with the same version of matplotlib.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import math
 import statistics
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from shviewer.benchmark import reconstruction_rows as reconstruction
 from shviewer.benchmark.experiments import METHODS
 from shviewer.benchmark.measured_lights import TOLERANCES
+from shviewer.benchmark.page.further_plots import STEMS, further_plots
 from shviewer.benchmark.page.plot_marks import INCHES, STYLE, Curve, draw_curves, log_axes, padded, shorten
 from shviewer.benchmark.page.tables import plain
 from shviewer.benchmark.projection_rows import SECTION as PROJECTION
@@ -48,8 +49,12 @@ BELOW: dict[str, Any] = {"loc": "outside lower left", "ncols": 2}
 """The place of a legend: below the axes, in columns."""
 
 
-def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str]:
-    """Write the plots for which there are rows, as .svg and .png; return the files, and MISSING if matplotlib is missing.
+def make_plots(
+    rows: Sequence[Row], folder: Path, extra: Mapping[str, Any] | None = None
+) -> tuple[tuple[Path, ...], str]:
+    """Write the plots for which there are rows, or results in a report's `extra`, as .svg and .png.
+
+    Returns the files, and MISSING if matplotlib is missing.
 
     OutputError if a file cannot be written.
     """
@@ -63,7 +68,7 @@ def make_plots(rows: Sequence[Row], folder: Path) -> tuple[tuple[Path, ...], str
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
-        for stem, draw in _plots(rows).items():
+        for stem, draw in (_plots(rows) | further_plots(extra or {})).items():
             figure = Figure(figsize=INCHES)
             FigureCanvasAgg(figure)
             draw(figure)
@@ -94,7 +99,7 @@ def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
 
 def names_of(lights: Sequence[str]) -> list[str]:
     """The names of all files that the plots of a report on these lights may have."""
-    stems = (*time_error_stems(lights), ERROR_BANDS, FRAME_TIME)
+    stems = (*time_error_stems(lights), ERROR_BANDS, FRAME_TIME, *STEMS)
     return [f"{stem}{suffix}" for stem in stems for suffix in (".svg", ".png")]
 
 
