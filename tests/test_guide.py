@@ -24,6 +24,7 @@ from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.from_options import state_from
+from shviewer.cli.help import guide_pages
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import MODIFIERS
@@ -114,6 +115,9 @@ def test_a_page_is_called_in_the_index_what_its_heading_says() -> None:
 def test_every_command_is_one_that_the_program_understands(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Read, not run: options that exist, values that are allowed, and built-in lights that there are."""
     for arguments in commands(read(path)):
+        if arguments[:1] == ["help"]:
+            assert set(arguments[1:]) <= {*guide_pages(), "TOPIC"}
+            continue
         mode, *rest = arguments if arguments and arguments[0] in PARSERS else ["view", *arguments]
         if arguments == [mode]:
             continue  # a mode that is named in a sentence

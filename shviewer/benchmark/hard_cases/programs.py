@@ -81,4 +81,4 @@ def conventions() -> float:
     return worst
 
 
-CASES = (Case("numbers for eight programs and back", "their own basis functions", 1e-14, conventions),)
+CASES = (Case("numbers for other programs and back", "their own basis functions", 1e-14, conventions),)

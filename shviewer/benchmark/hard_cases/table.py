@@ -120,12 +120,14 @@ def _number(value: float | None) -> str:
 
 
 def _remarks(outcomes: Sequence[Outcome]) -> list[str]:
-    """Lines below the table: one per exception, one on the shader, one with the count."""
+    """Lines below the table: one per exception, on the shader, on what it was made with, and with the count."""
     lines = [f"{outcome.name}: {outcome.note}" for outcome in outcomes if outcome.note]
     missing = any(outcome.drawn_by and outcome.shader_error is None for outcome in outcomes)
     drawn_by = _drawn_by(outcomes)
     if drawn_by:
         lines.append(f"{'No float32 column' if missing else 'Float32 drawn by'}: {'; '.join(drawn_by)}")
+    *packages, (_, machine), (_, seed) = _made_with().items()
+    lines.append(f"Made with {', '.join(map(' '.join, packages))} on {machine}; seed {seed}")
     passed = sum(outcome.passed for outcome in outcomes)
     return [*lines, f"{passed} of {len(outcomes)} cases are within their bounds."]
 
