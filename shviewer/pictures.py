@@ -37,7 +37,7 @@ def screenshot(
 
     """
     state = _state(light, bands, options, size)
-    picture = prepare(state)
+    picture = prepare(state, written=overlay)
     with offscreen.headless_renderer() as renderer:
         return offscreen.render_rgb(
             renderer, picture, compose(*size, state.view.zoom, n_spheres=state.view.n_spheres), overlay=overlay

@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
             f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
         )
     with speaking():
-        picture = prepare(state)
+        picture = prepare(state, written=not options.no_overlay)
     composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     print_notes(state.recipe)

@@ -125,13 +125,17 @@ def still(state: State) -> State:
     return changed(state, **{name: getattr(FRONT, name) for name in LIVE})
 
 
-def prepare(state: State, *, by_map: bool = False) -> Picture:
-    """Make the complete picture of a state. LightError if the light cannot be read, UsageError for a state out of range.
+def prepare(state: State, *, by_map: bool = False, written: bool = True) -> Picture:
+    """Make the picture of a state. LightError if the light cannot be read, UsageError for a state out of range.
 
-    by_map: draw the reconstruction from a map of it, although it could be summed per pixel.
+    by_map: draw the reconstruction from a map of it, although it could be summed per pixel. written: whether its figures are
+    written over it; if not, those that no pixel depends on stay pending.
     """
-    ahead = MAX_BANDS if state.view.sheet != "plane" else 0  # the plane tells what the bands in use took
-    return completed(first_picture(state, by_map=by_map, ahead=ahead))
+    ahead = MAX_BANDS if written and state.view.sheet != "plane" else 0  # the plane tells what the bands in use took
+    picture = first_picture(state, by_map=by_map, ahead=ahead)
+    if written:
+        return completed(picture)
+    return picture if picture.error_scale is None else with_figures(picture)
 
 
 def stages(state: State, *, by_map: bool = False) -> Iterator[Picture]:

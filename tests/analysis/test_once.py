@@ -9,6 +9,7 @@ import pytest
 from lights.images.hdr_files import exr_file
 
 from shviewer.analysis.cache import MEMORY
+from shviewer.analysis.figures import PENDING
 from shviewer.analysis.information import describe
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
@@ -44,3 +45,14 @@ def test_an_image_is_projected_once(sunny: str, work: str, monkeypatch: pytest.M
     else:
         assert describe(sunny, DEFAULT_READING).bands_needed_without_suns
     assert asked == [128]
+
+
+def test_a_picture_without_text_searches_for_no_figure_and_looks_the_same(sunny: str) -> None:
+    bare = prepare(state_of(sunny), written=False)
+    light = bare.light
+    assert (light.kept_bands, bare.extremes, bare.needs) == (32, PENDING, PENDING)
+    seen = state_of(sunny, error="relative")
+    bare, whole = prepare(seen, written=False), prepare(seen)
+    assert not bare.complete
+    assert bare.error_scale is whole.error_scale
+    assert bare.coefficients is whole.coefficients

@@ -136,7 +136,9 @@ def save_animation(
 
         def draw(number: int) -> NDArray[np.uint8]:
             tell(number)
-            return render_rgb(renderer, prepare(animation.states[number]), composition, overlay=overlay)
+            return render_rgb(
+                renderer, prepare(animation.states[number], written=overlay), composition, overlay=overlay
+            )
 
         text = describe(animation, portrait, composition, renderer.version, overlay=overlay)
         data = encode(draw, animation.milliseconds, text)
