@@ -25,6 +25,13 @@ if TYPE_CHECKING:
 
 DEFAULT_SIZE = (1280, 640)
 
+BESIDE_NEEDS = {
+    "no-window": "there is no window to do without; give --window, too",
+    "method": "coefficients that are compared are no method's; leave out --compare",
+    "own": "the light's own coefficients are shown already; give --compare, too",
+}
+"""What must be given for a second reconstruction to differ from the first."""
+
 
 def chosen_of(options: argparse.Namespace, holder: type) -> dict[str, Any]:
     """The given options that belong to a dataclass, by the names of its fields."""
@@ -119,6 +126,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     """
     from shviewer.lights.find import built_in_lights
     from shviewer.viewer.actions import open_light
+    from shviewer.viewer.beside import recipe_beside
     from shviewer.viewer.state import State, changed
 
     pictured = pictured_by(options)
@@ -131,6 +139,8 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     asked = start.recipe.n_bands if options.n_bands is None else options.n_bands
     State(Recipe(n_bands=asked), view).check(options.size)
     recipe, said = recipe_from(options, light, start.recipe if pictured else START)
+    if options.beside in BESIDE_NEEDS and recipe_beside(recipe, options.beside) == recipe:
+        raise UsageError(f"--beside {options.beside}: {BESIDE_NEEDS[options.beside]}")
     lights = tuple(built_in_lights()) if all_lights else (light,)
     state = replace(open_light(State(recipe, view, lights), entry if all_lights else light), recipe=recipe)
     state = replace(state, entry=entry if pictured and all_lights else None)
@@ -156,6 +166,9 @@ def _view_from(options: argparse.Namespace, start: View) -> View:
         chosen["camera"] = options.camera[0] % 360, _elevation(options.camera[1])
     if options.basis:
         chosen |= {"basis": None, "lobe_view": True}
+    third = [name for name in ("error", "beside") if vars(options)[name] not in (None, "off")]
+    if len(third) == 1:  # in place of what a picture showed there
+        chosen["beside" if third[0] == "error" else "error"] = "off"
     if options.exposure_stops is not None:
         chosen = {"exposure_offset": 0.0} | chosen
     if angles := turn_from(options):

@@ -22,9 +22,10 @@ from shviewer.lights.find import is_image
 from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.viewer.beside import besides_of
 from shviewer.viewer.camera import facing, turned_by_drag
 from shviewer.viewer.state import IN_RECIPE, State, changed
-from shviewer.viewer.view import MAX_EXPOSURE, ZOOM_RANGE, View
+from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, ZOOM_RANGE, View
 
 
 class Command(Enum):
@@ -78,6 +79,15 @@ def rougher(state: State, step: float) -> State:
     wanted = state.view.roughness if now is None else round(now / abs(step)) * abs(step) + step
     roughness = round(min(max(wanted, LEAST_ROUGHNESS), MOST_ROUGHNESS), 6)
     return changed(state, quantity=glossy(roughness), roughness=roughness)
+
+
+def next_third(state: State) -> State:
+    """Show the next thing on the third sphere: each error, then each reconstruction that there is beside, then nothing."""
+    shown = [{"error": error, "beside": "off"} for error in ERRORS]
+    shown += [{"error": "off", "beside": beside} for beside in besides_of(state.recipe)]
+    present = {"error": state.view.error, "beside": state.view.beside}
+    at = shown.index(present) if present in shown else -1
+    return changed(state, **shown[(at + 1) % len(shown)])
 
 
 def toggle(state: State, name: str) -> State:

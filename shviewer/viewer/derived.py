@@ -9,6 +9,7 @@ from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import error_grid, grid_rows, sums
 from shviewer.analysis.projections import BEST, Projection, project
 from shviewer.analysis.recipe import Shown
+from shviewer.analysis.reconstruction import Reconstruction
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
 from shviewer.harmonics.extremes.error_grid import Extremes
@@ -75,12 +76,18 @@ def _mean_direction(light: Light) -> Array:
     return np.array([-along_x, -along_y, along_z]) / (np.sqrt(3) * total) if total > 0 else np.zeros(3)
 
 
-def surfaces(view: View, light: Light, projection: Projection, shown: Shown) -> tuple[Surface, ...]:
-    """The surfaces of the light, of its reconstruction (or a basis function in its place), and perhaps of the error."""
+def surfaces(
+    view: View, light: Light, projection: Projection, shown: Shown, other: Reconstruction | None = None
+) -> tuple[Surface, ...]:
+    """The surfaces of the light, of its reconstruction (or a basis function in its place), and perhaps of the error.
+
+    other: a second reconstruction, in place of the error.
+    """
     radius = SURFACE_RADIUS * view.zoom
-    original, reconstruction, error = _compared_surfaces(
-        light, projection, shown, max(LIGHT_ROWS, rows_for(shown.n_bands, radius))
-    )
+    rows = max(LIGHT_ROWS, rows_for(shown.n_bands, radius))
+    original, reconstruction, error, unit = _compared_surfaces(light, projection, shown, rows)
+    if other is not None:
+        error = surface(sample_reconstruction(other.coefficients, rows), unit, root=True)
     if view.basis is not None:
         l, m = view.basis
         reconstruction = basis_surface(l, m, rows_for(l + 1, radius))
@@ -101,14 +108,14 @@ def _compared_surfaces(
     projection: Projection,
     shown: Shown,
     rows: int,
-) -> tuple[Surface, Surface, Surface]:
+) -> tuple[Surface, Surface, Surface, float]:
     coefficients = sums(light, projection, shown)[0]
     original, reconstruction = sample_light(light, rows), sample_reconstruction(coefficients, rows)
     unit = unit_radius(original, reconstruction)
     first, second, third = (
         surface(values, unit, root=True) for values in (original, reconstruction, reconstruction - original)
     )
-    return first, second, third
+    return first, second, third, unit
 
 
 @remember(most=16)

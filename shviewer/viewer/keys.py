@@ -117,7 +117,12 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("drop files", "open them", {}),
     ),
     "Error": (
-        Binding("D", "third sphere: the error", _each(do.next_choice, {"D": "error"}), lambda s: s.view.error),
+        Binding(
+            "D",
+            "third sphere: error, other ways",
+            {"D": do.next_third},
+            lambda s: s.view.error if s.view.beside == "off" else s.view.beside,
+        ),
         Binding(
             "X",
             "mark minimum, largest error",

@@ -11,7 +11,7 @@ import numpy as np
 from shviewer.analysis.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
 from shviewer.analysis.projections import Projection
-from shviewer.analysis.reconstruction import reconstruction_of
+from shviewer.analysis.reconstruction import Reconstruction, reconstruction_of
 from shviewer.analysis.subjects import Subject
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.extremes.error_grid import Extremes
@@ -23,6 +23,7 @@ from shviewer.lights.lobes import LobeLight
 from shviewer.lights.suns.sun import points_of_suns
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
+from shviewer.viewer.beside import Beside, recipe_beside
 from shviewer.viewer.derived import camera_of, error_scale, exposure_stops, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
 from shviewer.viewer.error_scale import ErrorScale
@@ -69,6 +70,8 @@ class Picture:
     exposure_stops: float
     error_scale: ErrorScale | None
     """The scale of the error, if the error is shown."""
+    beside: Beside | None
+    """The second reconstruction, if there is one."""
     projection: Projection
     figures: Sums
     """The figures: `Figures`, all of them, once they are there."""
@@ -177,15 +180,18 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
     scale = _scale(state, light, projection)
     stops = exposure_stops(view, whole)
-    drawn: Drawn
-    if view.lobe_view:
-        drawn = Surfaces(surfaces(view, light, projection, recipe.shown))
-    elif by_map or view.evaluate == "map" or recipe.n_bands > MAX_DIRECT_BANDS:
-        largest = _largest(light, found.coefficients, recipe.n_bands)
-        size = map_size(recipe.n_bands, _height(largest, scale, 2.0**stops * steepest(view.tone)))
-        drawn = SplineMap(reconstruction_map(light, projection, recipe.shown, size))
-    else:
-        drawn = DirectSum(found.coefficients)
+    other = reconstruction_of(recipe_beside(recipe, view.beside)) if view.beside != "off" else None
+
+    def drawn_as(one: Reconstruction) -> Drawn:
+        if view.lobe_view:
+            return Surfaces(surfaces(view, light, projection, recipe.shown, other))
+        if by_map or view.evaluate == "map" or recipe.n_bands > MAX_DIRECT_BANDS:
+            largest = _largest(light, one.coefficients, recipe.n_bands)
+            size = map_size(recipe.n_bands, _height(largest, scale, 2.0**stops * steepest(view.tone)))
+            return SplineMap(reconstruction_map(light, one.projection, one.recipe.shown, size))
+        return DirectSum(one.coefficients)
+
+    drawn = drawn_as(found)
     return Picture(
         state=state,
         subject=found.subject,
@@ -198,6 +204,7 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
         light_from_world=camera.light_from_world(view.light_rotation),
         exposure_stops=stops,
         error_scale=scale,
+        beside=Beside.of(other, drawn if view.lobe_view else drawn_as(other)) if other is not None else None,
         projection=projection,
         figures=found.sums,
         needs_unsplit=PENDING if found.subject.suns else None,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from shviewer.analysis.options import Choice, Flag, Number, Pair, check_options, option
+from shviewer.errors import UsageError
 from shviewer.limits import BRIGHTEST, DIMMEST
 
 if TYPE_CHECKING:
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
 TONES = ("none", "reinhard", "aces", "log")
 ERRORS = ("off", "signed", "absolute", "relative")
 """The choices for the third sphere; "off": there is none."""
+
+BESIDES = ("off", "no-window", "method", "own")
+"""The choices for a second reconstruction in its place; viewer/beside.py says what they are."""
 
 SHEETS = ("", "plane", "convergence")
 EVALUATIONS = ("auto", "direct", "map")
@@ -52,6 +56,14 @@ class View:
         "a third sphere, reconstruction minus original: off (default), signed, absolute or relative",
         "--error",
         "E",
+    )
+    beside: str = option(
+        "off",
+        Choice(BESIDES),
+        "a third sphere in place of the error: what the same bands give without the window (no-window), by the other "
+        "method (method), or by the light's own coefficients beside compared ones (own)",
+        "--beside",
+        "WHAT",
     )
     error_range: float | None = option(
         None,
@@ -121,9 +133,11 @@ class View:
 
     @property
     def n_spheres(self) -> int:
-        """The number of spheres: original, reconstruction and perhaps the error."""
-        return 2 if self.error == "off" else 3
+        """The number of spheres: original, reconstruction and perhaps the error, or another reconstruction."""
+        return 2 if self.error == self.beside == "off" else 3
 
     def check(self) -> None:
-        """UsageError unless every option is within its range."""
+        """UsageError unless every option is within its range, and the third sphere shows one thing."""
         check_options(self)
+        if "off" not in (self.error, self.beside):
+            raise UsageError(f"error {self.error} and beside {self.beside}: a third sphere shows one of them")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import moderngl
 import numpy as np
@@ -51,16 +52,18 @@ class Renderer:
         self.layer_program = Program(context, "layer.frag")
         self.surfaces: SurfaceRenderer | None = None
         """Made when the first surface is drawn."""
-        self.sh_buffer = context.buffer(reserve=SH_TERMS * VEC4)
+        self.sh_buffer, self.beside_buffer = (context.buffer(reserve=SH_TERMS * VEC4) for _ in range(2))
         self.lobe_buffer = context.buffer(reserve=LOBE_SLOTS * 3 * VEC4)
-        self.original_map, self.compared_map, self.reconstruction_map, self.colour_map = (
-            ArrayTexture(context) for _ in range(4)
+        self.original_map, self.compared_map, self.reconstruction_map, self.beside_map, self.colour_map = (
+            ArrayTexture(context) for _ in range(5)
         )
         self.layers: dict[int, tuple[Layer, ArrayTexture]] = {}
         """The layers of the last frame and their textures, by the identity of the image."""
         self.colours: dict[str, NDArray[np.float32]] = {}
         self.picture: Picture | None = None
         self.coefficients: Array | None = None
+        self.beside_coefficients: Array | None = None
+        """Those of the second reconstruction, which are in its buffer."""
         self.lobes: tuple[Lobe, ...] | None = None
         """The lobes that are in their buffer."""
         self.rest = context.simple_framebuffer((1, 1))
@@ -90,6 +93,11 @@ class Renderer:
         for texture, texels, halves in maps:
             texture.follow(texels, halves)
         self._show_reconstruction(picture.drawn)
+        beside = picture.beside.drawn if picture.beside is not None else None
+        if isinstance(beside, DirectSum) and beside.coefficients is not self.beside_coefficients:
+            self.beside_buffer.write(pack_coefficients(beside.coefficients))
+            self.beside_coefficients = beside.coefficients
+        self.beside_map.follow(beside.splines if isinstance(beside, SplineMap) else None)
         if picture.error_scale is not None:
             self.colour_map.follow(self._colours(colour_maps.map_of(picture.error_scale.kind)))
         self.picture = picture
@@ -137,10 +145,12 @@ class Renderer:
             *((self.surfaces,) if self.surfaces else ()),
             self.layer_program,
             self.sh_buffer,
+            self.beside_buffer,
             self.lobe_buffer,
             self.original_map,
             self.compared_map,
             self.reconstruction_map,
+            self.beside_map,
             self.colour_map,
             *(texture for _, texture in self.layers.values()),
         )
@@ -175,9 +185,13 @@ class Renderer:
         self.reconstruction_map.use(SAMPLERS["reconstruction_map"])
         self.colour_map.use(SAMPLERS["colour_map"])
         for shown, pane in zip(CHOICES["SHOWN"], composition.panes, strict=False):
-            if shown == "ERROR" and picture.error_scale is None:
-                continue
-            self._draw_pane(target, composition, picture, shown, pane, linear)
+            if shown == "ERROR" and picture.beside is not None:
+                self.beside_buffer.bind_to_uniform_block(BLOCKS["ShBlock"])
+                self.beside_map.use(SAMPLERS["reconstruction_map"])
+                second = replace(picture, coefficients=picture.beside.coefficients, drawn=picture.beside.drawn)
+                self._draw_pane(target, composition, second, "RECONSTRUCTION", pane, linear)
+            elif shown != "ERROR" or picture.error_scale is not None:
+                self._draw_pane(target, composition, picture, shown, pane, linear)
 
     def _draw_pane(
         self,

@@ -6,12 +6,13 @@ from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantity import RADIANCE, in_words
+from shviewer.viewer.beside import words_of
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK
 from shviewer.viewer.overlay.painter import Painter
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_basis, describe_muted, describe_window
-from shviewer.words import counted, grouped, grouped_number, radiance, shortened
+from shviewer.words import counted, grouped, grouped_number, percent, radiance, shortened
 
 
 def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
@@ -54,6 +55,11 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
         if surfaces and surfaces[2].clipped:
             kind = f"{kind}, cut at the circle"
         painter.text("error", error.x, error.caption_y, kind, 17, INK, "mm")
+    if picture.beside is not None:
+        error, other = at.spheres[-1], picture.beside
+        reached = f", error {percent(other.figures.relative_l2, floor=other.figures.floor)}"
+        second = words_of(state.view.beside, other.recipe)
+        any(painter.text("beside", error.x, error.caption_y, kind, 17, INK, "mm") for kind in (second + reached, second))
     names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
     words, said = describe_light(picture), False
     if any(painter.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):

@@ -29,6 +29,7 @@ from shviewer.viewer.saving.stamp import LIMITS
 from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.saving.stamps_in_files import stamp_in
 from shviewer.viewer.state import State, changed
+from shviewer.viewer.view import MAX_EXPOSURE
 from shviewer.words import one_line
 
 AS_IMAGE = "--as-image opens it as an image"
@@ -101,7 +102,7 @@ def _restored(text: str, said: dict[str, Any], path: Path, limits: Limits, light
         state, told = _comparing(state, said, path)
         news.append(told)
     elif found.text is None:
-        state = changed(state, split_sun=False, suns=Recipe.suns, method=Recipe.method)
+        state = changed(state, split_sun=False, suns=Recipe.suns, method=Recipe.method, **_exposure(said))
         news.append("the coefficients that the picture kept are shown in its place")
     return Restored(state, _size(said), said.get("overlay") is not False, "; ".join(filter(None, news)))
 
@@ -191,6 +192,14 @@ def _coefficients(said: dict[str, Any]) -> CoefficientLight | None:
         return CoefficientLight(numbers, one_line(str(said.get("light")), 60))
     except (ValueError, TypeError, ArithmeticError, LightError) as error:
         raise UsageError(f"the coefficients in its stamp are damaged ({error})") from None
+
+
+def _exposure(said: dict[str, Any]) -> dict[str, float]:
+    """The exposure of the picture, which was perhaps chosen from the light that is gone."""
+    stops = said.get("exposure_stops")
+    if not isinstance(stops, int | float) or not abs(stops) <= MAX_EXPOSURE:
+        return {}
+    return {"exposure_stops": float(stops), "exposure_offset": 0.0}
 
 
 def _size(said: dict[str, Any]) -> tuple[int, int] | None:

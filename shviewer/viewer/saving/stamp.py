@@ -47,7 +47,8 @@ DIGITS = 9
 def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
     """Everything that made the picture, and the figures that are there, as one JSON text; equal arguments give equal text."""
     state, figures, projection = picture.state, picture.figures, picture.projection
-    scale = picture.error_scale
+    scale, beside = picture.error_scale, picture.beside
+    third = "error" if beside is None else "beside"
     description: dict[str, Any] = {
         "schema": SCHEMA,
         "version": __version__,
@@ -86,6 +87,12 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
             "largest_direction_in_light": scale.direction.tolist(),
             "colour_map": map_of(scale.kind),
         },
+        "beside": beside
+        and {
+            "kind": state.view.beside,
+            "method_words": beside.projection.method,
+            "relative_l2": beside.figures.relative_l2,
+        },
         "overlay": overlay,
         "marks": state.view.marks,
         "sheet": state.view.sheet,
@@ -99,7 +106,7 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "light_from_world": picture.light_from_world.tolist(),
         "spheres": {
             name: {"centre": [sphere.x, sphere.y], "radius": sphere.radius, "clip": list(sphere.clip)}
-            for name, sphere in zip(("original", "reconstruction", "error"), composition.spheres, strict=False)
+            for name, sphere in zip(("original", "reconstruction", third), composition.spheres, strict=False)
         },
         "opengl": opengl,
         "figures": {
