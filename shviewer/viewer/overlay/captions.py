@@ -59,7 +59,9 @@ def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
         error, other = at.spheres[-1], picture.beside
         reached = f", error {percent(other.figures.relative_l2, floor=other.figures.floor)}"
         second = words_of(state.view.beside, other.recipe)
-        any(painter.text("beside", error.x, error.caption_y, kind, 17, INK, "mm") for kind in (second + reached, second))
+        any(
+            painter.text("beside", error.x, error.caption_y, kind, 17, INK, "mm") for kind in (second + reached, second)
+        )
     names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
     words, said = describe_light(picture), False
     if any(painter.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):
