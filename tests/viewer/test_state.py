@@ -248,6 +248,7 @@ def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> 
         zoom=2.0,
         error="signed",
         error_range=0.5,
+        beside="own",
         tone="aces",
         marks=False,
         lobe_view=True,
@@ -323,7 +324,6 @@ def test_one_sheet_is_shown_at_a_time() -> None:
 @pytest.mark.parametrize(
     ("key", "name", "values"),
     [
-        ("D", "error", ["signed", "absolute", "relative", "off"]),
         ("O", "tone", ["reinhard", "aces", "log", "none"]),
         ("X", "marks", [False, True]),
         ("V", "lobe_view", [True, False]),
