@@ -58,6 +58,11 @@ def view_parser() -> OneLineParser:
         "       shviewer help [TOPIC]",
     )
     add_view_options(parser, several=True)
+    parser.add_argument(
+        "--last-size",
+        action="store_true",
+        help="open at the size that the window had when it was last closed with this option; --size goes before",
+    )
     parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
     parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
     parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")

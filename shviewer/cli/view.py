@@ -36,15 +36,22 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.viewer.composition import compose
     from shviewer.viewer.desktop import window
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
+    from shviewer.viewer.desktop.last_size import keep_size, last_size
     from shviewer.viewer.desktop.task import Task
     from shviewer.viewer.picture import completed
     from shviewer.viewer.saving.picture_files import write_numbered
     from shviewer.viewer.screenshot import save_picture
 
+    if options.last_size:
+        options.size = options.size or last_size()
     state, others = _opened(options)
     first = Task(lambda: [_announced(state, others, options.as_image)])
     try:
-        window.run(first, options.size, verbose=options.verbose, watch=options.watch, as_image=options.as_image)
+        closed = window.run(
+            first, options.size, verbose=options.verbose, watch=options.watch, as_image=options.as_image
+        )
+        if options.last_size and closed is not None:
+            keep_size(closed)
     except NoDisplayError as error:
         picture = completed(first.result())
         stem, view = f"shviewer-{file_stem(picture.light.name)}", picture.state.view

@@ -52,11 +52,12 @@ BUTTONS = (glfw.MOUSE_BUTTON_LEFT, glfw.MOUSE_BUTTON_RIGHT)
 
 def run(
     first: Task[Picture], size: tuple[int, int], *, verbose: bool = False, watch: bool = False, as_image: bool = False
-) -> None:
+) -> tuple[int, int] | None:
     """Open a window of `size` screen coordinates, show the first picture when it is there, and stay until it is closed.
 
     NoDisplayError without a display, GraphicsError without OpenGL 3.3, and what the first picture raises. verbose: one line
     on stderr per frame. watch: read the light's file again when it changes. as_image: take pictures of this program for images.
+    Return the size that it had at the end, if it showed anything.
     """
     if first.wait(PATIENCE):
         first.result()  # what is refused at once is refused without a window
@@ -64,9 +65,12 @@ def run(
         canvas = Canvas(moderngl.create_context(require=330))
         try:
             if _wait_for(first, handle, canvas):
-                Window(handle, canvas, first.result(), verbose, watch, as_image).loop()
+                shown = Window(handle, canvas, first.result(), verbose, watch, as_image)
+                shown.loop()
+                return shown.size_in_points()
         finally:
             canvas.release()
+    return None
 
 
 def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
@@ -208,6 +212,14 @@ class Window:
                 file=sys.stderr,
                 flush=True,
             )
+
+    def size_in_points(self) -> tuple[int, int]:
+        """The size in points of the design; of a full screen, that of the window before."""
+        if self.fullscreen:
+            self._toggle_fullscreen()
+            glfw.poll_events()
+        width, height = glfw.get_framebuffer_size(self.handle)
+        return round(width / _scale(self.handle)), round(height / _scale(self.handle))
 
     def composition(self) -> Composition | None:
         """The layout of the framebuffer, which may be larger than the window (HiDPI); None while minimised."""
