@@ -38,6 +38,7 @@ complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info p
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l max-megatexels -r -d 'texels that an image may have, in units of 1024 x 1024 (default 128)'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l max-file-mib -r -d 'size that an image\'s file may have, in MiB (default 512)'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l max-memory-mib -r -d 'memory that an image may take until it is drawn, in MiB (default half of what is available)'
+complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l last-size -d 'open at the size that the window had when it was last closed with this option; --size goes before'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l watch -d 'read the light\'s file again whenever it changes'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l verbose -d 'one line on stderr per frame'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l list-keys -d 'print the table of keys and exit'
