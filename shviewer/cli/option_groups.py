@@ -19,7 +19,7 @@ from shviewer.words import one_line
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
-    "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl)"
+    "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl, .js, .cs)"
 )
 
 TEXTS = ("window", "error_range")

@@ -40,7 +40,7 @@ LARGEST = 1e100
 """The largest coefficient: beyond it, conversions and squares could leave float64. Lights that are drawn end at 1e30."""
 
 TABLE_BEGINS, TABLE_ENDS = "coefficients begin", "coefficients end"
-"""The words of two comments in a .h or .glsl file; between them stand the numbers, and nothing else."""
+"""The words of two comments in source code; between them stand the numbers, and nothing else."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +157,7 @@ def _no_constant(name: str) -> float:
 
 
 def _read_text(data: bytes, table: bool = False) -> Listed:
-    """Read a .csv (table), .txt, .h or .glsl file: its list, or what stands between the marks."""
+    """Read a .csv (table), .txt or a file of source code: its list, or what stands between the marks."""
     text = _text(data)
     stamp, begins, ends = _comments(text), text.find(TABLE_BEGINS), text.find(TABLE_ENDS)
     if not stamp:

@@ -35,6 +35,11 @@ def identifier(name: str) -> str:
     return re.sub(r"_+", "_", "sh_" + re.sub(r"[^A-Za-z0-9]", "_", name)).rstrip("_")
 
 
+def function_name(name: str, quantity: str) -> str:
+    """The name of the function in GLSL: sh_NAME_QUANTITY."""
+    return re.sub(r"\W", "_", f"{identifier(name)}_{quantity}")
+
+
 def c_header(name: str, comments: Sequence[str], rows: Sequence[Row]) -> str:
     """A C99 header with one static array of doubles; complex numbers are pairs."""
     symbol = identifier(name)
@@ -49,9 +54,9 @@ def c_header(name: str, comments: Sequence[str], rows: Sequence[Row]) -> str:
 
 
 def glsl_source(
-    name: str, quantity: str, comments: Sequence[str], rows: Sequence[Row], factors: Array, shift: float, pole: str
+    name: str, function: str, comments: Sequence[str], rows: Sequence[Row], factors: Array, shift: float, pole: str
 ) -> str:
-    """Constants and the function `sh_NAME_QUANTITY(vec3 direction)`, GLSL 3.30 and later, without a #version line.
+    """Constants and the function `function(vec3 direction)`, GLSL 3.30 and later, without a #version line.
 
     factors: the program's basis functions over Y(l, m), by our index; shift: what it adds to their sum;
     pole: which components of a direction are x, y and z of the basis.
@@ -68,7 +73,7 @@ def glsl_source(
         comma = "," if place + 1 < len(rows) else ""
         lines.append(f"    vec3({', '.join(numbers)}){comma}  // l = {l}, m = {m}")
     lines += [f"    // {TABLE_ENDS}", ");", "", "// direction: unit, in the axes named above"]
-    lines += [f"vec3 {symbol}_{quantity}(vec3 direction) {{"]
+    lines += [f"vec3 {function}(vec3 direction) {{"]
     components = zip("xyz", re.findall("..", pole), strict=True)
     named = (f"{name} = {sign.strip('+')}direction.{axis}" for name, (sign, axis) in components)
     lines += [f"    float {', '.join(named)};"]

@@ -7,6 +7,8 @@ Schema 1. A reader needs the first three keys; the others are for people, and mu
     quantity                radiance or irradiance, perhaps -over-pi, or glossy:R of a roughness R, such as glossy:0.4
     basis, phase, index, axes, normalisation, one-over-pi     what `convention` and `quantity` mean, in set words
     program, layout         the program that reads it, and how the program itself arranges the numbers
+    use                     what to type so that the program takes them (use.py), with the rows as the file has them
+    unity-vectors           the seven vectors of Unity's shaders, in a file for Unity
     bands, rows, columns    n, n^2, and the names of the columns
     light, light-is, light-notes, window, muted, method, samples, seed
     turned                  the rotation of the light before it was written, if it was turned: a matrix row by row, in our axes

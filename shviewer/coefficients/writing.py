@@ -1,7 +1,7 @@
-"""Coefficients as files: JSON, CSV, NPZ, C and GLSL, every number exact and every file stating its convention.
+"""Coefficients as files: JSON, CSV, NPZ, and source code of C, GLSL, JavaScript and C#.
 
-Text holds the fewest digits that give the same float64 again. Equal arguments give equal bytes. stamp.py explains the keys of
-the stamp.
+Every number is exact: text holds the fewest digits that give the same float64 again. Every file states its convention, and what
+to type. Equal arguments give equal bytes. stamp.py explains the keys of the stamp.
 """
 
 from __future__ import annotations
@@ -14,14 +14,16 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.coefficients.client_code import csharp_class, javascript_module
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import orders
-from shviewer.coefficients.source_code import c_header, glsl_source
+from shviewer.coefficients.source_code import c_header, function_name, glsl_source, identifier
 from shviewer.coefficients.stamp import Stamp, Value
+from shviewer.coefficients.use import JAVASCRIPT, USES, unity_vectors, with_use
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import count_bands
 
-FORMATS = ("json", "csv", "npz", "h", "glsl")
+FORMATS = ("json", "csv", "npz", "h", "glsl", "js", "cs")
 
 
 def encode(
@@ -34,7 +36,8 @@ def encode(
     """
     if kind not in FORMATS:
         raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
-    return _ENCODERS[kind](numbers, stamp, convention, name)
+    names = identifier(name), function_name(name, str(stamp["quantity"]))
+    return _ENCODERS[kind](numbers, with_use(stamp, numbers, convention, kind, names), convention, name)
 
 
 def real_columns(numbers: NDArray[np.generic]) -> NDArray[np.float64]:
@@ -76,14 +79,27 @@ def _h(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Conven
 def _glsl(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
     factors = convention.basis_factors(count_bands(numbers))
     rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
-    quantity = re.sub(r"\W", "_", str(stamp["quantity"]))
+    function = function_name(name, str(stamp["quantity"]))
     return glsl_source(
-        name, quantity, _comment_lines("//", stamp), rows, factors, convention.shift, convention.pole.text
+        name, function, _comment_lines("//", stamp), rows, factors, convention.shift, convention.pole.text
     ).encode()
 
 
+def _js(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
+    rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
+    use = USES.get(convention.name)
+    applied = (str(stamp["use"]), use.takes) if use and use.language == JAVASCRIPT else None
+    return javascript_module(name, _comment_lines("//", stamp), rows, applied).encode()
+
+
+def _cs(numbers: NDArray[np.generic], stamp: dict[str, Value], convention: Convention, name: str) -> bytes:
+    rows = [(l, m, _digits(row)) for l, m, row in _rows(numbers, convention)]
+    vectors = unity_vectors(numbers) if convention.name == "unity" else {}
+    return csharp_class(name, _comment_lines("//", stamp), rows, vectors).encode()
+
+
 _Encoder = Callable[[NDArray[np.generic], dict[str, Value], Convention, str], bytes]
-_ENCODERS: dict[str, _Encoder] = {"json": _json, "csv": _csv, "npz": _npz, "h": _h, "glsl": _glsl}
+_ENCODERS: dict[str, _Encoder] = {"json": _json, "csv": _csv, "npz": _npz, "h": _h, "glsl": _glsl, "js": _js, "cs": _cs}
 
 
 def _digits(row: Iterable[float]) -> list[str]:
