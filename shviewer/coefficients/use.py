@@ -65,7 +65,9 @@ USES = {
         "gltf.extensions.EXT_lights_image_based.lights[0].irradianceCoefficients = {rows}", JAVASCRIPT, ("gltf",)
     ),
     "godot": Use(
-        "probe_data.sh = PackedColorArray(rows.map(func(row): return Color(row[0], row[1], row[2])))", GDSCRIPT
+        "var data = lightmap.probe_data; data.sh = PackedColorArray(rows.map(func(row): return Color(row[0], row[1], "
+        "row[2]))); lightmap.probe_data = data",
+        GDSCRIPT,
     ),
     "3dgs": Use("f_dc, f_rest = {rows}[0], {rows}[1:].T.ravel()", PYTHON),
     "directxmath": Use(

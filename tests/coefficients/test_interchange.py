@@ -15,6 +15,7 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.writing import FORMATS
 from shviewer.harmonics.basis import Array
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
@@ -93,7 +94,7 @@ def test_a_file_of_the_program_is_the_same_radiance_here(name: str, tmp_path: Pa
 
 def test_our_own_numbers_survive_every_program_and_every_format(tmp_path: Path) -> None:
     for name, convention in CONVENTIONS.items():
-        for kind in ("json", "csv", "npz", "h", "glsl"):
+        for kind in FORMATS:
             if (name, kind) == ("scipy", "glsl"):
                 continue
             path = tmp_path / f"{name}.{kind}"

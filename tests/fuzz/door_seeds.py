@@ -131,7 +131,9 @@ def _written() -> dict[str, bytes]:
     """What `shviewer project` writes: every format, and conventions whose numbers look different."""
     projected = project_recipe(Recipe("green", n_bands=3))
     files = {f"light/written.{kind}": projected.encode(CONVENTIONS["shviewer"], kind) for kind in FORMATS}
-    files |= {f"light/complex.{kind}": projected.encode(CONVENTIONS["scipy"], kind) for kind in FORMATS[:4]}
+    files |= {
+        f"light/complex.{kind}": projected.encode(CONVENTIONS["scipy"], kind) for kind in FORMATS if kind != "glsl"
+    }
     irradiance = replace(CONVENTIONS["shviewer"], quantity="irradiance")
     return {
         **files,
