@@ -1,4 +1,4 @@
-// Radiance of a sum of lobes: the profiles of shviewer/harmonics/zonal.py and glossy.py, term for term.
+// Radiance of a sum of lobes: the profiles of shviewer/harmonics/zonal.py and quantities/glossy.py, term for term.
 //
 // A program knows those kinds whose bit is set in PROFILES. Each profile is a function of |direction - axis|^2, which keeps its digits in float32 where the cosine is close to 1.
 

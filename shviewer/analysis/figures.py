@@ -34,7 +34,7 @@ from shviewer.harmonics.metrics import (
     squared_error,
 )
 from shviewer.harmonics.quadrature import jittered
-from shviewer.harmonics.quantity import IRRADIANCE, RADIANCE
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light

@@ -13,7 +13,7 @@ from operator import index
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from shviewer.errors import UsageError
-from shviewer.harmonics import quantity
+from shviewer.harmonics.quantities import names
 
 T = TypeVar("T")
 
@@ -164,14 +164,14 @@ class Flag:
 class Quantity:
     """The name of a quantity."""
 
-    words = (quantity.RADIANCE, quantity.IRRADIANCE, f"{quantity.GLOSSY}0.5")
+    words = (names.RADIANCE, names.IRRADIANCE, f"{names.GLOSSY}0.5")
     """Some of its names."""
 
     def taken(self, name: str, value: Any) -> Any:
         if not isinstance(value, str):
-            raise UsageError(f"{name} {value!r}: {quantity.RULE}")
+            raise UsageError(f"{name} {value!r}: {names.RULE}")
         try:
-            return quantity.quantity_of(value)
+            return names.quantity_of(value)
         except ValueError as error:
             raise UsageError(f"{name} {error}") from error
 

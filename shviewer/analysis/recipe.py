@@ -17,7 +17,7 @@ from shviewer.analysis.options import (
     check_options,
     option,
 )
-from shviewer.harmonics.quantity import RADIANCE
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
 

@@ -19,10 +19,10 @@ from shviewer.analysis.projections import BEST, project, sampling_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.glossy import Glossy
-from shviewer.harmonics.kernels import kernel_of
 from shviewer.harmonics.metrics import band_power, smallest_band_count
-from shviewer.harmonics.quantity import RADIANCE, glossy
+from shviewer.harmonics.quantities.glossy import Glossy
+from shviewer.harmonics.quantities.kernels import kernel_of
+from shviewer.harmonics.quantities.names import RADIANCE, glossy
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS

@@ -10,7 +10,7 @@ from shviewer.analysis.cache import MEMORY, remember
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import LightError
 from shviewer.files import FileVersion
-from shviewer.harmonics.quantity import RADIANCE
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.lights.find import built_in_lights, file_version, find_light
 from shviewer.lights.light import Light, Split
 from shviewer.lights.suns.sun import Sun

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from shviewer.benchmark import end_to_end, experiments, projection_rows, roughness
+from shviewer.benchmark import encodings, end_to_end, experiments, projection_rows, roughness
 from shviewer.benchmark.front import sentences, where_bands_stop_paying
 from shviewer.benchmark.hard_cases import table as stability
 from shviewer.benchmark.hard_cases.shader import renderer_or_reason
@@ -151,6 +151,9 @@ def _measure_sections(run: Run) -> None:
     found = roughness.staircases(run.page.lights)
     run.report.extra[roughness.KEY] = roughness.as_extra(found)
     run.page.hosted[roughness.TITLE] = roughness.as_markdown(found)
+    kept = [one for measured in run.page.lights for one in encodings.kept_of(measured)]
+    run.report.extra[encodings.KEY] = encodings.as_extra(kept)
+    run.page.hosted[encodings.TITLE] = encodings.as_markdown(kept)
     run.measure("projection", _projection)
     run.measure("peers", _peers)
     with renderer_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:

@@ -16,7 +16,7 @@ from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.status_line import bar, status_line
 from shviewer.coefficients.convention import Convention
 from shviewer.errors import OutputError, ShviewerError, within_memory
-from shviewer.harmonics.quantity import IRRADIANCE, RADIANCE, in_words
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
 from shviewer.lights.find import is_code, split_light
 from shviewer.outputs import Replacing, file_stem, write_atomically
 from shviewer.words import one_line

@@ -12,7 +12,7 @@ from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
 from shviewer.errors import UsageError
-from shviewer.harmonics.quantity import IRRADIANCE, RADIANCE, in_words
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
 from shviewer.outputs import Replacing
 from shviewer.words import one_line
 

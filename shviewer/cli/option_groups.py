@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 
 from shviewer.analysis.options import Bands, Number, Option, Pair, Quantity, Share, Whole, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
-from shviewer.harmonics.quantity import quantity_of
+from shviewer.harmonics.quantities.names import quantity_of
 from shviewer.words import one_line
 
 LIGHT_HELP = (

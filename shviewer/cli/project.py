@@ -26,7 +26,7 @@ from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError
-from shviewer.harmonics.quantity import in_words
+from shviewer.harmonics.quantities.names import in_words
 from shviewer.harmonics.rotation import turn
 from shviewer.outputs import Replacing, file_stem, write_atomically
 from shviewer.words import counted

@@ -32,7 +32,7 @@ from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.quantities import QUANTITIES, is_over_pi
 from shviewer.coefficients.texts import convention_text, parse_convention
 from shviewer.errors import LightError
-from shviewer.harmonics.quantity import GLOSSY, quantity_of
+from shviewer.harmonics.quantities.names import GLOSSY, quantity_of
 from shviewer.words import one_line
 
 SCHEMA = 1

@@ -12,7 +12,7 @@ from shviewer.coefficients.parts.quantities import QUANTITIES
 from shviewer.coefficients.parts.rows import ACN, ORDERS
 from shviewer.coefficients.parts.scales import SCALES
 from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
-from shviewer.harmonics.quantity import GLOSSY, quantity_of
+from shviewer.harmonics.quantities.names import GLOSSY, quantity_of
 
 SHIFTED = "shifted"
 """The modifier of a list whose mean is less by SHIFT, as 3D Gaussian splatting has it."""

@@ -1,8 +1,8 @@
 """A light convolved with a zonal kernel: its irradiance, or what a glossy surface reflects, as a light of its own.
 
-The coefficients of a convolution are f(l) c(l, m) (harmonics/kernels.py), so whatever can be done with a light, the exact error
-included, can be done with its irradiance and its glossy reflection in the same way. Irradiance over pi is the radiance of a
-white surface; a glossy quantity is a radiance as it is.
+The coefficients of a convolution are f(l) c(l, m) (harmonics/quantities/kernels.py), so whatever can be done with a light, the
+exact error included, can be done with its irradiance and its glossy reflection in the same way. Irradiance over pi is the
+radiance of a white surface; a glossy quantity is a radiance as it is.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.extremes.bands import Bands, band_heights
 from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
-from shviewer.harmonics.kernels import FEWEST_BANDS, Kernel, kernel_of
 from shviewer.harmonics.overlap import inner_product
-from shviewer.harmonics.quantity import RADIANCE
+from shviewer.harmonics.quantities.kernels import FEWEST_BANDS, Kernel, kernel_of
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
 from shviewer.harmonics.zonal import ClampedLinear, Profile, gegenbauer_ratios

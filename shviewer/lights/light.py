@@ -14,7 +14,7 @@ from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Form
 from shviewer.harmonics.quadrature import evaluate_rows
-from shviewer.harmonics.quantity import IRRADIANCE
+from shviewer.harmonics.quantities.names import IRRADIANCE
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.notebook import InNotebooks
 

@@ -10,7 +10,7 @@ from typing import Any
 from shviewer.analysis.options import Choice, options_of
 from shviewer.analysis.recipe import WINDOWS, Recipe, light_name
 from shviewer.harmonics.basis import Array, degree_order, index
-from shviewer.harmonics.quantity import (
+from shviewer.harmonics.quantities.names import (
     IRRADIANCE,
     LEAST_ROUGHNESS,
     MOST_ROUGHNESS,

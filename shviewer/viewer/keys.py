@@ -10,7 +10,7 @@ from functools import partial
 from typing import NamedTuple, TypeVar
 
 from shviewer.analysis.recipe import light_name
-from shviewer.harmonics.quantity import in_words
+from shviewer.harmonics.quantities.names import in_words
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import actions as do
 from shviewer.viewer.actions import Command

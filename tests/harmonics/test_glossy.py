@@ -9,9 +9,9 @@ from scipy.integrate import quad
 from scipy.special import eval_legendre
 
 from shviewer.harmonics.filters import irradiance_factors
-from shviewer.harmonics.glossy import Glossy, glossy_factors
-from shviewer.harmonics.kernels import kernel_of
-from shviewer.harmonics.quantity import in_words, quantity_of, roughness_of
+from shviewer.harmonics.quantities.glossy import Glossy, glossy_factors
+from shviewer.harmonics.quantities.kernels import kernel_of
+from shviewer.harmonics.quantities.names import in_words, quantity_of, roughness_of
 
 REFERENCE = kernels()["A"]
 ROUGHNESS = [0.1, 0.2, 0.3, 0.5, 0.7, 0.9]

@@ -10,10 +10,10 @@ from places import kernels
 
 from shviewer.coefficients.parts.quantities import recovered_radiance
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.glossy import Glossy
-from shviewer.harmonics.kernels import kernel_of
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
 from shviewer.harmonics.quadrature import gauss_legendre
+from shviewer.harmonics.quantities.glossy import Glossy
+from shviewer.harmonics.quantities.kernels import kernel_of
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.environment import EnvironmentLight

@@ -6,8 +6,8 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
-from shviewer.harmonics.kernels import kernel_of
-from shviewer.harmonics.quantity import GLOSSY
+from shviewer.harmonics.quantities.kernels import kernel_of
+from shviewer.harmonics.quantities.names import GLOSSY
 
 RADIANCE, RADIANCE_OVER_PI, IRRADIANCE, OVER_PI = QUANTITIES = (
     "radiance",
@@ -15,7 +15,7 @@ RADIANCE, RADIANCE_OVER_PI, IRRADIANCE, OVER_PI = QUANTITIES = (
     "irradiance",
     "irradiance-over-pi",
 )
-"""Those beside glossy ones, such as "glossy:0.4" (harmonics/quantity.py).
+"""Those beside glossy ones, such as "glossy:0.4" (harmonics/quantities/names.py).
 
 The last is the radiance of a white Lambertian surface; the second what a program holds that divides it before A(l).
 """

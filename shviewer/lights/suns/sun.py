@@ -23,8 +23,8 @@ import numpy as np
 from shviewer.coefficients.suns import DirectionalLight
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.zonal_table import perpendicular
-from shviewer.harmonics.kernels import kernel_of
-from shviewer.harmonics.quantity import RADIANCE
+from shviewer.harmonics.quantities.kernels import kernel_of
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.harmonics.zonal import ClampedLinear, Disc
 from shviewer.lights.lobe import Lobe
 

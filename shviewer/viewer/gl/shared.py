@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, index, normalisation
-from shviewer.harmonics.glossy import Glossy
+from shviewer.harmonics.quantities.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import MAX_LOBES

@@ -5,7 +5,7 @@ from __future__ import annotations
 from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.metrics import LUMINANCE
-from shviewer.harmonics.quantity import RADIANCE, in_words
+from shviewer.harmonics.quantities.names import RADIANCE, in_words
 from shviewer.viewer.beside import words_of
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK

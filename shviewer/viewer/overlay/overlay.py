@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw
 
 from shviewer.analysis.comparison import agrees
 from shviewer.analysis.figures import PENDING, Pending
-from shviewer.harmonics.quantity import in_words, roughness_of
+from shviewer.harmonics.quantities.names import in_words, roughness_of
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.captions import write_captions
 from shviewer.viewer.overlay.colour_bar import draw_colour_bar

@@ -26,7 +26,7 @@ from viewer.gl.frames import (
 )
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.glossy import Glossy
+from shviewer.harmonics.quantities.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight

@@ -14,8 +14,8 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.filters import irradiance_factors
-from shviewer.harmonics.glossy import Glossy, glossy_factors
-from shviewer.harmonics.quantity import IRRADIANCE, RADIANCE, quantity_of, roughness_of
+from shviewer.harmonics.quantities.glossy import Glossy, glossy_factors
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, quantity_of, roughness_of
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
 
 FEWEST_BANDS = 128

@@ -1,0 +1,1 @@
+"""Quantities of a light: radiance, irradiance and glossy reflection, their kernels, and how engines store irradiance."""

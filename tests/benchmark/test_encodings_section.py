@@ -1,0 +1,47 @@
+"""The section on encodings of irradiance says what each keeps, of every kind of light."""
+
+import numpy as np
+import pytest
+
+from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.reconstruction import reconstruction_of
+from shviewer.benchmark.encodings import as_extra, as_markdown, kept_of
+from shviewer.benchmark.measured_lights import measured_light
+from shviewer.harmonics.quantities.encodings import ENCODINGS, REPORTED
+from shviewer.harmonics.zonal import Constant
+from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.find import find_light
+from shviewer.lights.lobe import Lobe
+from shviewer.lights.lobes import LobeLight
+
+
+def test_a_light_has_a_row_for_each_encoding_and_a_sentence_on_the_best_of_four_five_and_nine() -> None:
+    found = kept_of(measured_light(find_light("venice_sunset")))
+    assert [kept.encoding for kept in found] == list(REPORTED)
+    page = as_markdown(found)
+    best = "of four floats ZH3 hallucinated is best, 8.3 % (L1 as it is 11.6 %); five leave 6.53 % (ZH3), nine 1.43 %."
+    assert best in page
+    assert sum(line.startswith("| venice_sunset ") for line in page.splitlines()) == len(REPORTED)
+    assert as_extra(found)[0]["floats"] == 4
+
+
+def test_what_a_float_saves_is_the_error_that_the_mean_alone_has_more() -> None:
+    light = find_light("green").irradiance()
+    alone = np.sqrt(1 - (light.coefficients(1) ** 2).sum() / np.trace(light.products()))
+    for kept in kept_of(measured_light(find_light("green"))):
+        assert kept.relative_l2 + kept.saved_by_a_float * (kept.floats - 1) == pytest.approx(alone, rel=1e-12)
+
+
+def test_the_figures_are_those_of_the_window() -> None:
+    figures = reconstruction_of(Recipe("green", n_bands=3, quantity="irradiance")).figures
+    kept = next(kept for kept in kept_of(measured_light(find_light("green"))) if kept.encoding == "l2")
+    assert kept.relative_l2 == pytest.approx(figures.relative_l2, rel=1e-9)
+    assert kept.largest_error == pytest.approx(figures.extremes.max_error / figures.extremes.peak, rel=0.01)
+
+
+def test_a_black_light_has_no_rows_and_a_negative_one_all_but_the_deringed() -> None:
+    black = LobeLight((Lobe(Constant(), np.array([0.0, 0, 1]), np.zeros(3)),))
+    assert kept_of(measured_light(black)) == []
+    negative = CoefficientLight(np.repeat([[-1.0], [0.1], [0.2], [0.0]], 3, axis=1))
+    assert {kept.encoding for kept in kept_of(measured_light(negative))} == set(REPORTED) - {"l2-deringed"}
+    assert "l2-deringed" in ENCODINGS
