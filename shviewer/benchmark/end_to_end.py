@@ -27,7 +27,7 @@ from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import draw_overlay
-from shviewer.viewer.picture import prepare
+from shviewer.viewer.picture import first_picture, prepare
 from shviewer.viewer.saving.picture_files import write_png
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import offscreen, render_rgb
@@ -39,14 +39,16 @@ KEY_BANDS = (5, 32)
 """Band counts at which Up is pressed: the default, and the last one of the direct sum."""
 
 VERSION, SCREENSHOT = "start, --version", "LIGHT to PNG, new process"
-PICTURE, SAVED = "LIGHT to picture, warm", "LIGHT to PNG, warm"
+FIRST, COMPLETE = "LIGHT to first picture, warm", "LIGHT to all figures, warm"
+SAVED = "LIGHT to PNG, warm"
 NEW_KEY, KNOWN_KEY = "key to picture, new bands", "key to picture, known bands"
 IDLE = "idle window"
 
 NOTES = {
     VERSION: "a new process; the floor of all others",
     SCREENSHOT: "a new process, start of Python included",
-    PICTURE: "in a running process that does not know the light",
+    FIRST: "in a running process that does not know the light; figures that take a search are pending",
+    COMPLETE: "the same, until no figure is pending",
     SAVED: "the same, read back and written",
     NEW_KEY: "Up, to bands not shown before",
     KNOWN_KEY: "Up, to bands shown before",
@@ -121,7 +123,7 @@ def session_rows(
     key_bands: Sequence[int] = KEY_BANDS,
     at_least: int = 5,
 ) -> list[Row]:
-    """Rows of this process: from the LIGHT `text` to its first picture, and from Up to the next. It forgets every light.
+    """Rows of this process: from the LIGHT `text` to its picture, and from Up to the next. It forgets every light.
 
     A picture is done when OpenGL says so, in the window's size and format, overlay included. No rows where nothing draws.
     budget: seconds. at_most: seconds beyond which nothing is measured.
@@ -132,7 +134,8 @@ def session_rows(
     works: dict[tuple[str, int], Work] = {}
     with offscreen(drawing, FRAME) as target, temporary_folder() as folder:
         frames = _Frames(drawing, target)
-        works[PICTURE, start.recipe.n_bands] = lambda: frames.first(start)
+        works[FIRST, start.recipe.n_bands] = lambda: frames.first(start)
+        works[COMPLETE, start.recipe.n_bands] = lambda: frames.complete(start)
         works[SAVED, start.recipe.n_bands] = lambda: frames.save(start, folder / "out.png")
         for n_bands in key_bands:
             works[NEW_KEY, n_bands + 1] = works[KNOWN_KEY, n_bands + 1] = frames.press_up
@@ -181,6 +184,11 @@ class _Frames:
         self._upload()
 
     def first(self, state: State) -> None:
+        self.session = Session(state, first_picture(state))
+        self._upload()
+        self._draw()
+
+    def complete(self, state: State) -> None:
         self.open(state)
         self._draw()
 

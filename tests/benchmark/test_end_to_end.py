@@ -15,10 +15,11 @@ from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.figures import figures_of
 from shviewer.benchmark import end_to_end
 from shviewer.benchmark.end_to_end import (
+    COMPLETE,
+    FIRST,
     IDLE,
     KNOWN_KEY,
     NEW_KEY,
-    PICTURE,
     SAVED,
     SCREENSHOT,
     VERSION,
@@ -68,7 +69,8 @@ def test_a_process_that_fails_is_no_time(renderer: Renderer) -> None:
 def test_a_session_times_the_first_picture_and_a_key_on_either_side(renderer: Renderer) -> None:
     rows = session_rows("green", "mine", renderer, budget=0, key_bands=(5, 32), at_least=1)
     assert [(row.method, row.n_bands) for row in rows] == [
-        (PICTURE, 5),
+        (FIRST, 5),
+        (COMPLETE, 5),
         (SAVED, 5),
         (NEW_KEY, 6),
         (KNOWN_KEY, 6),
@@ -104,7 +106,7 @@ def test_what_is_new_is_computed_anew_and_what_is_known_is_not(
     monkeypatch.setattr(end_to_end, "time_interleaved", in_reverse)
     rows = session_rows("green", "green", renderer, budget=0, key_bands=(5,))
     assert {row.note for row in rows} == {"not measured"}
-    assert seen == {KNOWN_KEY: (2, 2), NEW_KEY: (1, 2), SAVED: (0, 1), PICTURE: (0, 1)}
+    assert seen == {KNOWN_KEY: (2, 2), NEW_KEY: (1, 2), SAVED: (0, 1), FIRST: (0, 0), COMPLETE: (0, 1)}
 
 
 def test_a_session_leaves_nothing_remembered_and_the_renderer_free_of_errors(renderer: Renderer) -> None:

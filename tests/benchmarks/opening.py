@@ -1,11 +1,14 @@
 """What opening a large map costs: [xvfb-run -a] python tests/benchmarks/opening.py [WIDTH ...]
 
-Whole processes, files in a temporary folder: processor time, peak memory, and the time over that of the floor, a Python that
-reads the same file with OpenEXR's own library and sums it once. The files are half floats, ZIP: one value, or noise that no
-code compresses well.
+Whole processes on files that this script makes: a sky of 1/f luminance with noise and a sun, as .exr (half floats, ZIP, and
+float32, PIZ) and .hdr; and such a light as an angular map and a mirror ball. Of each: processor time, the same over the floor,
+and the peak memory of all processes. The floor is a Python that reads the file with OpenImageIO and sums it once. *First
+picture* is what the window shows first, its figures pending, without OpenGL; *screenshot* is the whole picture, drawn, with all
+figures; *opened* is both in the way of a window, which lets a child decode.
 
 With a display also the window: while a map is dropped and opened, the camera turns in every frame. Goal: no frame waits longer
 than 50 ms for the light. The times of frames are those of drawing, too, so they stand beside the frames before the drop.
+Last, what the memory of lights holds after ten maps in turn.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -23,47 +27,132 @@ import OpenEXR
 from measure import machine
 
 FLOOR = """
-import sys, numpy, OpenEXR
-with OpenEXR.File(sys.argv[1]) as file:
-    print(file.channels()["RGB"].pixels.astype(numpy.float32).sum())
+import sys, OpenImageIO
+print(OpenImageIO.ImageBuf(sys.argv[1]).get_pixels(OpenImageIO.FLOAT).sum())
 """
-KINDS = ("flat", "noise")
+FIRST = """
+import sys
+from shviewer.lights.reading import Reading
+from shviewer.viewer.picture import completed, first_picture
+from shviewer.viewer.state import state_of
+picture = first_picture(state_of(sys.argv[1], reading=Reading(layout=sys.argv[2], isolated=sys.argv[3] == "opened")))
+if sys.argv[3] == "opened":
+    from shviewer.viewer.screenshot import headless_renderer
+    with headless_renderer() as renderer:
+        renderer.show(picture)
+        renderer.show(completed(picture))
+"""
+REPEATS = 3
 BEFORE = 30
 PATIENCE = 300.0
 """Seconds for a map to open in the window."""
 
 
-def write_map(path: Path, width: int, kind: str) -> None:
-    shape = width // 2, width, 3
+def sky(width: int) -> np.ndarray:
+    """(width / 2, width, 3) float32: waves of a height that falls with their frequency, noise, and a sun of 0.5 degrees."""
     rng = np.random.default_rng(0)
-    pixels = np.ones(shape, np.float16) if kind == "flat" else rng.random(shape, np.float32).astype(np.float16)
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-    with OpenEXR.File(header, {"RGB": pixels}) as file:
+    phi, theta = np.linspace(0, 2 * np.pi, width, np.float32), np.linspace(0, np.pi, width // 2, np.float32)
+    pixels = np.full((width // 2, width, 3), [0.4, 0.45, 0.5], np.float32)
+    for k in 2 ** np.arange(1, 8):
+        turns = rng.random(2) * 2 * np.pi
+        wave = np.cos(k * theta + turns[0])[:, None] * np.cos(k * phi + turns[1]) / (8 * k)
+        pixels += wave[..., None]
+    for rows in pixels.reshape(-1, width, 3):
+        rows *= rng.lognormal(0, 0.05, (width, 1)).astype(np.float32)
+    size = max(1, width // 720)
+    pixels[width // 8 : width // 8 + size, width // 3 : width // 3 + size] = 3e4
+    return np.maximum(pixels, 1e-3)
+
+
+def write_exr(path: Path, pixels: np.ndarray, compression: object) -> None:
+    with OpenEXR.File({"compression": compression, "type": OpenEXR.scanlineimage}, {"RGB": pixels}) as file:
         file.write(str(path))
 
 
+def write_maps(folder: Path, width: int) -> list[tuple[Path, str]]:
+    """The files of one size, with their layouts."""
+    import OpenImageIO
+
+    pixels = sky(width)
+    files = [(folder / f"{width}-{kind}", "auto") for kind in ("half.exr", "float.exr", "rgbe.hdr")]
+    write_exr(files[0][0], pixels.astype(np.float16), OpenEXR.ZIP_COMPRESSION)
+    write_exr(files[1][0], pixels, OpenEXR.PIZ_COMPRESSION)
+    buffer = OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(width, width // 2, 3, OpenImageIO.FLOAT))
+    buffer.set_pixels(OpenImageIO.ROI(), pixels)
+    buffer.write(str(files[2][0]))
+    return files
+
+
+def write_balls(folder: Path) -> list[tuple[Path, str]]:
+    """A sky as an angular map and as a mirror ball of 1024 texels a side, and as a lat-long map of as many texels."""
+    files = []
+    for layout, shape in (("angular", (1024, 1024)), ("mirror-ball", (1024, 1024)), ("lat-long", (724, 1448))):
+        pixels = sky(2048)[: shape[0], : shape[1]].astype(np.float16)
+        files.append((folder / f"1024-{layout}.exr", layout))
+        write_exr(files[-1][0], pixels, OpenEXR.ZIP_COMPRESSION)
+    return files
+
+
+class Peak:
+    """The most memory that this process's children and theirs held together, MiB, looked at every 5 ms. Linux only."""
+
+    def __init__(self, root: int) -> None:
+        self.mib, self._root, self._over = 0.0, root, threading.Event()
+        self._thread = threading.Thread(target=self._watch)
+        self._thread.start()
+
+    def _watch(self) -> None:
+        while not self._over.wait(0.005):
+            self.mib = max(self.mib, _resident(self._root) / 2**20)
+
+    def end(self) -> float:
+        self._over.set()
+        self._thread.join()
+        return self.mib
+
+
+def _resident(root: int) -> int:
+    """Bytes of a process and its children."""
+    try:
+        own = int(Path(f"/proc/{root}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        children = Path(f"/proc/{root}/task/{root}/children").read_text().split()
+    except OSError:
+        return 0
+    return own + sum(_resident(int(child)) for child in children)
+
+
 def process(*arguments: str) -> tuple[float, float]:
-    """Processor seconds and peak MiB of a new Python."""
+    """Processor seconds and peak MiB, both with children, of a new Python; 0 MiB where the system does not tell."""
     child = subprocess.Popen([sys.executable, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    peak = Peak(child.pid)
     _, status, usage = os.wait4(child.pid, 0)
     assert status == 0, arguments
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+    return usage.ru_utime + usage.ru_stime, peak.end()
 
 
-def processes(path: Path) -> None:
+def processes(path: Path, layout: str) -> None:
+    """Print a row of the table."""
     out = str(path.with_suffix(".png")), str(path.with_suffix(".json"))
-    program = ("-m", "shviewer")
+    mode = "-m", "shviewer"
+    more = "--layout", layout
     works = {
         "floor": ("-c", FLOOR, str(path)),
-        "project, 9 bands": (*program, "project", str(path), "--bands", "9", "-o", out[1]),
-        "screenshot": (*program, "screenshot", out[0], str(path)),
-        "info": (*program, "info", str(path)),
+        "first picture": ("-c", FIRST, str(path), layout, "first"),
+        "screenshot": (*mode, "screenshot", out[0], str(path), *more),
+        "opened": ("-c", FIRST, str(path), layout, "opened"),
+        "project": (*mode, "project", str(path), "--bands", "9", "-o", out[1], *more),
+        "info": (*mode, "info", str(path), *more),
     }
-    measured = {name: [process(*arguments) for _ in range(3)] for name, arguments in works.items()}
-    floor = min(seconds for seconds, _ in measured["floor"])
-    for name, runs in measured.items():
-        seconds, peak = min(runs)[0], max(peak for _, peak in runs)
-        print(f"{path.stem:<14}{name:<18}{seconds:7.2f} CPU-s{seconds / floor:7.2f} x floor{peak:8.0f} MiB")
+    runs: dict[str, list[tuple[float, float]]] = {name: [] for name in works}
+    for _ in range(REPEATS):
+        for name, arguments in works.items():
+            runs[name].append(process(*arguments))
+    floor = min(seconds for seconds, _ in runs["floor"])
+    cells = [f"{floor:.2f}"]
+    for name in list(works)[1:]:
+        seconds = min(seconds for seconds, _ in runs[name])
+        cells.append(f"{seconds:.2f} / **{seconds / floor:.1f}** / {max(peak for _, peak in runs[name]):.0f}")
+    print(f"| {path.name} | {' | '.join(cells)} |", flush=True)
 
 
 def window(paths: list[Path]) -> None:
@@ -89,13 +178,16 @@ def window(paths: list[Path]) -> None:
                 shown = Window(handle, Canvas(moderngl.create_context(require=330)), prepare(state_of("green")), False)
                 before = [frame(shown, turn) for turn in range(BEFORE)]
                 shown.session.drop(str(path))
-                meanwhile, end = [], time.perf_counter() + PATIENCE
-                while shown.shown is None or shown.shown.light.name != path.stem:
-                    assert time.perf_counter() < end, shown.session.state.view.message
+                meanwhile, start, first = [], time.perf_counter(), 0.0
+                while first == 0 or not shown.session.picture.complete:
+                    assert time.perf_counter() < start + PATIENCE, shown.session.state.view.message
                     meanwhile.append(frame(shown, len(meanwhile)))
+                    if first == 0 and shown.shown is not None and shown.shown.light.name == path.stem:
+                        first = time.perf_counter() - start
                     time.sleep(min(meanwhile[-1] / 1000, 0.03) if shown.session.working else 0)
                 print(
-                    f"{path.stem:<14}window: {len(meanwhile)} frames, median {statistics.median(meanwhile):.0f} ms, slowest "
+                    f"{path.name}: first picture after {first:.2f} s, all figures after {time.perf_counter() - start:.2f} s; "
+                    f"{len(meanwhile)} frames, median {statistics.median(meanwhile):.0f} ms, slowest "
                     f"{max(meanwhile):.0f} ms; before the drop {statistics.median(before):.0f} and {max(before):.0f} ms"
                 )
                 shown.canvas.release()
@@ -103,16 +195,37 @@ def window(paths: list[Path]) -> None:
         print(f"window: not measured ({error})")
 
 
+def ten_in_turn(path: Path) -> None:
+    """Open one map under ten names, and print what is remembered of those not in use."""
+    from shviewer.analysis.cache import MEMORY, MOST_BYTES, array_bytes
+    from shviewer.viewer.picture import prepare
+    from shviewer.viewer.state import state_of
+
+    most = 0
+    for number in range(10):
+        link = path.with_name(f"turn-{number}{path.suffix}")
+        link.hardlink_to(path)
+        light = prepare(state_of(str(link))).light
+        others = [array_bytes(other, results) for other, results in MEMORY._known.items() if other is not light]
+        most = max(most, sum(others))
+    print(f"ten maps in turn: {most / 2**20:.0f} MiB of lights not in use; the cap is {MOST_BYTES / 2**20:.0f} MiB")
+
+
 def main() -> None:
-    widths = [int(text) for text in sys.argv[1:]] or [4096, 8192]
+    widths = [int(text) for text in sys.argv[1:]] or [2048, 4096, 8192]
     print(machine())
+    print("\nProcessor seconds / over the floor / peak MiB of all processes:\n")
+    print(
+        "| map | floor | first picture | screenshot | opened | project, 9 bands | info |\n|---|---:|---:|---:|---:|---:|---:|"
+    )
     with tempfile.TemporaryDirectory() as folder:
-        paths = [Path(folder) / f"{kind}-{width}.exr" for width in widths for kind in KINDS]
-        for path in paths:
-            kind, width = path.stem.split("-")
-            write_map(path, int(width), kind)
-            processes(path)
-        window(paths)
+        files = [file for width in widths for file in write_maps(Path(folder), width)]
+        for path, layout in (*files, *write_balls(Path(folder))):
+            processes(path, layout)
+        print()
+        halves = [path for path, _ in files if path.suffix == ".exr"]
+        window(halves)
+        ten_in_turn(halves[-2])
 
 
 if __name__ == "__main__":
