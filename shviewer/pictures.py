@@ -14,7 +14,7 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.api import LightLike, find_light, recipe_of, with_options
 from shviewer.errors import UsageError
 from shviewer.viewer import screenshot as offscreen
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composition import frame_for
 from shviewer.viewer.picture import first_picture, prepare
 from shviewer.viewer.saving.picture_files import png_bytes
 from shviewer.viewer.saving.stamp import metadata
@@ -39,9 +39,7 @@ def screenshot(
     state = _state(light, bands, options, size)
     picture = prepare(state, written=overlay)
     with offscreen.headless_renderer() as renderer:
-        return offscreen.render_rgb(
-            renderer, picture, compose(*size, state.view.zoom, n_spheres=state.view.n_spheres), overlay=overlay
-        )
+        return offscreen.render_rgb(renderer, picture, frame_for(state.view, *size), overlay=overlay)
 
 
 def picture_bytes(shown: object) -> bytes:
@@ -53,7 +51,7 @@ def picture_bytes(shown: object) -> bytes:
     state = State(recipe, View(), (recipe.light,)) if recipe else _state(cast(LightLike, shown), None, {}, size)
     picture = prepare(state)
     with offscreen.headless_renderer() as renderer:
-        composition = compose(*size, state.view.zoom, n_spheres=state.view.n_spheres)
+        composition = frame_for(state.view, *size)
         pixels = offscreen.render_rgb(renderer, picture, composition)
         return png_bytes(pixels, metadata(picture, composition, renderer.version))
 

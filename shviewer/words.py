@@ -72,6 +72,7 @@ def radiance(value: float, peak: float) -> str:
     """A radiance in three digits, with a power of ten where that is shorter; "0" below a millionth of the light's peak."""
     if abs(value) <= 1e-6 * peak:
         return "0"
+    value = float(f"{value:.2e}") if abs(value) < 100 else value  # 0.9999 is 1.00
     if 1e-3 <= abs(value) < 1e5:
         return f"{value:.{max(0, 2 - math.floor(math.log10(abs(value))))}f}"
     mantissa, exponent = f"{value:.2e}".split("e")

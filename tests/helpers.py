@@ -12,7 +12,7 @@ from typing import NoReturn, TypeVar
 import pytest
 
 from shviewer.lights.light import Light
-from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.composition import Composition, frame_for
 from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import state_of
@@ -61,7 +61,7 @@ def picture_of(light: str | Light = "green", **changes: object) -> Picture:
 
 def frame_of(picture: Picture, width: int = 1280, height: int = 640, content_scale: float = 1.0) -> Composition:
     """The frame that a picture is drawn in, with its zoom and as many spheres as it has."""
-    return compose(width, height, picture.state.view.zoom, content_scale, picture.state.view.n_spheres)
+    return frame_for(picture.state.view, width, height, content_scale)
 
 
 def overlap(one: Box, other: Box) -> bool:

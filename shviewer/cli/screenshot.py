@@ -9,7 +9,7 @@ from shviewer.cli.from_options import replacing_of, state_from
 from shviewer.cli.notes import print_notes
 from shviewer.cli.status_line import speaking
 from shviewer.errors import UsageError
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composition import frame_for
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.screenshot import save_picture
@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
         )
     with speaking():
         picture = prepare(state, written=not options.no_overlay)
-    composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
+    composition = frame_for(state.view, *options.size)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     print_notes(state.recipe)
     if options.reference is None or pixels is None:

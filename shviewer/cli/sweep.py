@@ -18,7 +18,7 @@ from shviewer.viewer.animation.animation import (
     turntable,
 )
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composition import frame_for
 
 
 def run(options: argparse.Namespace) -> int:
@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
         first = DEFAULT_SWEEP[0] if options.first is None else options.first
         last = DEFAULT_SWEEP[1] if options.last is None else options.last
         animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
-    composition = compose(options.size[0], options.size[1], state.view.zoom, n_spheres=state.view.n_spheres)
+    composition = frame_for(state.view, *options.size)
     with status_line() as line:
         save_animation(
             animation,

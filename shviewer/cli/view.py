@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"{name:<20}{find_light(name).description}")
         return 0
     from shviewer.outputs import file_stem
-    from shviewer.viewer.composition import compose
+    from shviewer.viewer.composition import frame_for
     from shviewer.viewer.desktop import window
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
     from shviewer.viewer.desktop.last_size import keep_size, last_size
@@ -54,8 +54,8 @@ def run(options: argparse.Namespace) -> int:
             keep_size(closed)
     except NoDisplayError as error:
         picture = completed(first.result())
-        stem, view = f"shviewer-{file_stem(picture.light.name)}", picture.state.view
-        composition = compose(options.size[0], options.size[1], view.zoom, n_spheres=view.n_spheres)
+        stem = f"shviewer-{file_stem(picture.light.name)}"
+        composition = frame_for(picture.state.view, *options.size)
         out = write_numbered(stem, lambda out: save_picture(picture, composition, out, exclusive=True), first=0)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0

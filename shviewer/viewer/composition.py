@@ -1,33 +1,79 @@
-"""Where things stand in a frame of a given size. Pure numbers, in pixels from the top left, y down."""
+"""Where things stand in a frame of a given size. Pure numbers, in pixels from the top left, y down.
+
+Panes stand in as many rows as makes them largest; the numbers under the hairline get what they need first.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import product
+from math import ceil, sqrt
+from typing import TYPE_CHECKING
 
+from shviewer.viewer import panes
+from shviewer.viewer.numbers_area import COMFORTABLE, HEIGHTS, LEVELS, SIDE, Line, Mode, Numbers, fits, numbers_area
 from shviewer.viewer.panes import Box, Pane, Sphere, WholeSphere
+
+if TYPE_CHECKING:
+    from shviewer.viewer.view import View
 
 MIN_SIDE, MAX_SIDE = 64, 8192
 """Frames smaller or larger than this are refused."""
 
 DESIGN_WIDTH, DESIGN_HEIGHT = 1280, 640
+COMPACT_WIDTH, COMPACT_HEIGHT = 900, 480
+"""A frame that is smaller both ways is compact: small type, and nothing that could be done without."""
+
+LOW_HEIGHT = 360
+"""So is one that is lower than this."""
+
+MOST_LINES = 4
+"""How many lines after a head there may be, as far as they are clear of the sphere."""
+
+CLEARANCE = 12.0
+"""Pixels of the design between a text and a sphere."""
+
+GROWTH = {Mode.HALVES: 160.0, Mode.STACK: 160.0, Mode.CELL: 46.0, Mode.BARE: 46.0}
+"""How much higher than needed the numbers become where the panes cannot grow; the rest parts the rows."""
+
+
+NOWHERE, NO_NUMBERS = Box(0.0, 0.0, 0.0, 0.0), Numbers()
+
+
+@dataclass(frozen=True)
+class Caption:
+    """The places of what is written about a pane: the head, lines after it, and the line at its foot."""
+
+    head: Line
+    lines: tuple[Line, ...]
+    """The lines after the head: none in a compact frame; over a map one, on the head's baseline."""
+    foot: Line | None
 
 
 @dataclass(frozen=True)
 class Composition:
-    """The layout of a frame: original, reconstruction and perhaps the error, captions above, figures under a hairline."""
+    """The layout of a frame: panes of original, reconstruction and perhaps the error, a hairline, and the numbers."""
 
     width: int
     height: int
     scale: float
-    """Pixels per unit of type and gaps; 1 at 1280 x 640."""
+    """Pixels of the frame per pixel of the design; 1 at 1280 x 640."""
     spheres: tuple[Sphere, ...]
-    caption_y: float
-    """The y of the corners' words and of the captions of the first row."""
-    hairline_y: float
+    captions: tuple[Caption, ...] = ()
+    """One for each pane."""
+    hairline: Box = NOWHERE
+    """The line between panes and numbers, which shows progress, too; upright where the numbers stand beside the panes."""
+    numbers: Numbers = NO_NUMBERS
+    compact: bool = False
     colour_bar: Box | None = None
-    """Room for the colour bar and its numbers, under the error's sphere."""
+    """Room for the colour bar and its numbers, under the error."""
     maps: tuple[WholeSphere, ...] = ()
     """The panes of the whole sphere, where that is shown in place of the spheres."""
+    ticks: bool = False
+    """Whether there is room for azimuths under the maps."""
+    over: bool = False
+    """Whether the panes reach under their captions, as those of enlarged spheres do."""
 
     @property
     def panes(self) -> tuple[Pane, ...]:
@@ -40,44 +86,287 @@ class Composition:
 
     @property
     def margin(self) -> float:
-        return self.px(24)
+        return self.px(_margin(self.width / self.scale))
 
 
-TOP, STRIP, GAP, BAR, ROW_CAPTION = 48, 118, 30, 34, 40
-"""Heights of the captions, the figures, the space before them, the colour bar, and the captions of a second row."""
+def compose(
+    width: int,
+    height: int,
+    zoom: float = 1.0,
+    content_scale: float = 1.0,
+    n_spheres: int = 2,
+    *,
+    whole_sphere: bool = False,
+    map_centre: tuple[float, float] = (0.0, 0.0),
+) -> Composition:
+    """Lay out a frame. Nothing is smaller than in a design of 1280 x 640, times the monitor's content scale.
 
-
-def compose(width: int, height: int, zoom: float = 1.0, content_scale: float = 1.0, n_spheres: int = 2) -> Composition:
-    """Lay out a frame: spheres side by side, or the third below the others where that makes them larger.
-
-    Type does not shrink below 0.7 of the design (times the monitor's content scale).
+    n_spheres: the number of panes, 2 or 3, whether they are spheres or maps.
+    whole_sphere: panes are maps with map_centre, azimuth and elevation in degrees, in their middle.
     """
-    scale = max(min(height / DESIGN_HEIGHT, width / DESIGN_WIDTH), 0.7 * content_scale)
-    arrangements = [(n_spheres,)] if n_spheres < 3 else [(3,), (2, 1)]
-    bar = BAR * scale if n_spheres > 2 else 0.0
-    fixed = (TOP + STRIP + GAP) * scale + bar
+    scale = max(content_scale, min(width / DESIGN_WIDTH, height / DESIGN_HEIGHT))
+    design = _Design(width / scale, height / scale, n_spheres, whole_sphere)
+    rows, mode = design.best()
+    return _Placed(design, rows, mode).composition(width, height, scale, zoom, map_centre)
 
-    def radius_in(rows: tuple[int, ...]) -> float:
-        free = height - fixed - (len(rows) - 1) * ROW_CAPTION * scale
-        return max(min(free / len(rows) / 2, width / (2 * max(rows)) - 18 * scale), 4.0)
 
-    rows = max(arrangements, key=radius_in)
-    radius = radius_in(rows)
-    pitch = 2 * radius + ROW_CAPTION * scale
-    above, below = TOP * scale, len(rows) * pitch - ROW_CAPTION * scale
-    top = max((height - fixed - below) / 2, 0.0)  # a tall window centres the whole
-    bottom = top + above + below
-    hairline = min(bottom + bar + GAP * scale, max(height - STRIP * scale, bottom + bar))
-    spheres: list[Sphere] = []
-    for number, count in enumerate(rows):
-        centre_y = top + above + number * pitch + radius
-        caption_y = centre_y - radius - 20 * scale
-        ceiling = centre_y - radius + (10 * scale if zoom > 1 else -2)  # under the captions
-        floor = hairline if number == len(rows) - 1 and not bar else centre_y + radius + 4 * scale
-        for column in range(count):
-            left, right = column * width / count, (column + 1) * width / count
-            clip = Box(left + (scale if column else 0), ceiling, right - (scale if column < count - 1 else 0), floor)
-            spheres.append(Sphere((left + right) / 2, centre_y, radius * zoom, clip, caption_y))
-    x = spheres[-1].x
-    colour_bar = Box(x - radius, bottom + 8 * scale, x + radius, bottom + 8 * scale + bar) if bar else None
-    return Composition(width, height, scale, tuple(spheres), top + above - 20 * scale, hairline, colour_bar)
+def frame_for(view: View, width: int, height: int, content_scale: float = 1.0) -> Composition:
+    """The frame of a view in a picture of this size."""
+    return compose(width, height, view.zoom, content_scale, view.n_spheres)
+
+
+def _margin(width: float) -> float:
+    return 24.0 if width >= COMPACT_WIDTH else 16.0 if width >= 300 else 8.0 if width >= 100 else 2.0
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A frame in pixels of the design, and how large its panes can be."""
+
+    width: float
+    height: float
+    n_panes: int
+    maps: bool
+
+    @property
+    def compact(self) -> bool:
+        return (self.width < COMPACT_WIDTH and self.height < COMPACT_HEIGHT) or self.height < LOW_HEIGHT
+
+    @property
+    def tiny(self) -> bool:
+        """Whether there is room for panes alone."""
+        return self.height < 100
+
+    @property
+    def margin(self) -> float:
+        return _margin(self.width)
+
+    @property
+    def top(self) -> float:
+        """The top of the first row."""
+        return 2.0 if self.tiny else 20.0 if self.margin == 24 else 12.0 if self.compact else 16.0
+
+    @property
+    def above(self) -> float:
+        """The height of a map's head."""
+        return (18.0 if self.compact else 26.0) if self.maps and not self.tiny else 0.0
+
+    @property
+    def between(self) -> float:
+        """The space between two rows, without heads."""
+        return 2.0 if self.tiny else 10.0 if self.maps or self.compact else 14.0
+
+    def below(self, mode: Mode) -> float:
+        """The space between the last row and the hairline, in which the colour bar stands."""
+        if self.tiny:
+            return 2.0
+        if self.n_panes > 2:
+            return (30.0 if self.maps else 34.0) if self.compact else 38.0 if self.maps else 58.0
+        if self.maps and not self.compact:
+            return 36.0
+        return 10.0 if self.compact else 16.0 if self.margin == 24 else 14.0
+
+    def best(self) -> tuple[int, Mode]:
+        """The rows that make the panes largest, with as many numbers as leave them large enough."""
+        sizes = {choice: self.size(*choice) for choice in self.choices()}
+        comfortable = (0.6 if self.maps else 1.0) * COMFORTABLE
+        levels = [([choice for choice in sizes if choice[1] in modes], share) for modes, share in LEVELS]
+        for number, (choices, share) in enumerate(levels):
+            largest = max((sizes[choice] for choice in choices), default=-1.0)
+            others = (sizes[choice] for rest, _ in levels[number + 1 : number + 2] for choice in rest)
+            if choices and (largest >= comfortable or largest >= share * max(others, default=0.0)):
+                break
+        return max(choices, key=lambda choice: sizes[choice])
+
+    def choices(self) -> Iterator[tuple[int, Mode]]:
+        """Every number of rows with every way to write the numbers that has the width for it; fewer rows first."""
+        for rows, mode in product(range(1, self.n_panes + 1), Mode):
+            free = self.columns(rows) * rows > self.n_panes
+            cell = self.pane_width(rows, mode) if free else None
+            if fits(mode, self.width - 2 * self.margin, compact=self.compact, cell=cell):
+                yield rows, mode
+
+    def columns(self, rows: int) -> int:
+        return ceil(self.n_panes / rows)
+
+    def gap(self, rows: int) -> float:
+        return (28.0 if self.columns(rows) > 2 else 24.0) if self.width >= 300 else self.margin
+
+    def pane_width(self, rows: int, mode: Mode) -> float:
+        columns = self.columns(rows)
+        beside = SIDE + 24 if mode is Mode.COLUMN else 0.0
+        return (self.width - beside - 2 * self.margin - (columns - 1) * self.gap(rows)) / columns
+
+    def size(self, rows: int, mode: Mode) -> float:
+        """The largest height of a pane's picture: the diameter of a sphere, or half the width of a map."""
+        low, high = 0.0, self.pane_width(rows, mode) / (2 if self.maps else 1)
+        room = self.height - HEIGHTS[mode][self.compact] - self.taken(rows, mode)
+        for _ in range(24):
+            size = (low + high) / 2
+            low, high = (size, high) if rows * (size + self.pushed(size, rows, mode)) <= room else (low, size)
+        return low
+
+    def taken(self, rows: int, mode: Mode) -> float:
+        """The height of everything over the hairline but the pictures."""
+        return self.top + rows * self.above + (rows - 1) * self.between + self.below(mode)
+
+    def pushed(self, size: float, rows: int, mode: Mode) -> float:
+        """How far a sphere is pushed down in its row, so that the head in the corner is clear of it."""
+        if self.maps or self.tiny:
+            return 0.0
+        words, deep, clear = (
+            (80.0, 14.0, 8.0) if self.compact else (140.0 if self.margin == 24 else 96.0, 36.0, CLEARANCE)
+        )
+        radius, across = size / 2, self.pane_width(rows, mode) / 2 - words
+        reach = radius + clear
+        if across >= reach:
+            return 0.0
+        down = sqrt(reach * reach - across * across) if across > 0 else reach
+        return min(max(deep + down - radius, 0.0), deep + 6)
+
+
+class _Placed:
+    """A design with its rows and its numbers: everything has a place."""
+
+    def __init__(self, design: _Design, rows: int, mode: Mode) -> None:
+        self.design, self.rows, self.mode = design, rows, mode
+        self.size = design.size(rows, mode)
+        self.pane_width = design.pane_width(rows, mode)
+        push = design.pushed(self.size, rows, mode)
+        floor = design.height - HEIGHTS[mode][design.compact]
+        spare = max(floor - design.taken(rows, mode) - rows * (self.size + push), 0.0)
+        if not design.maps and not design.compact:  # first every head gets its whole room
+            more = min(42.0 - push, spare / rows) if self.size > self.pane_width - 40 else 0.0
+            push, spare = push + max(more, 0.0), spare - rows * max(more, 0.0)
+        growth = min(spare, GROWTH.get(mode, 0.0) / (2 if design.compact else 1))
+        self.apart = (spare - growth) / (rows if rows > 1 else 2)
+        self.hairline = floor - growth if mode is not Mode.NONE else design.height
+        self.push = push
+
+    def row_top(self, row: int) -> float:
+        design = self.design
+        pitch = design.above + self.push + self.size + design.between + self.apart
+        return design.top + (self.apart if self.rows == 1 else 0.0) + row * pitch
+
+    def pane(self, number: int) -> tuple[Box, float]:
+        """The cell of a pane, from its row's top to the picture's lower edge, and the top of the picture."""
+        row, column = divmod(number, self.design.columns(self.rows))
+        left = self.design.margin + column * (self.pane_width + self.design.gap(self.rows))
+        top = self.row_top(row)
+        shape_top = top + self.design.above + self.push
+        return Box(left, top, left + self.pane_width, shape_top + self.size), shape_top
+
+    def picture(self, number: int) -> Box:
+        """The rectangle of a pane's picture."""
+        cell, top = self.pane(number)
+        half = self.size * (1.0 if self.design.maps else 0.5)
+        middle = (cell.left + cell.right) / 2
+        return Box(middle - half, top, middle + half, cell.bottom)
+
+    def pixels(self, number: int, scale: float) -> Box:
+        """The same in whole pixels, and exactly a square or a map of 2:1."""
+        box = self.picture(number)
+        high = max(int(self.size * scale + 1e-6), 1)
+        wide = 2 * high if self.design.maps else high
+        left, top = round((box.left + box.right) * scale / 2 - wide / 2), round(box.top * scale)
+        return Box(float(left), float(top), float(left + wide), float(top + high))
+
+    def composition(
+        self, width: int, height: int, scale: float, zoom: float, map_centre: tuple[float, float]
+    ) -> Composition:
+        design, column = self.design, self.mode is Mode.COLUMN
+        pictures = [self.pixels(number, scale) for number in range(design.n_panes)]
+        spheres = () if design.maps else tuple(self._sphere(n, pictures[n], scale, zoom) for n in range(len(pictures)))
+        maps = tuple(panes.whole_sphere(box, zoom, map_centre) for box in pictures) if design.maps else ()
+        margin = design.margin
+        line = max(1, round(scale))
+        if column:
+            x = design.width - margin - SIDE - 24
+            hairline = Box(x, 24, x, self.picture(design.n_panes - 1).bottom + 32).scaled(scale)
+            hairline = hairline._replace(right=hairline.left + line)
+            area = Box(x + 24, 24, design.width - margin, design.height)
+        else:
+            hairline = Box(margin, self.hairline, design.width - margin, self.hairline).scaled(scale)
+            hairline = hairline._replace(bottom=hairline.top + line)
+            area = Box(margin, self.hairline, design.width - margin, design.height)
+        third = self.picture(0) if design.n_panes == 3 and self.rows == 1 and not design.maps else None
+        free = None
+        if self.rows * design.columns(self.rows) > design.n_panes:
+            cell, top = self.pane(design.n_panes)
+            free = self.picture(design.n_panes) if design.maps else cell._replace(top=top)
+        numbers = numbers_area(self.mode, area, compact=design.compact, third=third, cell=free)
+        if free is not None and self.mode in (Mode.CELL, Mode.COLUMN):
+            numbers = replace(numbers, curve_head=self._head(design.n_panes))
+        bar = None
+        if design.n_panes == 3 and not design.tiny:
+            box = self.picture(2)
+            top = box.bottom + (8 if design.maps or design.compact else 16)
+            bar = Box(box.left, top, box.right, top + (22 if design.compact else 30)).scaled(scale)
+        over = zoom > 1 and not design.maps
+        captions = tuple(
+            self._caption(n, scale, spheres[n] if spheres and not over else None) for n in range(len(pictures))
+        )
+        return Composition(
+            width=width,
+            height=height,
+            scale=scale,
+            compact=design.compact,
+            spheres=spheres,
+            captions=captions,
+            hairline=hairline,
+            numbers=numbers.scaled(scale),
+            colour_bar=bar,
+            maps=maps,
+            ticks=design.maps and not design.compact and self.rows == 1 and design.n_panes == 2,
+            over=over,
+        )
+
+    def _sphere(self, number: int, box: Box, scale: float, zoom: float) -> Sphere:
+        """A sphere in its square; enlarged, it is cut to its cell and the gaps around."""
+        cell, design = self.pane(number)[0], self.design
+        side = design.gap(self.rows) / 2 - 1
+        last = number // design.columns(self.rows) == self.rows - 1
+        under = self.hairline if last and design.n_panes == 2 else cell.bottom + 4
+        clip = Box(max(cell.left - side, 0.0), cell.top - min(design.top, 14), cell.right + side, under).scaled(scale)
+        radius = box.width / 2
+        return Sphere(box.left + radius, box.top + radius, radius * zoom, clip)
+
+    def _head(self, number: int) -> Line:
+        cell, shape_top = self.pane(number)
+        left = self.picture(number).left if self.design.maps else cell.left
+        right = self.picture(number).right if self.design.maps else cell.right
+        baseline = shape_top - (6 if self.design.compact else 13) if self.design.maps else cell.top + 14
+        return Line(left, right, baseline - 2 if self.design.compact and not self.design.maps else baseline)
+
+    def _caption(self, number: int, scale: float, sphere: Sphere | None) -> Caption:
+        """The lines of a pane, each ending before the sphere; None where there is no sphere to keep clear of."""
+        design, head = self.design, self._head(number)
+        pitch = 18 if not design.maps else 0
+        count = 0 if design.compact else 1 if design.maps else MOST_LINES
+        lines = [head._replace(baseline=head.baseline + (number + 1) * pitch) for number in range(count)]
+        columns = design.columns(self.rows)
+        foot = None
+        if not design.maps and number // columns == self.rows - 1 and number < 2:
+            below = 12 if design.n_panes == 3 and number + columns >= 3 else -2
+            foot = head._replace(baseline=self.pane(number)[0].bottom + below)
+        return Caption(
+            _clear(
+                head.scaled(scale),
+                sphere,
+                (9.5 if design.compact else 12) * scale,
+                (4 if design.compact else 8) * scale,
+            ),
+            tuple(_clear(line.scaled(scale), sphere, 11 * scale, 8 * scale) for line in lines),
+            foot and _clear(foot.scaled(scale), sphere, 9.5 * scale, 2 * scale),
+        )
+
+
+def _clear(line: Line, sphere: Sphere | None, high: float, gap: float) -> Line:
+    """The line, cut where its text, which is so high, would come nearer to the sphere than the gap. All in pixels."""
+    if sphere is None:
+        return line
+    top, bottom, reach = line.baseline - high, line.baseline + 0.3 * high, sphere.radius + gap
+    down = max(top - sphere.y, sphere.y - bottom, 0.0)
+    if down >= reach:
+        return line
+    return line._replace(right=max(min(line.right, sphere.x - sqrt(reach * reach - down * down)), line.left))

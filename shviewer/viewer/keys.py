@@ -131,12 +131,6 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         ),
         Binding("Y", "look at the next mark", {"Y": Command.FACE_MARK}),
         Binding(
-            "G",
-            "error against bands",
-            _each(do.toggle_sheet, {"G": "convergence"}),
-            lambda s: "shown" if s.view.sheet == "convergence" else "hidden",
-        ),
-        Binding(
             "B",
             "time against error so far",
             _each(do.toggle_sheet, {"B": "plane"}),
@@ -190,11 +184,17 @@ SYMBOLS = frozenset("+-,.?")
 ACTIONS = {key: action for rows in BINDINGS.values() for binding in rows for key, action in binding.actions.items()}
 
 
+HELP_PAGES = {"PageDown": 1, "PageUp": -1}
+"""What these keys do while the help is shown: they turn its pages."""
+
+
 def press(state: State, key: str) -> State | Command:
     """The state after `key`, or what the key asks the session for; a key without a binding changes nothing.
 
     Any bound key takes a message away.
     """
+    if state.view.help_visible and key in HELP_PAGES:
+        return changed(state, help_page=max(state.view.help_page + HELP_PAGES[key], 0))
     action = ACTIONS.get(key)
     if action is None:
         return state

@@ -21,6 +21,18 @@ class Box(NamedTuple):
     right: float
     bottom: float
 
+    @property
+    def width(self) -> float:
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        return self.bottom - self.top
+
+    def scaled(self, scale: float) -> Box:
+        """The box of pixels of one in pixels of the design: whole ones."""
+        return Box(*(float(round(side * scale)) for side in self))
+
     def contains(self, x: float, y: float) -> bool:
         return self.left <= x < self.right and self.top <= y < self.bottom
 
@@ -38,13 +50,12 @@ class Place(NamedTuple):
 
 
 class Sphere(NamedTuple):
-    """Centre and radius, the box it is cut to when zoomed in, and how high its caption stands."""
+    """Centre and radius, and the box it is cut to when zoomed in."""
 
     x: float
     y: float
     radius: float
     clip: Box
-    caption_y: float = 0.0
 
     @property
     def outline(self) -> Box:

@@ -32,7 +32,7 @@ from shviewer.viewer.tone import steepest
 
 LIVE = (
     *("camera", "light_rotation", "zoom", "marks", "cursor", "cursor_visible"),
-    *("sweep_to", "help_visible", "message", "roughness", "layout_tried"),
+    *("sweep_to", "help_visible", "help_page", "message", "roughness", "layout_tried"),
 )
 """Fields of the view on which nothing depends that takes time."""
 

@@ -19,7 +19,7 @@ ERRORS = ("off", "signed", "absolute", "relative")
 BESIDES = ("off", "no-window", "method", "own")
 """The choices for a second reconstruction in its place; viewer/beside.py says what they are."""
 
-SHEETS = ("", "plane", "convergence")
+SHEETS = ("", "plane")
 EVALUATIONS = ("auto", "direct", "map")
 MAX_EXPOSURE = 64.0
 ZOOM_RANGE = (0.25, 16.0)
@@ -93,10 +93,8 @@ class View:
         "--basis",
         ("L", "M"),
     )
-    sheet: str = option(
-        "", Choice(SHEETS), "plot the error against the number of bands", "--convergence", const="convergence"
-    )
-    """ "plane" is time against error in this session, and no two runs agree on it."""
+    sheet: str = ""
+    """One of the SHEETS over the spheres: "plane" is time against error in this session, and no two runs agree on it."""
     evaluate: str = option(
         "auto",
         Choice(EVALUATIONS),
@@ -125,6 +123,8 @@ class View:
     sweep_to: int | None = None
     """While a sweep plays, the number of bands at which it ends."""
     help_visible: bool = False
+    help_page: int = 0
+    """How often PageDown was pressed in the help."""
     message: str = ""
     roughness: float = field(default=0.5, compare=False)
     """The roughness shown last, to which the quantity returns."""

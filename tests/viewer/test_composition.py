@@ -2,84 +2,208 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
+
 import pytest
 
 from shviewer.viewer.composition import Composition, compose
 from shviewer.viewer.panes import Box, Sphere
 
-SIZES = [(320, 160), (400, 300), (640, 320), (700, 400), (1280, 640), (2560, 1280), (900, 1200), (3000, 500)]
-FRAMES = [(*size, scale) for size in SIZES for scale in (1.0, 2.0)]
+SIZES = [
+    *[(400, 300), (500, 300), (640, 320), (640, 480), (700, 400), (700, 600), (800, 480), (899, 479), (900, 300)],
+    *[(900, 640), (1000, 400), (1024, 768), (1280, 640), (1280, 720), (1366, 768), (1440, 900), (1600, 900)],
+    *[(1920, 1080), (2560, 1280), (2560, 1440), (3840, 2160), (3000, 500), (400, 600), (500, 1000), (500, 1600)],
+    *[(600, 900), (900, 1200), (1000, 1000), (1080, 1920), (2160, 3840)],
+]
+KINDS = [(panes, maps) for panes in (2, 3) for maps in (False, True)]
+EVERY = [(*size, *kind) for size in SIZES for kind in KINDS]
 
 
-def frame(width: int, height: int, content_scale: float) -> Composition:
-    return compose(width, height, 1.0, content_scale)
+def frame(width: int, height: int, n_spheres: int, maps: bool, content_scale: float = 1.0) -> Composition:
+    return compose(width, height, 1.0, content_scale, n_spheres, whole_sphere=maps)
 
 
-@pytest.mark.parametrize("place", FRAMES)
-def test_spheres_neither_meet_nor_leave_the_frame_nor_reach_the_hairline(place: tuple[int, int, float]) -> None:
-    composition = frame(*place)
-    left, right = composition.spheres
-    assert left.radius == right.radius > 3
-    assert left.y == right.y
-    assert left.x + left.radius < composition.width / 2 < right.x - right.radius
-    assert left.x - left.radius > 0
-    assert right.x + right.radius < composition.width
-    assert left.x == composition.width - right.x
-    assert left.y - left.radius > 0
-    assert left.y + left.radius <= composition.hairline_y < composition.height
+def pictures(at: Composition) -> list[Box]:
+    """The rectangle of every pane's picture."""
+    if at.maps:
+        return [pane.clip for pane in at.maps]
+    return [Box(s.x - s.radius, s.y - s.radius, s.x + s.radius, s.y + s.radius) for s in at.spheres]
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_captions_stand_above_the_spheres_and_figures_under_them(size: tuple[int, int]) -> None:
-    composition = compose(*size)
-    sphere = composition.spheres[0]
-    assert 0 < composition.caption_y < sphere.y - sphere.radius + composition.px(20)
-    if size != (320, 160):  # there the type is as small as it gets, and the strip is cut
-        assert composition.hairline_y + composition.px(118) <= composition.height + 1
-        assert sphere.y + sphere.radius < composition.hairline_y
+def parts(at: Composition) -> Iterator[tuple[str, Box]]:
+    """Everything that has a place, by name; a text as high as its type."""
+    for number, box in enumerate(pictures(at)):
+        yield f"pane {number}", box
+    if at.colour_bar:
+        yield "colour bar", at.colour_bar
+    if at.hairline.bottom <= at.height and at.hairline.right < at.width:
+        yield "hairline", at.hairline
+    numbers = at.numbers
+    answer, figure, label = (at.px(size) for size in (numbers.answer_size, numbers.figure_size, numbers.label_size))
+    for number, cell in enumerate(numbers.answers):
+        yield f"answer {number}", Box(cell.left, cell.value - 0.73 * answer, cell.right - 1, cell.label + 0.2 * label)
+    for number, cell in enumerate(numbers.figures):
+        yield f"figure {number}", Box(cell.left, cell.value - 0.73 * figure, cell.right - 1, cell.label + 0.2 * label)
+    if numbers.curve:
+        below = at.px(8 if at.compact else 20)
+        yield "curve", numbers.curve._replace(bottom=numbers.curve.bottom + below)
+    small = at.px(11 if at.compact else 12)
+    for name, line in (("legend", numbers.legend), ("foot", numbers.foot), ("exposure", numbers.exposure)):
+        shared = name == "exposure" and line and numbers.foot and numbers.foot.baseline == line.baseline
+        if line and not shared:
+            yield name, Box(line.left, line.baseline - 0.73 * small, line.right, line.baseline + 0.2 * small)
+
+
+@pytest.mark.parametrize("place", EVERY, ids=str)
+def test_nothing_overlaps_and_the_margins_are_kept(place: tuple[int, int, int, bool]) -> None:
+    """A pixel of rounding is allowed."""
+    at = frame(*place)
+    found = dict(parts(at))
+    for name, box in found.items():
+        assert box.left >= at.margin - 1, name
+        assert box.right <= at.width - at.margin + 1, name
+        assert box.top >= at.px(10), name
+        assert box.bottom <= at.height - at.px(4), name
+        assert box.width > 0, name
+        assert box.height > 0, name
+    for (one, box), (two, other) in itertools.combinations(found.items(), 2):
+        inner = box._replace(left=box.left + 1, top=box.top + 1, right=box.right - 1, bottom=box.bottom - 1)
+        assert not inner.overlaps(other), (one, two)
+
+
+@pytest.mark.parametrize("place", EVERY, ids=str)
+def test_captions_are_clear_of_their_panes_and_of_each_other(place: tuple[int, int, int, bool]) -> None:
+    at = frame(*place)
+    size = at.px(12 if at.compact else 15)
+    rows = []
+    for pane, caption in zip(at.panes, at.captions, strict=True):
+        assert caption.head.right - caption.head.left > at.px(34)  # "error" has room, at every size
+        lines = [(caption.head, size), *((line, at.px(12)) for line in (*caption.lines, caption.foot) if line)]
+        for line, high in lines:
+            box = Box(line.left, line.baseline - 0.73 * high, line.right, line.baseline)
+            assert not pane.touches(box)
+            assert 0 <= box.top < box.bottom <= at.height
+            rows.append((box, caption))
+    for (box, one), (other, two) in itertools.combinations(rows, 2):
+        assert one is two or not box.overlaps(other)
+
+
+@pytest.mark.parametrize("place", EVERY, ids=str)
+def test_panes_are_equal_whole_and_as_large_as_their_share_of_the_frame(place: tuple[int, int, int, bool]) -> None:
+    at = frame(*place)
+    sizes = {(box.width, box.height) for box in pictures(at)}
+    assert len(sizes) == 1
+    ((wide, high),) = sizes
+    assert wide == (2 * high if at.maps else high)
+    assert all(side == int(side) for box in pictures(at) for side in box)
+    assert high > (0.16 if at.maps else 0.24) * min(at.width, at.height)
+
+
+@pytest.mark.parametrize("place", [(*size, *kind) for size in SIZES for kind in KINDS], ids=str)
+def test_answers_and_error_are_there_from_the_smallest_window_on(place: tuple[int, int, int, bool]) -> None:
+    numbers = frame(*place).numbers
+    assert len(numbers.answers) == 2
+    assert len(numbers.figures) >= 4
+    assert numbers.label_size >= (11 if frame(*place).compact else 12)
+
+
+@pytest.mark.parametrize("size", [size for size in SIZES if size not in {(400, 300), (500, 300), (400, 600)}], ids=str)
+def test_the_curve_is_there_but_in_the_smallest_windows(size: tuple[int, int]) -> None:
+    for n_spheres in (2,) if size[0] < 700 else (2, 3):
+        assert frame(*size, n_spheres, False).numbers.curve is not None
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=str)
+@pytest.mark.parametrize(
+    ("low", "high"), [((640, 320), (900, 480)), ((400, 300), (640, 320)), ((1280, 640), (1400, 800))]
+)
+def test_a_larger_frame_never_has_smaller_panes(
+    low: tuple[int, int], high: tuple[int, int], kind: tuple[int, bool]
+) -> None:
+    before, after = pictures(frame(*low, *kind))[0], pictures(frame(*high, *kind))[0]
+    assert after.height >= 0.85 * before.height  # a frame that is no longer compact has larger type
 
 
 def test_the_design_size_is_the_design() -> None:
-    """About 70 % of the height is sphere; the hairline leaves 118 pixels for figures."""
-    composition = compose(1280, 640)
-    assert composition.scale == 1
-    assert composition.spheres[0].x == 320
-    assert 2 * composition.spheres[0].radius / 640 == pytest.approx(0.7, abs=0.02)
-    assert composition.hairline_y == 522
+    at = compose(1280, 640)
+    assert at.scale == 1
+    assert [s.x for s in at.spheres] == pytest.approx([326, 954], abs=1)
+    assert [s.y for s in at.spheres] == pytest.approx([242, 242], abs=1)
+    assert at.spheres[0].radius == pytest.approx(222, abs=1)
+    assert at.hairline == Box(24, 480, 1256, 481)
+    assert at.numbers.curve == Box(652, 498, 1256, 592)
+    assert [cell.left for cell in at.numbers.figures] == [24, 145, 266, 387, 508]
+    assert (at.captions[0].head.baseline, at.captions[0].lines[0].baseline) == (34, 52)
+
+
+def test_three_spheres_fill_their_panes_and_the_curve_gets_two_thirds() -> None:
+    at = compose(1280, 720, n_spheres=3)
+    assert [s.x for s in at.spheres] == pytest.approx([220, 640, 1060], abs=1)
+    assert 2 * at.spheres[0].radius == pytest.approx(392, abs=1)
+    assert at.numbers.curve is not None
+    assert at.numbers.curve.left == 444
+
+
+def test_a_tall_window_has_its_panes_under_each_other() -> None:
+    at = compose(500, 1000)
+    assert at.spheres[0].x == at.spheres[1].x == pytest.approx(250, abs=1)
+    assert 2 * at.spheres[0].radius == pytest.approx(344, abs=2)
+    assert at.hairline.top == pytest.approx(732, abs=1)
+
+
+def test_the_error_of_maps_makes_two_rows_of_two_and_the_curve_is_the_fourth() -> None:
+    at = compose(1280, 640, n_spheres=3, whole_sphere=True)
+    first, second, third = pictures(at)
+    assert first.left == third.left
+    assert first.top == second.top < third.top
+    assert at.numbers.curve is not None
+    assert (at.numbers.curve.left, at.numbers.curve.right) == pytest.approx((second.left, second.right), abs=1)
+    assert at.hairline.height > at.hairline.width
+    row = compose(1280, 640, n_spheres=2, whole_sphere=True)
+    assert first.width > 0.75 * pictures(row)[0].width
 
 
 def test_twice_the_pixels_is_the_same_picture_twice_as_large() -> None:
+    """But for the rounding to whole pixels."""
     small, large = compose(1280, 640), compose(2560, 1280)
     assert large.scale == 2 * small.scale
     for one, two in zip(small.spheres, large.spheres, strict=True):
-        assert (two.x, two.y, two.radius) == (2 * one.x, 2 * one.y, 2 * one.radius)
-    assert large.hairline_y == 2 * small.hairline_y
+        assert (two.x, two.y, two.radius) == pytest.approx((2 * one.x, 2 * one.y, 2 * one.radius), abs=2)
+    assert large.hairline.top == 2 * small.hairline.top
 
 
-def test_type_follows_the_monitors_content_scale() -> None:
-    assert compose(640, 320, 1.0, 1.0).scale == pytest.approx(0.7)
-    assert compose(640, 320, 1.0, 2.0).scale == pytest.approx(1.4)
-    assert compose(2560, 1280, 1.0, 2.0).scale == 2
+def test_type_follows_the_monitors_content_scale_and_never_shrinks() -> None:
+    assert compose(640, 320).scale == 1
+    assert compose(1280, 640, content_scale=2.0).scale == 2
+    assert compose(1280, 640, content_scale=2.0).compact
+    assert compose(2560, 1280, content_scale=2.0).scale == 2
 
 
-def test_a_tall_window_centres_the_picture() -> None:
-    composition = compose(900, 1200)
-    sphere = composition.spheres[0]
-    above, below = composition.caption_y, composition.height - composition.hairline_y
-    assert above > 100
-    assert abs((sphere.y - sphere.radius) - (composition.height - sphere.y - sphere.radius)) < 200
-    assert below > 100
+@pytest.mark.parametrize("zoom", [1.01, 4.0])
+def test_enlarged_spheres_are_cut_between_their_panes_and_at_the_hairline(zoom: float) -> None:
+    for n_spheres in (2, 3):
+        at = compose(1280, 640, zoom, n_spheres=n_spheres)
+        plain = compose(1280, 640, n_spheres=n_spheres)
+        assert at.over
+        for one, enlarged in zip(plain.spheres, at.spheres, strict=True):
+            assert enlarged.radius == zoom * one.radius
+            assert (enlarged.x, enlarged.y) == (one.x, one.y)
+            assert enlarged.clip.bottom <= at.hairline.top
+        for one, two in itertools.pairwise(at.spheres):
+            assert one.clip.right < two.clip.left
 
 
-def test_zoom_enlarges_the_spheres_and_cuts_them_to_their_halves() -> None:
-    plain, zoomed = compose(1280, 640), compose(1280, 640, 4.0)
-    for one, four, edge in zip(plain.spheres, zoomed.spheres, ((0, 640), (640, 1280)), strict=True):
-        assert four.radius == 4 * one.radius
-        assert (four.x, four.y) == (one.x, one.y)
-        assert edge[0] <= four.clip.left < four.clip.right <= edge[1]
-        assert four.clip.bottom <= zoomed.hairline_y
-        assert four.clip.top > zoomed.caption_y
-    assert zoomed.spheres[0].clip.right < zoomed.spheres[1].clip.left
+@pytest.mark.parametrize("width", [64, 100, 200, 320, 900, 8192])
+@pytest.mark.parametrize("height", [64, 100, 160, 640, 8192])
+@pytest.mark.parametrize("kind", KINDS, ids=str)
+def test_every_frame_that_is_allowed_has_panes_in_it(width: int, height: int, kind: tuple[int, bool]) -> None:
+    for content_scale in (1.0, 2.0):
+        at = frame(width, height, *kind, content_scale)
+        for box in pictures(at):
+            assert box.width > 0
+            assert 0 <= box.left < box.right <= width
+            assert 0 <= box.top < box.bottom <= height
 
 
 def test_a_box_holds_its_left_top_and_not_its_right_bottom() -> None:

@@ -9,7 +9,8 @@ from helpers import picture_of
 
 from shviewer.viewer.composition import compose
 from shviewer.viewer.error_scale import automatic_range, error_values
-from shviewer.viewer.overlay.colour_bar import draw_colour_bar, round_ticks, tick_text
+from shviewer.viewer.overlay.colour_bar import colour_bar_pieces, round_ticks, tick_text
+from shviewer.viewer.overlay.drawing import layer_of, named_boxes
 
 ORIGINAL = np.array([[1.0, 2.0, 0.5], [0.0, 0.0, 4.0]])
 RECONSTRUCTION = np.array([[1.1, 1.5, 0.5], [0.3, -0.1, 4.2]])
@@ -105,19 +106,17 @@ def test_ticks_have_as_many_decimals_as_the_finest_of_them() -> None:
 @pytest.mark.parametrize("error", ["signed", "absolute", "relative"])
 @pytest.mark.parametrize("size", [(640, 320), (1280, 640), (900, 1200), (2560, 1440)])
 def test_a_tick_stands_under_its_colour(error: str, size: tuple[int, int]) -> None:
-    from PIL import Image
-
     shown = picture_of(error=error)
-    composition = compose(*size, n_spheres=3)
-    sheet = Image.new("RGBA", size)
-    boxes = draw_colour_bar(sheet, shown, composition)
+    pieces = colour_bar_pieces(shown, compose(*size, n_spheres=3))
+    layer, boxes = layer_of(tuple(pieces)), named_boxes(pieces)
+    assert layer is not None
     bar = boxes["colour_bar"]
     ticks = [box for name, box in boxes.items() if name.startswith("error_tick")]
     assert len(ticks) >= 2
     middle = (bar.left + bar.right) / 2
     if error == "signed":  # zero is in the middle
         assert min(abs((box.left + box.right) / 2 - middle) for box in ticks) < 2
-    row = np.asarray(sheet)[int(bar.top) + 2]
+    row = layer.image[int(bar.top) - layer.top + 2]
     luminance = row[:, :3] @ [0.2126, 0.7152, 0.0722]
-    inside = luminance[int(bar.left) : int(bar.right)]
+    inside = luminance[int(bar.left) - layer.left : int(bar.right) - layer.left]
     assert inside.argmin() == pytest.approx(len(inside) / 2 if error == "signed" else 0, abs=0.1 * len(inside))

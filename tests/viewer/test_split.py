@@ -15,6 +15,7 @@ from shviewer.cli.info import as_text
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.reading import DEFAULT_READING
+from shviewer.viewer import message
 from shviewer.viewer.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
@@ -93,10 +94,10 @@ def test_the_picture_gives_the_reason_without_the_rule_and_so_uncut():
         picture = prepare(state_of("green", split_sun=True))
         refusal = picture.subject.refusal
     assert ";" in refusal
-    reason = replace(picture, state=changed(picture.state, message=refusal.partition(";")[0]))
+    reason = replace(picture, state=changed(picture.state, message=message.warning(refusal.partition(";")[0])))
     drawn, wanted = (draw_overlay(each, compose(1280, 640)).boxes["message"] for each in (picture, reason))
     assert drawn == wanted
-    assert drawn.right < 1280 / 2 + 400
+    assert drawn.right < 1280 - 24
 
 
 def test_the_text_of_a_picture_describes_the_sun():

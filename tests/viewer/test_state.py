@@ -58,7 +58,7 @@ def test_every_binding_says_what_it_does_and_is_in_the_list() -> None:
 def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N H ? R F P Ctrl+S F11 Esc T W I "
-        "Ctrl+R F5 U B L Z D X G O V Tab Shift+Tab Space Y K Shift+K + - F1 Ctrl+C Ctrl+Shift+C Ctrl+E Ctrl+Q Ctrl+W"
+        "Ctrl+R F5 U B L Z D X O V Tab Shift+Tab Space Y K Shift+K + - F1 Ctrl+C Ctrl+Shift+C Ctrl+E Ctrl+Q Ctrl+W"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -256,6 +256,7 @@ def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> 
         evaluate="map",
         sweep_to=12,
         help_visible=True,
+        help_page=1,
         sheet="plane",
         message="m",
         roughness=0.2,
@@ -314,11 +315,11 @@ def test_b_shows_the_time_error_plane_and_escape_closes_it_after_the_help_and_be
     assert press(without_help, "Esc") == START
 
 
-def test_one_sheet_is_shown_at_a_time() -> None:
-    assert press(START, "G").view.sheet == "convergence"
-    assert pressed(START, "G", "B").view.sheet == "plane"
-    assert pressed(START, "G", "G") == START
-    assert pressed(START, "B", "G", "Esc") == START
+def test_page_down_turns_the_help_and_adds_bands_only_without_it() -> None:
+    assert press(START, "PageDown").recipe.n_bands < START.recipe.n_bands
+    helped = press(START, "H")
+    assert pressed(helped, "PageDown", "PageDown", "PageUp") == changed(helped, help_page=1)
+    assert press(helped, "PageUp") == helped
 
 
 @pytest.mark.parametrize(

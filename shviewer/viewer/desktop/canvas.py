@@ -121,6 +121,6 @@ def _overlay_key(picture: Picture, composition: Composition) -> object:
     if not state.view.help_visible:
         state = changed(state, camera=View.camera, light_rotation=View.light_rotation, zoom=View.zoom)
     known = measured(picture) if state.view.sheet == "plane" else ()
-    place = composition.width, composition.height, composition.scale, composition.spheres
+    place = composition.width, composition.height, composition.scale, composition.panes
     figures = picture.figures, picture.needs, picture.verdict, picture.error_scale
     return state, figures, known, describe_evaluation(picture, timing=True), place

@@ -24,7 +24,7 @@ from shviewer.viewer.actions import (
     toggle_band,
     zoom,
 )
-from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.composition import Composition, compose, frame_for
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.desktop.errands import coefficients_text
 from shviewer.viewer.desktop.glfw_window import key_name, open_window
@@ -227,7 +227,7 @@ class Window:
         if width * height == 0:
             return None
         view = self.session.state.view
-        return compose(width, height, view.zoom, _scale(self.handle), view.n_spheres)
+        return frame_for(view, width, height, _scale(self.handle))
 
     def _due(self) -> None:
         """Note that a frame has to be drawn."""

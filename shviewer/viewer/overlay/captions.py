@@ -1,98 +1,79 @@
-"""Captions: what each sphere is, and in the corners which light it is, and how it was projected and drawn."""
+"""What is written about each pane: a head, a few words after it, and at its foot how it came about."""
 
 from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TypeAlias
 
 from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities.names import RADIANCE, in_words
-from shviewer.viewer.beside import words_of
+from shviewer.viewer.beside import Beside, words_of
+from shviewer.viewer.composition import Caption, Composition
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
-from shviewer.viewer.overlay.lettering import FAINT, GREY, INK
-from shviewer.viewer.overlay.painter import Painter
+from shviewer.viewer.numbers_area import Line
+from shviewer.viewer.overlay.drawing import Piece, Swatch, Text
+from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, REGULAR, SEMIBOLD, Ink, shortened_to, width_of
+from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_basis, describe_muted, describe_window
-from shviewer.words import counted, grouped, grouped_number, percent, radiance, shortened
+from shviewer.words import counted, grouped, grouped_number, radiance, theta_phi_degrees
+
+HEAD, SECOND, FOOT, SMALL = 15.0, 13.0, 12.0, 11.0
+"""Sizes of type, in pixels of the design; the last is that of a compact frame."""
+
+ZEBRA = 11.0
+
+Part: TypeAlias = tuple[str, ...]
+"""Something to be said, in wordings of which the longest that has room is taken; "" and what has none is left out."""
 
 
-def write_captions(painter: Painter, picture: Picture, timing: bool) -> None:
-    """Write what each sphere is, and in the corners which light it is and how it was projected and drawn."""
-    at, state = painter.at, picture.state
-    y = at.caption_y
-    left, right = (sphere.x for sphere in at.spheres[:2])
-    muted = describe_muted(state.recipe)
-    bands = f"{caption(state.recipe)}{counted(state.recipe.n_bands, 'band')}, {counted(state.recipe.n_bands**2, 'coefficient')}"
-    quantity = state.recipe.quantity
-    original = "Original" if quantity == RADIANCE else in_words(quantity).capitalize()
-    suns = len(picture.subject.suns)
-    surfaces = picture.drawn.shown if isinstance(picture.drawn, Surfaces) else ()
-    if surfaces and suns:
-        original = f"{original} without sun{'s' if suns > 1 else ''}"
-    if surfaces and surfaces[0].clipped:
-        original = f"{original}, cut at the circle"
-    painter.text("original", left, y, original, 17, INK, "mm")
-    apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
-    changes = [change for change in (apart, describe_window(state.recipe), muted) if change]
-    if surfaces and surfaces[1].clipped:
-        changes.append("cut at the circle")
-    if state.view.basis is not None:
-        value = float(picture.projection.coefficients[index(*state.view.basis)] @ LUMINANCE)
-        bands, changes = describe_basis(state.view), [f"coefficient {radiance(value, picture.figures.peak)}"]
-    captions = [", ".join([bands, *changes[:count]]) for count in range(len(changes), -1, -1)]
-    any(painter.text("reconstruction", right, y, caption, 17, INK, "mm") for caption in captions)
-    projection = picture.projection
-    method, _, missed = projection.method.partition("; ")
-    if projection.evaluations is not None:
-        method = f"{method}, {grouped(projection.evaluations)} {projection.evaluation_noun}"
-    spent = f"{grouped_number(projection.milliseconds)} ms" if timing and projection.milliseconds is not None else ""
-    time = f"{projection.n_bands} bands projected in {spent}" if spent else ""
-    drawn = describe_evaluation(picture, timing)
-    times = [", ".join(filter(None, (time, drawn))), drawn or time, time]
-    far, below = at.width - at.margin, y + at.px(20)
-    if state.view.error != "off":
-        error = at.spheres[-1]
-        kind = "Error" if state.view.lobe_view else f"{state.view.error.capitalize()} error"
-        if surfaces and surfaces[2].clipped:
-            kind = f"{kind}, cut at the circle"
-        painter.text("error", error.x, error.caption_y, kind, 17, INK, "mm")
-    if picture.beside is not None:
-        error, other = at.spheres[-1], picture.beside
-        reached = f", error {percent(other.figures.relative_l2, floor=other.figures.floor)}"
-        second = words_of(state.view.beside, other.recipe)
-        any(
-            painter.text("beside", error.x, error.caption_y, kind, 17, INK, "mm") for kind in (second + reached, second)
-        )
-    names = [shortened(picture.light.name, length) for length in (200, 32, 24, 16)]
-    words, said = describe_light(picture), False
-    if any(painter.text("light", at.margin, y, name, 15, GREY, "lm") for name in names):
-        said = any(painter.text("description", at.margin, below, text, 12, FAINT, "lm") for text in words)
+def caption_blocks(picture: Picture, at: Composition, timing: bool) -> tuple[list[list[Piece]], list[list[Piece]]]:
+    """The pieces of each pane's head, and those of each foot."""
+    heads = [_original_words(picture), _reconstruction_words(picture, at)]
+    if picture.error_scale is not None:
+        heads.append(_error_words(picture))
+    elif picture.beside is not None:
+        heads.append(_beside_words(picture, picture.beside))
+    blocks = []
+    for name, (head, parts), places in zip(("original", "reconstruction", "error"), heads, at.captions, strict=False):
+        blocks.append(_head(name, head, parts, places, at))
+    feet = [exposure_pieces(picture, at, places.foot) for places in at.captions[:1] if places.foot]
+    for foot in (places.foot for places in at.captions[1:2] if places.foot):
+        unsaid = not any("missed" in piece.text for piece in blocks[1] if isinstance(piece, Text))
+        feet.append(_foot(picture, foot, at, timing, unsaid=unsaid))
+    return blocks, feet
+
+
+def exposure_pieces(picture: Picture, at: Composition, line: Line) -> list[Piece]:
+    """The exposure, and what means beyond white, in as many words as have room."""
+    view, stops = picture.state.view, typeset(f"{picture.exposure_stops:+z.1f} stops")
+    size = at.px(SMALL if at.compact else FOOT)
+    curve = "" if view.tone == "none" else f", {view.tone} curve"
+    fixed = "" if view.exposure_stops is None else ", fixed"
+    white = view.tone == "none" and picture.figures.peak * 2.0**picture.exposure_stops > 1.0 and view.marks
+    ink = INK if at.over else FAINT
+    notes = ", ".join(_notes(picture)) if at.compact else ""  # elsewhere the second line tells them
+    choices = (f"exposure {stops}{curve}{fixed}", f"exposure {stops}", stops)
+    if notes:
+        choices = (f"{notes}, {stops}", notes, notes.partition(",")[0])
+    for words in choices:
+        length = width_of(words, size)
+        if line.left + length <= line.right:
+            break
     else:
-        any(painter.text("light", at.margin, below, name, 15, GREY, "lm") for name in names)
-    if not said and "LDR" in words:
-        any(painter.text("encoding", at.margin, line, "LDR", 12, FAINT, "lm") for line in (y, below))
-    low = at.hairline_y - at.px(16)  # beside the colour bar, where the corner is taken
-    unseen = [missed, missed.replace("narrower than", "under")]
-    if painter.text("method", far, y, method, 13, FAINT, "rm"):
-        any(painter.text("missed", far, below, text, 12, FAINT, "rm") for text in unseen)
-        any(painter.text("time", far, below, text, 12, FAINT, "rm") for text in times) or any(
-            painter.text("time", at.margin, low, text, 12, FAINT, "lm") for text in times
-        )
-    else:
-        both = f"{method}, {spent}" if spent else method
-        painter.text("method", far, below, both, 12, FAINT, "rm") or painter.text(
-            "method", far, below, method, 12, FAINT, "rm"
-        )
-    if "missed" not in painter.boxes:
-        any(painter.text("missed", at.margin, low, text, 12, FAINT, "lm") for text in unseen)
-
-
-def describe_light(picture: Picture) -> list[str]:
-    """The light in a few words, the longest text first: the description goes first, notes that must not be missed stay."""
-    light = picture.subject.whole
-    encoding = light.about.encoding or ""
-    count = len(light.notes)
-    marks = ["LDR"] * ("(LDR)" in encoding) + [counted(count, "note")] * (count > 0)
-    return [", ".join(words) for words in ([light.description, *marks], marks, marks[:1]) if words]
+        return []
+    pieces: list[Piece] = [_text("exposure", line.left, line.baseline, words, size, ink, at)]
+    x, side = line.left + length + at.px(12), at.px(ZEBRA)
+    label = "beyond white"
+    if white and x + side + at.px(5) + width_of(label, size) <= line.right:
+        area = Box(round(x), round(line.baseline - side + 1), round(x + side), round(line.baseline + 1))
+        pieces.append(Swatch(area, "white", at.scale, "zebra"))
+        pieces.append(_text("beyond_white", area.right + at.px(5), line.baseline, label, size, ink, at))
+    return pieces
 
 
 def describe_evaluation(picture: Picture, timing: bool) -> str:
@@ -102,6 +83,153 @@ def describe_evaluation(picture: Picture, timing: bool) -> str:
             return "summed per pixel" if timing else ""
         case SplineMap(splines):
             height, width = splines.shape[:2]
-            return f"from a map of {width} x {height}"
+            return f"from a map of {width} × {height}"
         case Surfaces():
             return ""
+
+
+def _text(
+    name: str, x: float, baseline: float, text: str, size: float, ink: Ink, at: Composition, weight: str = REGULAR
+) -> Text:
+    return Text(name, x, baseline, text, size, ink, weight, at.px(1.6) if at.over else 0.0)
+
+
+def _head(name: str, head: str, parts: Sequence[Part], places: Caption, at: Composition) -> list[Piece]:
+    """A head, shortened in the middle, and the parts of what is said about it on the lines after it."""
+    size = at.px(12.0 if at.compact else HEAD)
+    shown = shortened_to(head, places.head.right - places.head.left, size, SEMIBOLD)
+    if not shown:
+        return []
+    pieces: list[Piece] = [_text(name, places.head.left, places.head.baseline, shown, size, INK, at, SEMIBOLD)]
+    lines = list(places.lines)
+    if lines and lines[0].baseline == places.head.baseline:
+        lines[0] = lines[0]._replace(left=pieces[0].box.right + at.px(10))
+    size, ink = at.px(SECOND), INK if at.over else GREY
+    for number, (line, words) in enumerate(_set(parts, lines, size)):
+        called = f"{name}_about" if number == 0 else f"{name}_about_{number}"
+        pieces.append(_text(called, line.left, line.baseline, words, size, ink, at))
+    return pieces
+
+
+def _set(parts: Sequence[Part], lines: Sequence[Line], size: float) -> list[tuple[Line, str]]:
+    """Set parts on lines, with commas between those on one; of each the longest wording that has room, or none."""
+    found: list[tuple[Line, str]] = []
+    for part in parts:
+        for words in (typeset(wording) for wording in part if wording):
+            line, said = found[-1] if found else (None, "")
+            if line is not None and line.left + width_of(f"{said}, {words}", size) <= line.right:
+                found[-1] = line, f"{said}, {words}"
+                break
+            free = lines[len(found) :]
+            if free and free[0].left + width_of(words, size) <= free[0].right:
+                found.append((free[0], words))
+                break
+    return found
+
+
+def _original_words(picture: Picture) -> tuple[str, list[Part]]:
+    light = picture.subject.whole
+    size = light.about.size
+    asked = picture.state.recipe.quantity
+    quantity = "original" if asked == RADIANCE else in_words(asked)
+    what = f"{size[0]} × {size[1]}" if size else light.description
+    if isinstance(picture.drawn, Surfaces):
+        suns = len(picture.subject.suns)
+        without = f"without sun{'s' if suns > 1 else ''}" if suns else ""
+        return picture.light.name, [(quantity,), (without,), *_radius(picture.drawn.shown[0].clipped)]
+    notes = [(note,) for note in _notes(picture)]
+    return picture.light.name, [(quantity,), (what, what.partition(" (")[0]), *notes]
+
+
+def _notes(picture: Picture) -> list[str]:
+    """What must not be missed of a light."""
+    light = picture.subject.whole
+    low_range = "(LDR)" in (light.about.encoding or "")
+    return ["LDR"] * low_range + [counted(len(light.notes), "note")] * bool(light.notes)
+
+
+def _changes(picture: Picture) -> list[Part]:
+    """What sets the reconstruction apart from the plain sum of its bands."""
+    recipe, suns = picture.state.recipe, len(picture.subject.suns)
+    apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
+    muted, count = describe_muted(recipe), len(recipe.muted_shown)
+    return [(muted, f"{counted(count, 'band')} muted" if muted else ""), (describe_window(recipe),), (apart,)]
+
+
+def _reconstruction_words(picture: Picture, at: Composition) -> tuple[str, list[Part]]:
+    recipe, view = picture.state.recipe, picture.state.view
+    head = f"{caption(recipe)}{counted(recipe.n_bands, 'band')}"
+    if view.basis is not None:
+        value = float(picture.projection.coefficients[index(*view.basis)] @ LUMINANCE)
+        coefficient = f"coefficient {radiance(value, picture.figures.peak)}"
+        return typeset(describe_basis(view)), [(coefficient,), ("radius: magnitude",)]
+    changes = _changes(picture)
+    if isinstance(picture.drawn, Surfaces):
+        return head, [*changes, *_radius(picture.drawn.shown[1].clipped)]
+    method = picture.projection.method.partition("; ")[0] if at.maps else ""
+    count = f"{grouped(recipe.n_bands**2)} coefficient{'' if recipe.n_bands == 1 else 's'}"
+    missed = picture.projection.method.partition("; ")[2]
+    return head, [(count,), *changes, (method,), (_short(missed), _shorter(missed))]
+
+
+def _short(missed: str) -> str:
+    """ "features narrower than 3 degrees may be missed" in fewer letters."""
+    return re.sub(r" ([\d.]+) degrees", r" \1°", missed.replace("narrower than", "under"))
+
+
+def _shorter(missed: str) -> str:
+    """The same in the fewest."""
+    return _short(missed).replace("features ", "").replace("may be ", "")
+
+
+def _error_words(picture: Picture) -> tuple[str, list[Part]]:
+    signed = ("reconstruction − original", "signed")
+    if isinstance(picture.drawn, Surfaces):
+        return "error", [signed, *_radius(picture.drawn.shown[2].clipped)]
+    words: dict[str, Part] = {
+        "signed": signed,
+        "absolute": ("absolute",),
+        "relative": ("relative to the original", "relative"),
+    }
+    return "error", [words[picture.state.view.error]]
+
+
+def _beside_words(picture: Picture, second: Beside) -> tuple[str, list[Part]]:
+    """Another reconstruction in place of the error: which, and how far it is from the light."""
+    reached = share(second.figures.relative_l2, floor=second.figures.floor)
+    what = words_of(picture.state.view.beside, second.recipe)
+    return f"{what[0].lower()}{what[1:]}", [(f"relative L2 error {reached}", f"error {reached}")]
+
+
+def _radius(clipped: bool) -> list[Part]:
+    """What the radius of a surface is."""
+    return [("radius: magnitude",), *([("cut at the circle", "cut")] if clipped else [])]
+
+
+def _foot(picture: Picture, line: Line, at: Composition, timing: bool, *, unsaid: bool) -> list[Piece]:
+    """How the coefficients came about and the sun that was split off; first what no other line says.
+
+    unsaid: whether no line after the head has room for what may be missed.
+    """
+    projection = picture.projection
+    method, _, missed = projection.method.partition("; ")
+    if projection.evaluations is not None:
+        method = f"{grouped(projection.evaluations)} {method} {projection.evaluation_noun}"
+    spent = timing and projection.milliseconds is not None
+    time = f"{grouped_number(projection.milliseconds or 0.0)} ms" if spent else ""
+    first: list[Part] = [(_short(missed), _shorter(missed))] if unsaid else []
+    if at.compact:
+        first += _changes(picture)
+    said: list[Part] = [*first, (method,), (describe_suns(picture),), (time,), (describe_evaluation(picture, timing),)]
+    size, ink = at.px(SMALL if at.compact else FOOT), INK if at.over else FAINT
+    return [
+        _text("method", where.left, where.baseline, words, size, ink, at) for where, words in _set(said, [line], size)
+    ]
+
+
+def describe_suns(picture: Picture) -> str:
+    """The greatest sun that was split off, in a few words; "" if none was."""
+    if not picture.subject.suns:
+        return ""
+    theta, phi = theta_phi_degrees(picture.subject.suns[0].axis)
+    return f"sun at theta {theta:.0f}°, phi {phi:z.0f}°"

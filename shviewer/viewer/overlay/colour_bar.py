@@ -1,4 +1,4 @@
-"""The colours of the error under its sphere, with round numbers."""
+"""The colours of the error under its pane, with round numbers; and the azimuths under maps."""
 
 from __future__ import annotations
 
@@ -6,18 +6,20 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from PIL import Image, ImageDraw
 
 from shviewer.viewer import colour_maps
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.drawn import Surfaces
-from shviewer.viewer.overlay.lettering import GREY, MIN_TYPE, font
-from shviewer.viewer.panes import Box
+from shviewer.viewer.error_scale import ErrorScale
+from shviewer.viewer.overlay.drawing import Curve, Fill, Piece, Strip, Text
+from shviewer.viewer.overlay.lettering import FAINT, GREY, Ink, width_of
+from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.panes import Box, WholeSphere
 from shviewer.viewer.picture import Picture
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
-HEIGHT, TIP = 8, 7
-"""Height of the bar, and length of its tips, which stand for errors beyond its ends; in pixels of the design."""
+HEIGHT, TIP, TICK = 7, 7, 4
+"""Height of the bar, length of its tips, which stand for errors beyond its ends, and of its ticks; pixels of the design."""
 
 
 def round_ticks(low: float, high: float, most: int) -> list[float]:
@@ -46,49 +48,79 @@ def tick_text(value: float, ticks: list[float], *, percent: bool) -> str:
     return f"{value * scale:.{decimals}f}{unit}"
 
 
-def draw_colour_bar(sheet: Image.Image, picture: Picture, composition: Composition) -> dict[str, Box]:
-    """Draw the bar and its numbers; return their boxes by name, none where there is no room."""
-    place, scale = composition.colour_bar, picture.error_scale
-    if (
-        place is None
-        or scale is None
-        or isinstance(picture.drawn, Surfaces)
-        or place.right - place.left < composition.px(60)
-    ):
-        return {}
-    draw = ImageDraw.Draw(sheet)
-    tip = round(composition.px(TIP)) if scale.beyond else 0
-    signed, height = scale.kind == "signed", max(round(composition.px(HEIGHT)), 4)
+def colour_bar_pieces(picture: Picture, at: Composition) -> list[Piece]:
+    """The bar, its tips and its numbers; nothing where there is no room."""
+    place, scale = at.colour_bar, picture.error_scale
+    if place is None or scale is None or isinstance(picture.drawn, Surfaces) or place.width < at.px(60):
+        return []
+    tip = round(at.px(TIP)) if scale.beyond else 0
+    signed, height = scale.kind == "signed", max(round(at.px(HEIGHT * (0.7 if at.compact else 1))), 4)
     left, right, top = round(place.left) + tip, round(place.right) - tip, round(place.top)
     colours = colour_maps.table(colour_maps.map_of(scale.kind))
     shades = colours[np.round(np.linspace(0, 255, right - left)).astype(int)]
-    sheet.paste(Image.fromarray(np.repeat(shades[None], height, axis=0)), (left, top))
-    ends = ((right - 1, right - 1 + tip, 255), (left, left - tip, 0))
+    area = Box(left, top, right, top + height)
+    pieces: list[Piece] = [Strip(area, shades.astype(np.uint8).tobytes(), "colour_bar")]
+    ends = ((right, right + tip, 255), (left, left - tip, 0))
     for base, point, colour in ends[: (2 if signed else 1) if tip else 0]:
-        draw.polygon(
-            [(base, top), (point, top + (height - 1) / 2), (base, top + height - 1)],
-            fill=(*map(int, colours[colour]), 255),
-        )
-    notch_end = top + height + max(1, round(composition.px(2)))
-    boxes = {"colour_bar": Box(left - tip, top, right + tip, notch_end)}
-    face = font(max(round(composition.px(12)), MIN_TYPE))
-    low = -scale.end if signed else 0.0
+        red, green, blue = map(int, colours[colour])
+        corners = ((base, top), (point, top + height / 2), (base, top + height))
+        clip = Box(min(base, point), top, max(base, point), top + height)
+        pieces.append(Curve(corners, 0, (red, green, blue, 255), clip, closed=True))
+    return [*pieces, *_ticks(scale, left, right, top + height, place, at)]
+
+
+def _ticks(scale: ErrorScale, left: int, right: int, under: int, place: Box, at: Composition) -> list[Piece]:
+    """As many numbers as stand clear of each other."""
+    size = at.px(11.0 if at.compact else 12.0)
+    low = -scale.end if scale.kind == "signed" else 0.0
     for most in (9, 7, 5, 3, 2):
         ticks = round_ticks(low, scale.end, most)
+        texts = [typeset(tick_text(tick, ticks, percent=scale.kind == "relative")) for tick in ticks]
+        widths = [width_of(text, size) for text in texts]
         notches = [left + (tick - low) / (scale.end - low) * (right - 1 - left) for tick in ticks]
-        texts = [tick_text(tick, ticks, percent=scale.kind == "relative") for tick in ticks]
-        halves = [face.getlength(text) / 2 for text in texts]
-        places = [min(max(x, place.left + half), place.right - half) for x, half in zip(notches, halves, strict=True)]
-        y = top + height + composition.px(4)
-        found = [
-            Box(*draw.textbbox((x, y), text, font=face, anchor="ma")) for x, text in zip(places, texts, strict=True)
+        starts = [
+            round(min(max(notch - width / 2, place.left), place.right - width))
+            for notch, width in zip(notches, widths, strict=True)
         ]
-        if all(after.left - before.right > composition.px(10) for before, after in pairwise(found)):
+        spans = zip(starts, widths, strict=True)
+        if all(after[0] - before[0] - before[1] > at.px(10) for before, after in pairwise(spans)):
             break
     else:
-        return boxes
-    for number, (notch, x, text) in enumerate(zip(notches, places, texts, strict=True)):
-        draw.line((round(notch), top + height, round(notch), notch_end), fill=GREY)
-        draw.text((x, y), text, GREY, face, anchor="ma")
-        boxes[f"error_tick_{number}"] = found[number]
-    return boxes
+        return []
+    pieces: list[Piece] = []
+    tick = max(2, round(at.px(TICK * (0.5 if at.compact else 1))))
+    line = max(1, round(at.scale))
+    for number, (notch, start, text) in enumerate(zip(notches, starts, texts, strict=True)):
+        pieces.append(Fill(Box(round(notch), under, round(notch) + line, under + tick), GREY))
+        pieces.append(Text(f"error_tick_{number}", start, under + tick + 0.95 * size, text, size, GREY))
+    return pieces
+
+
+def azimuth_pieces(at: Composition, ink: Ink = FAINT) -> list[list[Piece]]:
+    """Under each map the azimuths that are multiples of 90 degrees."""
+    return [_azimuths(number, pane, at, ink) for number, pane in enumerate(at.maps)] if at.ticks else []
+
+
+def _azimuths(number: int, pane: WholeSphere, at: Composition, ink: Ink) -> list[Piece]:
+    size, line = at.px(12.0), max(1, round(at.scale))
+    under = round(pane.clip.bottom)
+    pieces: list[Piece] = []
+    last = -math.inf
+    quarter = pane.width / 4
+    first, end = (
+        math.ceil((pane.clip.left - pane.x) / quarter - 1e-9),
+        math.floor((pane.clip.right - pane.x) / quarter + 1e-9),
+    )
+    for step in range(first, end + 1):
+        x = pane.x + step * quarter
+        azimuth = -90 * step
+        azimuth = (azimuth + 180) % 360 - 180 if azimuth % 360 != 180 else 180
+        text = typeset(f"{azimuth}°")
+        width = width_of(text, size)
+        start = round(min(max(x - width / 2, pane.clip.left), pane.clip.right - width))
+        notch = min(max(round(x), round(pane.clip.left)), round(pane.clip.right) - line)
+        pieces.append(Fill(Box(notch, under + at.px(3), notch + line, under + at.px(3 + TICK)), ink))
+        if start > last + at.px(8):
+            pieces.append(Text(f"azimuth_{number}_{step}", start, under + at.px(18), text, size, ink))
+            last = start + width
+    return pieces

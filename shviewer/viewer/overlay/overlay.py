@@ -1,63 +1,73 @@
-"""Captions, figures, band bars and the sheets over them: one RGBA image as large as the frame, redrawn on every change.
+"""Everything that is written: pieces in blocks, each of which is drawn and uploaded again only when it changes.
 
-What does not fit is left out, least important first: the hint, then the bars, then all figures but the relative error.
-Every piece reports its box, so that a click finds its bar and a test can see that nothing overlaps.
+What does not fit is left out, least important first. Every text reports its box, so that a click finds its band and a test
+can see that nothing overlaps.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image
 
-from shviewer.analysis.comparison import agrees
-from shviewer.analysis.figures import PENDING, Pending
-from shviewer.harmonics.quantities.names import in_words, roughness_of
 from shviewer.viewer.composition import Composition
-from shviewer.viewer.overlay.captions import write_captions
-from shviewer.viewer.overlay.colour_bar import draw_colour_bar
-from shviewer.viewer.overlay.figure_strip import write_figures
-from shviewer.viewer.overlay.help_sheet import draw_help
+from shviewer.viewer.overlay.band_series import band_series
+from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
+from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
+from shviewer.viewer.overlay.curve import axes_of, curve_pieces, least_slots, legend_pieces
+from shviewer.viewer.overlay.drawing import Piece, Text, image_of, layer_of, named_boxes
+from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
+from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, said_of
+from shviewer.viewer.overlay.help_sheet import help_pieces
 from shviewer.viewer.overlay.layers import Layer, strips
-from shviewer.viewer.overlay.lettering import FAINT, GREY, WARNING
-from shviewer.viewer.overlay.painter import Painter
-from shviewer.viewer.overlay.plots.band_series import band_series
-from shviewer.viewer.overlay.plots.convergence import Convergence, draw_convergence
+from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
 from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.state import describe_exposure
-from shviewer.words import radiance, theta_phi_degrees
 
-HINT = "Up/Down bands     0-9 mute     M method     E exposure     H help"
 NOT_TIMED = "time against error: nothing was projected that could be timed; M changes the method"
-NO_ROOM = {
-    "plane": "no room for time against error: enlarge the window, or B",
-    "convergence": "no room for error against bands: enlarge the window, or G",
-}
+NO_ROOM = "no room for time against error: enlarge the window, or B"
 
 
 @dataclass
 class Overlay:
-    """image: (height, width, 4) uint8, straight alpha. boxes: name -> where it was drawn. bars: band -> where to click."""
+    """Everything written, in blocks of pieces. boxes: name -> where it is. bars: band -> where to click."""
 
-    image: NDArray[np.uint8]
-    layers: tuple[Layer, ...]
-    """The parts of the image that are not empty."""
+    width: int
+    height: int
+    blocks: tuple[tuple[Piece, ...], ...]
     boxes: dict[str, Box] = field(default_factory=dict)
     bars: dict[int, Box] = field(default_factory=dict)
     plane: Plane | None = None
     """The time-error plane, if it is shown; the boxes of its texts are among `boxes`, too."""
-    convergence: Convergence | None = None
-    """The convergence plot, if it is shown; likewise."""
+    sheet_layers: tuple[Layer, ...] = ()
+
+    @cached_property
+    def layers(self) -> tuple[Layer, ...]:
+        """The layers of everything written, one of each block; drawn when first asked for."""
+        return (*(found for found in map(layer_of, self.blocks) if found is not None), *self.sheet_layers)
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        return tuple(piece for block in self.blocks for piece in block)
+
+    @cached_property
+    def image(self) -> NDArray[np.uint8]:
+        """All layers as one image of the frame, (height, width, 4) uint8 with straight alpha."""
+        return image_of(self.layers, self.width, self.height)
+
+    @property
+    def texts(self) -> list[Text]:
+        return [piece for piece in self.pieces if isinstance(piece, Text)]
 
     @property
     def sheet(self) -> Box | None:
         """The box of the sheet over the spheres, if there is one."""
-        shown = self.plane or self.convergence
-        return shown.box if shown else None
+        return self.plane.box if self.plane else None
 
     @property
     def obstacles(self) -> tuple[Box, ...]:
@@ -66,95 +76,79 @@ class Overlay:
 
 
 def draw_overlay(
-    picture: Picture, composition: Composition, *, timing: bool = False, opengl: str = "", status: str = ""
+    picture: Picture,
+    composition: Composition,
+    *,
+    timing: bool = False,
+    opengl: str = "",
+    status: str | Work = "",
+    hovered: int | None = None,
 ) -> Overlay:
-    """Draw all text and sheets that go over the spheres.
+    """Draw everything that is written.
 
     timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
-    status: what is being done meanwhile, in place of messages.
+    status: what is at work meanwhile, in place of messages. hovered: the band under the mouse.
     """
-    sheet = Image.new("RGBA", (composition.width, composition.height))
-    painter = Painter(ImageDraw.Draw(sheet), composition)
-    write_captions(painter, picture, timing)
-    painter.boxes.update(draw_colour_bar(sheet, picture, composition))
-    write_figures(painter, picture)
-    wanted = "" if picture.state.view.help_visible else picture.state.view.sheet
-    drawing = sheet, picture, composition, list(painter.boxes.values())
-    plane = draw_plane(*drawing) if wanted == "plane" else None
-    convergence = draw_convergence(*drawing) if wanted == "convergence" else None
-    shown = plane or convergence
-    painter.boxes.update(shown.boxes if shown else {})
-    timed = wanted != "plane" or measured(picture)
-    _write_hint(painter, picture, (NO_ROOM[wanted] if timed else NOT_TIMED) if wanted and not shown else "", status)
-    if picture.state.view.help_visible:
-        draw_help(sheet, picture.state, composition, opengl)
-    image = np.asarray(sheet)
-    return Overlay(image, strips(image), painter.boxes, painter.bars, plane, convergence)
+    work = Work(status) if isinstance(status, str) and status else status or None
+    at, state = composition, picture.state
+    if state.view.help_visible:
+        return _overlay(at, [help_pieces(state, at, opengl, state.view.help_page)])
+    numbers = at.numbers
+    heads, feet = caption_blocks(picture, at, timing)
+    blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]
+    plane = None
+    remark = ""
+    if state.view.sheet == "plane":
+        sheet = Image.new("RGBA", (at.width, at.height))
+        plane = draw_plane(sheet, picture, at, _boxes([*blocks, *feet]).values())
+        remark = "" if plane else NO_ROOM if measured(picture) else NOT_TIMED
+    said = said_of(picture, remark)
+    exposure = exposure_pieces(picture, at, numbers.exposure) if numbers.exposure else []
+    if numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline:
+        after = max((piece.box.right for piece in exposure), default=numbers.foot.left) + at.px(18)
+        foot = foot_pieces(at, said, work, after=after)
+        if said or work is not None:  # both are on one line
+            exposure = []
+    else:
+        foot = foot_pieces(at, said, work)
+    bars: dict[int, Box] = {}
+    answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
+    if at.compact and (said or work is not None):  # the message takes the place of the last line there is
+        answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])
+    blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
+    if numbers.curve is not None:
+        series = band_series(picture, least_slots(at))
+        axes = axes_of(series, at)
+        bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
+        blocks += [curve_pieces(series, state, at), legend_pieces(series, state, at, hovered)]
+        if numbers.curve_head is not None:
+            head = numbers.curve_head
+            size = at.px(12.0 if at.compact else 15.0)
+            blocks.append([Text("curve_head", head.left, head.baseline, "error against bands", size, INK, SEMIBOLD)])
+    found = _overlay(at, blocks, bars)
+    if plane is not None:
+        found.plane = plane
+        found.sheet_layers = strips(np.asarray(sheet))
+        found.boxes.update(plane.boxes)
+    return found
 
 
-def status_layers(status: str, composition: Composition) -> tuple[Layer, ...]:
+def status_layers(status: str | Work, composition: Composition) -> tuple[Layer, ...]:
     """What is being done, where messages stand; for a window that has no picture yet."""
-    sheet = Image.new("RGBA", (composition.width, composition.height))
-    painter = Painter(ImageDraw.Draw(sheet), composition)
-    painter.text("message", composition.margin, _hint_y(composition), status, 13, GREY, "lm")
-    return strips(np.asarray(sheet))
+    work = Work(status) if isinstance(status, str) else status
+    blocks = [hairline_pieces(composition, work), foot_pieces(composition, "", work)]
+    return _overlay(composition, blocks).layers
 
 
 def foresee(picture: Picture) -> None:
     """Compute what the text of a picture needs beyond the picture, so that drawing it takes no time for the light."""
-    if picture.state.view.sheet == "convergence":
-        band_series(picture)
+    band_series(picture)
 
 
-def _write_hint(painter: Painter, picture: Picture, remark: str = "", status: str = "") -> None:
-    """Write what is being done, a message, a remark, the suns split off, or the most useful keys; at the right the exposure."""
-    at, state = painter.at, picture.state
-    y = _hint_y(at)
-    message = status or state.view.message or remark or picture.verdict or picture.subject.refusal.partition(";")[0]
-    if message:
-        face = painter.face(13)
-        text = message
-        while text and face.getlength(text) > at.width - 2 * at.margin:
-            text = text[:-4].rstrip(" .") + "..." if len(text) > 8 else ""
-        good = message == status or (message == picture.verdict and agrees(message))
-        painter.text("message", at.margin, y, text, 13, GREY if good else WARNING, "lm")
-    curve = "" if state.view.tone == "none" else f", {state.view.tone} curve"
-    stops = f"exposure {picture.exposure_stops:+z.1f} stops ({describe_exposure(state.view)}){curve}"
-    needs, far = picture.needs, at.width - at.margin
-    within = f"within {100 * state.recipe.tolerance:g} %: {PENDING}"
-    if not isinstance(needs, Pending):
-        radiance, irradiance = (str(count or f"over {needs.searched}") for count in (needs.radiance, needs.irradiance))
-        bands = "band" if needs.radiance == 1 else "bands"
-        within = f"within {100 * needs.tolerance:g} %: {radiance} {bands}, for irradiance {irradiance}"
-        if roughness_of(state.recipe.quantity) is not None:
-            within += f", for {in_words(state.recipe.quantity)}: {needs.shown or f'over {needs.searched}'}"
-    any(painter.text("exposure", far, y, text, 12, GREY, "rm") for text in (f"{within}     {stops}", within, stops))
-    if not message:
-        hints = [*_describe_suns(picture), HINT]
-        any(painter.text("hint", at.margin, y, text, 12, GREY if text is not HINT else FAINT, "lm") for text in hints)
+def _overlay(at: Composition, blocks: Sequence[Sequence[Piece]], bars: dict[int, Box] | None = None) -> Overlay:
+    found = tuple(tuple(block) for block in blocks if block)
+    return Overlay(at.width, at.height, found, _boxes(found), bars or {})
 
 
-def _hint_y(at: Composition) -> float:
-    return at.hairline_y + at.px(104)
-
-
-def _describe_suns(picture: Picture) -> list[str]:
-    """The suns and what splitting them off saves, in words, the longest text first; empty if there are no suns."""
-    suns, before = picture.subject.suns, picture.needs_unsplit
-    if not suns or before is None:
-        return []
-    unsplit = f"with it {PENDING} bands"
-    if not isinstance(before, Pending):
-        counts = (str(count or f"over {before.searched}") for count in (before.radiance, before.irradiance))
-        unsplit = "with it {} bands, irradiance {}".format(*counts)
-    sun = suns[0]
-    theta, phi = theta_phi_degrees(sun.axis)
-    place = f"theta {theta:.1f}, phi {phi:z.1f}"
-    size = f"{np.degrees(2 * sun.half_angle):.2g} deg wide{', clipped in the file' if sun.clipped else ''}"
-    colour = " ".join(radiance(value, 0.0) for value in sun.irradiance)
-    count = "sun" if len(suns) == 1 else f"{len(suns)} suns, the first"
-    return [
-        f"{count} at {place}, {size}, irradiance {colour}; {unsplit}",
-        f"{count} at {place}, {size}; {unsplit}",
-        f"{count} at {place}, {size}",
-    ]
+def _boxes(blocks: Sequence[Sequence[Piece]]) -> dict[str, Box]:
+    return named_boxes([piece for block in blocks for piece in block])

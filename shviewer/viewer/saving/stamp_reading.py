@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
-from shviewer.analysis.options import Flag, Kind, Whole, taken, whole
+from shviewer.analysis.options import Choice, Flag, Kind, Whole, taken, whole
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -19,12 +19,14 @@ from shviewer.limits import MAX_BANDS, Limits
 from shviewer.viewer.camera import Quaternion
 from shviewer.viewer.saving.stamp import LIMITS, SCHEMA
 from shviewer.viewer.state import State
-from shviewer.viewer.view import View
+from shviewer.viewer.view import SHEETS, View
 
 BESIDE: dict[str, Kind] = {
     "cursor": Whole(0, MAX_BANDS - 1, "cursor {}", f"bands are counted from 0 to {MAX_BANDS - 1}"),
     "cursor_visible": Flag(),
     "help_visible": Flag(),
+    "help_page": Whole(0, 99, "page {} of the help", "pages are counted from 0"),
+    "sheet": Choice(SHEETS),
     "sweep_to": Whole(1, MAX_BANDS, "a sweep to {} bands", f"the viewer shows 1 to {MAX_BANDS}"),
 }
 """Fields of the view that are no options, and their kinds."""
@@ -43,7 +45,6 @@ BEFORE_SCHEMAS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "tone": ("tone", str),
     "error": ("error", lambda error: error["kind"]),
     "marks": ("marks", bool),
-    "sheet": ("sheet", str),
     "lobe_view": ("lobe_view", bool),
     "basis": ("basis", tuple),
     "camera_degrees": ("camera", tuple),
@@ -87,8 +88,10 @@ def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     view = {part.name: said["view"][part.name] for part in fields(View) if part.name in said["view"]}
     recipe |= taken(recipe, Recipe) | {"reading": _told_reading(recipe["reading"])}
     view |= taken(view, View) | {"light_rotation": _told_rotation(view["light_rotation"])}
+    if view["sheet"] == "convergence":  # its curve is always there by now
+        view["sheet"] = ""
     for name, kind in BESIDE.items():
-        if view[name] is not None or name != "sweep_to":
+        if name in view and (view[name] is not None or name != "sweep_to"):
             view[name] = kind.taken(name, view[name])
             kind.check(name, view[name])
     if not isinstance(view["message"], str) or not isinstance(recipe["light"], str | None):

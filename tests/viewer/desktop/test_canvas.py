@@ -43,7 +43,7 @@ def test_a_light_that_fails_in_one_direction_does_not_end_the_program(canvas: Ca
 
 
 def test_nothing_is_read_through_a_sheet(canvas: Canvas) -> None:
-    shown = picture_of(sheet="convergence", error="signed")
+    shown = picture_of(sheet="plane", error="signed")
     canvas.show(shown, frame_of(shown))
     assert canvas.overlay is not None
     sheet = canvas.overlay.sheet

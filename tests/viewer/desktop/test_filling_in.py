@@ -17,9 +17,9 @@ from shviewer.viewer.composition import compose
 from shviewer.viewer.desktop import session as sessions
 from shviewer.viewer.desktop.canvas import _overlay_key
 from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.overlay import band_series
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import draw_overlay
-from shviewer.viewer.overlay.painter import Painter
 from shviewer.viewer.picture import first_picture, prepare, stages
 from shviewer.viewer.state import state_of
 
@@ -71,23 +71,14 @@ def test_the_last_of_the_stages_is_the_whole_picture_and_none_takes_a_figure_bac
     assert first.coefficients is whole.coefficients
 
 
-@pytest.mark.parametrize("sheet", ["", "convergence"])
-def test_pending_figures_are_dots_on_the_picture_and_never_numbers(sheet: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    said: list[str] = []
+def test_pending_figures_are_dots_on_the_picture_and_never_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pictures, "figures_of", None)
-    for name in ("text", "texts"):
-        real = getattr(Painter, name)
-
-        def heard(self: Painter, *given: Any, _real: Any = real) -> bool:
-            said.append(str(given))
-            return bool(_real(self, *given))
-
-        monkeypatch.setattr(Painter, name, heard)
-    picture = first_picture(state_of("studio", error="absolute", sheet=sheet, tolerance=0.2))
-    draw_overlay(picture, compose(1600, 800, n_spheres=3))
-    words = "\n".join(said)
-    assert words.count("'\u2026'") == 3  # largest error, minimum, area below zero
-    assert "within 20 %: \u2026" in words
+    monkeypatch.setattr(band_series, "errors_of", None)
+    picture = first_picture(state_of("studio", error="absolute", tolerance=0.2))
+    drawn = draw_overlay(picture, compose(1600, 800, n_spheres=3))
+    pending = {text.name for text in drawn.texts if text.text == "\u2026"}
+    assert pending == {"max_error", "minimum", "negative_area", "radiance_answer", "shading_answer"}
+    assert {"relative_l2", "energy"} <= set(drawn.boxes)
     assert marks_of(picture) == []
 
 

@@ -19,7 +19,6 @@ MODES = {
     "d": ["--error", "signed"],
     "x": ["--no-marks"],
     "o": ["--tone", "reinhard"],
-    "g": ["--convergence"],
     "v": ["--lobes"],
     "Tab": ["--basis", "0", "0"],
 }

@@ -25,7 +25,7 @@ def square_frame(side: int = SIDE) -> Composition:
     """Two spheres that fill their halves, their centres off every pixel's centre and edge."""
     left = Sphere(0.5 * side + 0.27, 0.5 * side - 0.13, 0.48 * side, Box(0, 0, side, side))
     right = Sphere(1.5 * side - 0.38, 0.5 * side + 0.31, 0.47 * side, Box(side, 0, 2 * side, side))
-    return Composition(2 * side, side, 1.0, (left, right), 0.0, side)
+    return Composition(2 * side, side, 1.0, (left, right))
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def map_frame(
     """Maps of the whole sphere beside each other, each `width` pixels wide."""
     boxes = (Box(number * width, 0, (number + 1) * width, width // 2) for number in range(count))
     maps = tuple(whole_sphere(box, zoom, centre) for box in boxes)
-    return Composition(count * width, width // 2, 1.0, (), 0.0, width // 2, maps=maps)
+    return Composition(count * width, width // 2, 1.0, (), maps=maps)
 
 
 def map_directions(composition: Composition, side: int) -> tuple[slice, Array]:

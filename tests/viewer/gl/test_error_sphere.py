@@ -39,7 +39,7 @@ def three_spheres(side: int = SIDE) -> Composition:
         )
         for number, off in enumerate((0.27, -0.38, 0.11))
     )
-    return Composition(3 * side, side, 1.0, spheres, 0.0, side)
+    return Composition(3 * side, side, 1.0, spheres)
 
 
 def original_at(picture: Picture, directions: Array) -> Array:

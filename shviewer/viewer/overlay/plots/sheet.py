@@ -17,7 +17,7 @@ from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, RULE, Ink, font
 from shviewer.viewer.overlay.plots.log_axis import Axis
 from shviewer.viewer.overlay.plots.markers import Place, curve_mask, marker_mask
-from shviewer.viewer.panes import Box, Sphere
+from shviewer.viewer.panes import Box, Pane
 from shviewer.words import round_percent
 
 GROUND: Ink = (14, 14, 16, 236)
@@ -45,7 +45,7 @@ def place(composition: Composition, taken: Iterable[Box], most: Size, least: Siz
     Low between two spheres side by side; where there are more, over the first, so that what is compared with it is seen.
     """
     unit, gap = _unit(composition), composition.px(10)
-    cell, middle = _cell(composition, composition.spheres)
+    cell, middle = _cell(composition, composition.panes)
     width = min(most.width * unit, cell.right - cell.left)
     left = min(max(middle - width / 2, cell.left), cell.right - width)
     top, bottom = cell.top, cell.bottom - gap
@@ -61,14 +61,14 @@ def place(composition: Composition, taken: Iterable[Box], most: Size, least: Siz
     return Box(round(left), round(top), round(left + width), round(bottom))
 
 
-def _cell(composition: Composition, spheres: Sequence[Sphere]) -> tuple[Box, float]:
+def _cell(composition: Composition, panes: Sequence[Pane]) -> tuple[Box, float]:
     """The box that a sheet has to stay in, and the x of its middle."""
-    first, second = spheres[:2]
-    if len(spheres) == 2 and first.y == second.y:
+    first, second = panes[:2]
+    if len(panes) == 2 and first.y == second.y:
         margin, width = composition.margin, composition.width
-        return Box(margin, composition.px(10), width - margin, composition.hairline_y), width / 2
-    gap = composition.px(10)
-    return first.clip._replace(left=first.clip.left + gap, right=first.clip.right - gap), first.x
+        return Box(margin, composition.px(10), width - margin, composition.hairline.top), width / 2
+    gap, clip = composition.px(10), first.clip
+    return clip._replace(left=clip.left + gap, right=clip.right - gap), (clip.left + clip.right) / 2
 
 
 def _unit(composition: Composition) -> float:

@@ -196,8 +196,8 @@ def test_measurements_go_with_their_light() -> None:
         load_light(Recipe(FunctionLight(lambda d: d[:, 2], str(number))))
         MEMORY.results(FunctionLight(lambda d: d[:, 2], str(number)), "anything")
     assert measured(first) == ()
-    assert draw_overlay(first, compose(1280, 640)).plane is None
     assert first.light not in MEMORY  # looking it up brings nothing back
+    assert draw_overlay(first, compose(1280, 640)).plane is None
 
 
 # --- axes
@@ -348,12 +348,12 @@ def test_no_text_in_it_is_cut_or_covered(size: tuple[int, int]) -> None:
         for one, box in drawn.plane.boxes.items():
             assert sheet.left < box.left < box.right < sheet.right, (name, one)
             assert sheet.top < box.top < box.bottom < sheet.bottom, (name, one)
-        assert sheet.bottom <= composition.hairline_y
+        assert sheet.bottom <= composition.hairline.top
         assert not any(overlap(sheet, box) for one, box in drawn.boxes.items() if one not in drawn.plane.boxes), name
 
 
 @pytest.mark.usefixtures("steady")
-@pytest.mark.parametrize("size", [(640, 320), (1280, 640), (2560, 1280)])
+@pytest.mark.parametrize("size", [(800, 400), (1280, 640), (2560, 1280)])
 def test_at_the_usual_sizes_axes_legend_floor_and_most_points_are_labelled(size: tuple[int, int]) -> None:
     _, found = plane_of(session(), size)
     assert {"plane_floor", *(f"plane_legend_{method}" for method in LOOKS)} <= set(found.boxes)
@@ -386,7 +386,7 @@ def test_it_covers_less_of_the_spheres_than_any_place_over_one_of_them() -> None
 
 
 def test_a_window_without_room_says_so() -> None:
-    for size, room in (((400, 200), False), ((640, 320), True)):
+    for size, room in (((640, 320), False), ((800, 400), True)):
         drawn = draw_overlay(shown(), compose(*size))
         assert (drawn.plane is not None) == room
         assert ("message" in drawn.boxes) == (not room)

@@ -1,0 +1,285 @@
+"""The curve: how the error falls as bands are added, over what each band alone is worth, on one logarithmic axis.
+
+A bar is the square root of the band's share of the energy, which is the error with that band alone left out. So bars and
+lines have the same unit, and what is off the chart is never silent.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from shviewer.viewer.composition import Composition
+from shviewer.viewer.overlay.band_series import BandSeries
+from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece, Text
+from shviewer.viewer.overlay.figures import looked_at
+from shviewer.viewer.overlay.lettering import (
+    ACCENT,
+    BAR,
+    FAINT,
+    GREY,
+    GROUND,
+    INK,
+    MEDIUM,
+    REGULAR,
+    RULE,
+    SEMIBOLD,
+    UNUSED,
+    Ink,
+    width_of,
+)
+from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.panes import Box
+from shviewer.viewer.state import State
+from shviewer.words import brief_percent, round_percent
+
+LABELS = 44.0
+"""Room for the labels of the axis at its left, pixels of the design."""
+
+BAR_SHARE, WIDEST_BAR, STUB = 0.62, 26.0, 1.5
+"""A bar's share of its slot, its largest width, and its height where it is under the axis."""
+
+RING, RING_WIDTH = 4.2, 1.6
+LOWEST = 1e-4
+"""The least error that the axis goes down to."""
+
+LEAST_SLOTS, NARROW_SLOTS, COMPACT_SLOTS = 18, 16, 14
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The places of bands and of errors. Band l has its slot between `bar(l)` left and right."""
+
+    left: float
+    right: float
+    top: float
+    base: float
+    slots: int
+    high: float
+    low: float
+
+    @property
+    def pitch(self) -> float:
+        return (self.right - self.left) / self.slots
+
+    def x(self, band: int) -> float:
+        """The middle of a band's slot."""
+        return self.left + (band + 0.5) * self.pitch
+
+    def y(self, error: float) -> float:
+        """The height of an error; under the axis for one below it."""
+        down = math.log(max(error, self.low / 100) / self.low) / math.log(self.high / self.low)
+        return self.base - down * (self.base - self.top)
+
+    def slot(self, band: int, below: float) -> Box:
+        """Where a click means the band: its slot and its number."""
+        return Box(self.x(band) - self.pitch / 2, self.top, self.x(band) + self.pitch / 2, self.base + below)
+
+
+def least_slots(at: Composition) -> int:
+    """The fewest bands that the axis of a frame shows."""
+    curve = at.numbers.curve
+    if at.compact:
+        return COMPACT_SLOTS
+    return LEAST_SLOTS if curve is None or curve.width >= at.px(500) else NARROW_SLOTS
+
+
+def axes_of(series: BandSeries, at: Composition) -> Axes:
+    """The axes of a frame that has room for the curve: 100 % to 1 %, and further where the error shown is further."""
+    box = at.numbers.curve
+    assert box is not None
+    high, low = 1.0, 0.01
+    if math.isfinite(series.shown):
+        high = 10.0 if series.shown > 1.05 else 1.0
+        while low > LOWEST and series.shown < low:
+            low /= 10
+    labels = at.px(LABELS if low >= 0.001 else LABELS + 6)
+    return Axes(box.left + labels, box.right, box.top, box.bottom, series.slots, high, low)
+
+
+def curve_pieces(series: BandSeries, state: State, at: Composition) -> list[Piece]:
+    """Grid, bars, lines, rings, and the dot of what is shown."""
+    axes = axes_of(series, at)
+    pieces = _grid(axes, series, at)
+    for band, worth in enumerate(series.worth):
+        pieces += _bar(axes, band, worth, series, at)
+    clip = Box(axes.left - at.px(8), axes.top - at.px(10), axes.right + at.px(8), axes.base)
+    for errors, ink, width in ((series.shading, GREY, 1.6), (series.errors, INK, 1.8)):
+        points = [(axes.x(band), axes.y(error)) for band, error in enumerate(errors) if math.isfinite(error)]
+        if len(points) > 1 and min(y for _, y in points) < axes.base:
+            ended = _until_below(points, axes.base + at.px(6))
+            pieces.append(Curve(ended, at.px(width), ink, clip, at.px(1.2), GROUND))
+    pieces += _numbers(axes, state, at)
+    for errors, needed, ink in (
+        (series.shading, series.shading_needed, GREY),
+        (series.errors, series.needed, INK),
+    ):
+        if needed is not None and needed <= min(len(errors), axes.slots):
+            pieces += _ring(axes, needed - 1, errors[needed - 1], ink, at)
+    return [*pieces, *_dot(axes, series, state.recipe.n_bands, at)]
+
+
+def _grid(axes: Axes, series: BandSeries, at: Composition) -> list[Piece]:
+    """The powers of ten, and the tolerance as a dashed line."""
+    size = at.px(11.0 if at.compact else 12.0)
+    line, end = max(1, round(at.scale)), axes.left - at.px(8)
+    pieces: list[Piece] = []
+    decades = round(math.log10(axes.high / axes.low))
+    step = 1 if (axes.base - axes.top) / decades >= 1.2 * size else 2
+    within, said, tolerance = axes.y(series.tolerance), round_percent(series.tolerance), None
+    if axes.low <= series.tolerance <= axes.high:
+        tolerance = _ended("tolerance", end, within + 0.36 * size, said, size, INK, MEDIUM)
+    for number in range(decades + 1):
+        error = axes.high / 10**number
+        y = round(axes.y(error))
+        pieces.append(Fill(Box(axes.left, y, axes.right, y + line), RULE))
+        baseline = y + line if number == decades else y + 0.36 * size
+        label = _ended(f"share_{number}", end, baseline, round_percent(error), size, FAINT)
+        if number % step == 0 and not (tolerance and label.box.overlaps(tolerance.box)):
+            pieces.append(label)
+    if tolerance:
+        y, dash = round(within), at.px(4)
+        count = int((axes.right - axes.left) / (2 * dash))
+        for number in range(count):
+            left = axes.left + 2 * number * dash
+            pieces.append(Fill(Box(left, y, left + dash, y + line), GREY))
+        pieces.append(tolerance)
+    return pieces
+
+
+def _ended(name: str, right: float, baseline: float, text: str, size: float, ink: Ink, weight: str = REGULAR) -> Text:
+    """A text that ends at `right`."""
+    said = typeset(text)
+    return Text(name, round(right - width_of(said, size, weight)), baseline, said, size, ink, weight)
+
+
+def _bar(axes: Axes, band: int, worth: float, series: BandSeries, at: Composition) -> list[Piece]:
+    """The bar of a band: filled in use, to its part under a window, hollow if muted, grey above the bands in use."""
+    if worth <= 0:
+        return []
+    half = max(min(BAR_SHARE * axes.pitch, at.px(WIDEST_BAR)), 1.0) / 2
+    left, right = round(axes.x(band) - half), round(axes.x(band) + half)
+    right, base = max(right, left + 1), round(axes.base)
+    top = min(max(round(axes.y(worth)), axes.top), base - max(1, round(at.px(STUB))))
+    bar = Box(left, top, right, base)
+    if band >= len(series.factors):
+        return [Fill(bar, UNUSED)]
+    factor = min(max(series.factors[band], 0.0), 1.0)
+    if factor >= 1.0:
+        return [Fill(bar, BAR)]
+    pieces: list[Piece] = [Fill(bar, BAR, hollow=at.scale)]
+    kept = round(axes.y(worth * factor)) if factor > 0 else base
+    return [*pieces, Fill(bar._replace(top=max(kept, top)), BAR)] if kept < base else pieces
+
+
+def _until_below(points: list[tuple[float, float]], floor: float) -> tuple[tuple[float, float], ...]:
+    """The points up to the last one over the floor, and where the line goes on from there."""
+    last = max((number for number, (_, y) in enumerate(points) if y < floor), default=-1)
+    return tuple(points[: last + 2])
+
+
+def _numbers(axes: Axes, state: State, at: Composition) -> list[Piece]:
+    """The numbers of the bands, as many as have room, the last one in use in bold; and the cursor."""
+    size = at.px(11.0 if at.compact else 12.0)
+    baseline = axes.base + at.px(13 if at.compact else 17)
+    n_bands = state.recipe.n_bands
+    widest = width_of(str(axes.slots - 1), size) + at.px(6)
+    step = next(step for step in (1, 2, 4, 8, 16, 32) if step * axes.pitch >= widest or step == 32)
+    muted = state.recipe.muted_shown
+    pieces: list[Piece] = [_ended("band", axes.left - at.px(8), baseline, "band", size, FAINT)]
+    here = n_bands - 1
+    middle = min(axes.x(here), axes.right - widest / 2)
+    for band in range(axes.slots):
+        near = step > 1 and abs(axes.x(band) - middle) < widest
+        if band != here and (band % step or near):
+            continue
+        weight = SEMIBOLD if band == here else REGULAR
+        ink = INK if band == here else FAINT if band > here or band in muted else GREY
+        wide = width_of(str(band), size, weight)
+        x = round(min(axes.x(band) - wide / 2, axes.right - wide))
+        pieces.append(Text(f"band_{band}", x, baseline, str(band), size, ink, weight))
+    if state.view.cursor_visible and state.view.cursor < n_bands:
+        middle, half = axes.x(state.view.cursor), max(axes.pitch * BAR_SHARE / 2, 2.0)
+        y = round(axes.base + at.px(2))
+        pieces.append(
+            Fill(Box(round(middle - half), y, round(middle + half), y + max(2, round(at.px(2)))), INK, "cursor")
+        )
+    return pieces
+
+
+def _ring(axes: Axes, band: int, error: float, ink: Ink, at: Composition) -> list[Piece]:
+    """The first band count within the tolerance, with its number over it."""
+    x, y = axes.x(band), min(max(axes.y(error), axes.top), axes.base)
+    size, text = at.px(11.0 if at.compact else 12.0), str(band + 1)
+    wide = width_of(text, size, SEMIBOLD)
+    left = round(min(x - wide / 2, axes.right - wide))
+    return [
+        Disc(x, y, at.px(RING - 0.7), ink, at.px(RING_WIDTH), GROUND),
+        Text(f"ring_{ink is INK}_{band}", left, round(y - at.px(8)), text, size, ink, SEMIBOLD, at.px(1.6), GROUND),
+    ]
+
+
+def _dot(axes: Axes, series: BandSeries, n_bands: int, at: Composition) -> list[Piece]:
+    """What is shown now: on its line, or off it, joined by a stem, where bands are muted or windowed."""
+    if not math.isfinite(series.shown) or n_bands > axes.slots:
+        return []
+    x, y = axes.x(n_bands - 1), min(max(axes.y(series.shown), axes.top), axes.base)
+    line = series.shading if series.on_shading else series.errors
+    pieces: list[Piece] = []
+    if n_bands <= len(line) and math.isfinite(line[n_bands - 1]):
+        whole = min(max(axes.y(line[n_bands - 1]), axes.top), axes.base)
+        if abs(whole - y) > at.px(2):
+            high, low = sorted((round(whole), round(y)))
+            left = round(x - at.scale / 2)
+            pieces.append(Fill(Box(left, high, left + max(1, round(at.scale)), low), ACCENT))
+    return [*pieces, Disc(x, y, at.px(RING + 0.6), ACCENT, at.px(1.2), ACCENT), *_rim(x, y, at)]
+
+
+def _rim(x: float, y: float, at: Composition) -> Sequence[Piece]:
+    """A dark ring around the dot, under which the line stays visible."""
+    return (Disc(x, y, at.px(RING + 0.3), GROUND, at.px(1.0), ACCENT),)
+
+
+def legend_pieces(series: BandSeries, state: State, at: Composition, hovered: int | None = None) -> list[Piece]:
+    """What lines and bars stand for; or, of the band under the mouse, its values."""
+    line = at.numbers.legend
+    if line is None:
+        return []
+    size = at.px(12.0)
+    if hovered is not None and hovered < series.slots:
+        words = band_words(series, hovered)
+        return [Text("hovered", line.left, line.baseline, words, size, INK)]
+    main = looked_at(state.recipe.quantity)
+    entries: list[tuple[str, Ink | None, str, Ink]] = [
+        ("line", INK, main, INK),
+        ("line", GREY, "shading", GREY),
+        ("", None, "error with bands 0 to here", FAINT),
+        ("bar", BAR, "with this band alone left out", FAINT),
+    ]
+    for count in (4, 3, 2):
+        pieces: list[Piece] = []
+        x, middle = line.left, line.baseline - 0.36 * size
+        for shape, colour, words, ink in entries[:count]:
+            wide, gap = (at.px(14), at.px(5)) if shape == "line" else (at.px(9), at.px(5)) if shape else (0.0, 0.0)
+            if colour is not None:
+                half = at.px(0.9) if shape == "line" else at.px(4.5)
+                box = Box(round(x), round(middle - half), round(x + wide), round(middle + half))
+                pieces.append(Fill(box, colour))
+            pieces.append(Text(f"legend_{words}", round(x + wide + gap), line.baseline, words, size, ink))
+            x = pieces[-1].box.right + at.px(12 if shape == "line" else 18)
+        if pieces[-1].box.right <= line.right + at.px(2):
+            return pieces
+    return []
+
+
+def band_words(series: BandSeries, band: int) -> str:
+    """The values of one band, in words."""
+    said = []
+    if band < len(series.worth):
+        said.append(f"{typeset(brief_percent(series.worth[band]))} error with it alone left out")
+    if band < len(series.errors) and math.isfinite(series.errors[band]):
+        said.append(f"with bands 0 to {band}: {share(series.errors[band])}")
+    if band < len(series.shading) and math.isfinite(series.shading[band]):
+        said.append(f"shading {share(series.shading[band])}")
+    return f"band {band}:  " + ",  ".join(said)

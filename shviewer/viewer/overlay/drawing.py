@@ -1,0 +1,292 @@
+"""Pieces of the overlay: texts, bars, curves, swatches as plain values, and the layer that they make together.
+
+Equal pieces make the same layer, which is remembered: what did not change is neither drawn nor uploaded again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import ceil, floor
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.overlay.lettering import CASING, FINE, REGULAR, Ink, mask, width_of
+from shviewer.viewer.panes import Box
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text that begins at x on a baseline. size: pixels."""
+
+    name: str
+    x: float
+    baseline: float
+    text: str
+    size: float
+    ink: Ink
+    weight: str = REGULAR
+    casing: float = 0.0
+    """The width of a dark rim, where it stands on a picture."""
+    rim: Ink = CASING
+
+    @property
+    def right(self) -> float:
+        return self.x + width_of(self.text, self.size, self.weight)
+
+    @property
+    def box(self) -> Box:
+        """The line's box: from the tops of capitals to below the baseline, as long as the text."""
+        up, down = 0.76 * self.size, 0.22 * self.size
+        return Box(self.x, self.baseline - up, max(self.right, self.x + 1), self.baseline + down)
+
+
+@dataclass(frozen=True)
+class Fill:
+    """A rectangle."""
+
+    area: Box
+    ink: Ink
+    name: str = ""
+    hollow: float = 0.0
+    """The width of its outline if it is not filled, pixels."""
+
+    @property
+    def box(self) -> Box:
+        return self.area
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line through points, cut to a box; a casing in another ink keeps it apart from what is under it."""
+
+    points: tuple[Point, ...]
+    width: float
+    ink: Ink
+    clip: Box
+    casing: float = 0.0
+    rim: Ink = CASING
+    closed: bool = False
+    """Whether it is an area to be filled."""
+    name: str = ""
+
+    @property
+    def box(self) -> Box:
+        out = self.width / 2 + self.casing + 1
+        across, down = zip(*self.points, strict=True)
+        return Box(
+            max(min(across) - out, self.clip.left),
+            max(min(down) - out, self.clip.top),
+            min(max(across) + out, self.clip.right),
+            min(max(down) + out, self.clip.bottom),
+        )
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A disc, or with a width a ring in its ink around a disc of another."""
+
+    x: float
+    y: float
+    radius: float
+    ink: Ink
+    width: float = 0.0
+    inside: Ink = CASING
+    name: str = ""
+
+    @property
+    def box(self) -> Box:
+        out = self.radius + self.width / 2 + 1
+        return Box(self.x - out, self.y - out, self.x + out, self.y + out)
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A row of colours, repeated over the height of a box. colours: RGB bytes, one pixel each."""
+
+    area: Box
+    colours: bytes
+    name: str = ""
+
+    @property
+    def box(self) -> Box:
+        return self.area
+
+
+@dataclass(frozen=True)
+class Swatch:
+    """A sample of how the spheres are drawn: "lines", "negative" with its zero line, or the zebra "white"."""
+
+    area: Box
+    kind: str
+    scale: float
+    name: str = ""
+
+    @property
+    def box(self) -> Box:
+        return self.area
+
+
+Piece: TypeAlias = Text | Fill | Curve | Disc | Strip | Swatch
+
+NEGATIVE_LINE, ZERO_LINE, FILL = (120, 170, 255), (176, 206, 255), (36, 90, 142)
+"""sRGB of the fine lines, of the zero line and of the fill of a swatch, as shaders/display.glsl draws them."""
+
+WHITE, ZEBRA = (244, 244, 246), (40, 40, 44)
+
+
+@lru_cache(maxsize=96)
+def layer_of(pieces: tuple[Piece, ...]) -> Layer | None:
+    """The layer of some pieces, the first at the bottom; None of none."""
+    if not pieces:
+        return None
+    boxes = [_reach(piece) for piece in pieces]
+    left, top = floor(min(box.left for box in boxes)), floor(min(box.top for box in boxes))
+    right, bottom = ceil(max(box.right for box in boxes)), ceil(max(box.bottom for box in boxes))
+    paper = _Paper(left, top, right - left, bottom - top)
+    for piece in pieces:
+        paper.draw(piece)
+    paper.pixels.flags.writeable = False
+    return Layer(paper.pixels, left, top)
+
+
+def _reach(piece: Piece) -> Box:
+    """The box that holds every pixel of a piece."""
+    if not isinstance(piece, Text):
+        return piece.box
+    found = mask(piece.text, piece.size, piece.weight, piece.casing)
+    x, y = round(piece.x) + found.left, round(piece.baseline) - found.ascent
+    return Box(x, y, x + found.coverage.shape[1], y + found.coverage.shape[0])
+
+
+class _Paper:
+    """An image being drawn, whose top left is a pixel of the frame."""
+
+    def __init__(self, left: int, top: int, width: int, height: int) -> None:
+        self.left, self.top = left, top
+        self.pixels = np.zeros((max(height, 1), max(width, 1), 4), np.uint8)
+
+    def draw(self, piece: Piece) -> None:
+        match piece:
+            case Text():
+                if piece.casing:
+                    self._text(piece, piece.rim, piece.casing)
+                self._text(piece, piece.ink, 0.0)
+            case Fill():
+                self._fill(piece)
+            case Curve():
+                if piece.casing:
+                    self._curve(piece, piece.width + 2 * piece.casing, piece.rim)
+                self._curve(piece, piece.width, piece.ink)
+            case Disc():
+                self._disc(piece)
+            case Strip():
+                colours = np.frombuffer(piece.colours, np.uint8).reshape(1, -1, 3)
+                rows = self._part(piece.area)
+                rows[..., :3], rows[..., 3] = colours[:, : rows.shape[1]], 255
+            case Swatch():
+                self._swatch(piece)
+
+    def _text(self, piece: Text, ink: Ink, stroke: float) -> None:
+        found = mask(piece.text, piece.size, piece.weight, stroke)
+        self._blend(found.coverage, round(piece.x) + found.left, round(piece.baseline) - found.ascent, ink)
+
+    def _fill(self, piece: Fill) -> None:
+        if not piece.hollow:
+            self._part(piece.area)[:] = piece.ink
+            return
+        line, area = max(1, round(piece.hollow)), piece.area
+        for part in (
+            area._replace(bottom=area.top + line),
+            area._replace(top=area.bottom - line),
+            area._replace(right=area.left + line),
+            area._replace(left=area.right - line),
+        ):
+            self._part(part)[:] = piece.ink
+
+    def _curve(self, piece: Curve, width: float, ink: Ink) -> None:
+        box = piece.box
+        left, top, right, bottom = floor(box.left), floor(box.top), ceil(box.right), ceil(box.bottom)
+        if right <= left or bottom <= top:
+            return
+        image = Image.new("L", (FINE * (right - left), FINE * (bottom - top)))
+        points = [(FINE * (x - left), FINE * (y - top)) for x, y in piece.points]
+        draw = ImageDraw.Draw(image)
+        if piece.closed:
+            draw.polygon(points, fill=255)
+        else:
+            draw.line(points, 255, round(FINE * width), joint="curve")
+        self._blend(np.asarray(image.reduce(FINE)), left, top, ink)
+
+    def _disc(self, piece: Disc) -> None:
+        box = piece.box
+        left, top = floor(box.left), floor(box.top)
+        rows, columns = np.mgrid[top : ceil(box.bottom), left : ceil(box.right)] + 0.5
+        off = np.hypot(columns - piece.x, rows - piece.y)
+        outer = np.clip(piece.radius + piece.width / 2 + 0.5 - off, 0, 1)
+        self._blend((255 * outer).astype(np.uint8), left, top, piece.ink)
+        if piece.width:
+            inner = np.clip(piece.radius - piece.width / 2 + 0.5 - off, 0, 1)
+            self._blend((255 * inner).astype(np.uint8), left, top, piece.inside)
+
+    def _swatch(self, piece: Swatch) -> None:
+        area = piece.area
+        rows, columns = np.mgrid[round(area.top) : round(area.bottom), round(area.left) : round(area.right)] + 0.5
+        rising = piece.kind != "white"
+        along = (columns + rows if rising else columns - rows) / np.sqrt(2)
+        pitch = (4.0 if rising else 5.0) * piece.scale
+        off = np.abs(along - pitch * np.round(along / pitch))
+        cover = np.clip(0.55 * piece.scale + 0.5 - off, 0, 1)
+        shape = rows.shape
+        left, top = round(area.left), round(area.top)
+        if piece.kind == "lines":
+            self._blend((200 * cover).astype(np.uint8), left, top, (*NEGATIVE_LINE, 255))
+            return
+        ground, lines = (FILL, NEGATIVE_LINE) if rising else (WHITE, ZEBRA)
+        self._blend(np.full(shape, 255, np.uint8), left, top, (*ground, 255))
+        self._blend(((200 if rising else 255) * cover).astype(np.uint8), left, top, (*lines, 255))
+        if rising:
+            self._fill(Fill(area, (*ZERO_LINE, 255), hollow=piece.scale))
+
+    def _part(self, box: Box) -> NDArray[np.uint8]:
+        """The pixels of a box of the frame."""
+        return self.pixels[
+            max(round(box.top) - self.top, 0) : max(round(box.bottom) - self.top, 0),
+            max(round(box.left) - self.left, 0) : max(round(box.right) - self.left, 0),
+        ]
+
+    def _blend(self, coverage: NDArray[np.uint8], left: int, top: int, ink: Ink) -> None:
+        """Lay an ink over what is there, with straight alpha."""
+        y, x = top - self.top, left - self.left
+        above, before = max(-y, 0), max(-x, 0)
+        under = self.pixels[max(y, 0) : y + coverage.shape[0], max(x, 0) : x + coverage.shape[1]]
+        over = coverage[above : above + under.shape[0], before : before + under.shape[1]]
+        if not under[..., 3].any():
+            under[..., :3], under[..., 3] = ink[:3], over
+            return
+        alpha = over.astype(np.float32) / 255
+        kept = under[..., 3].astype(np.float32) / 255 * (1 - alpha)
+        total = alpha + kept
+        share = np.divide(alpha, total, out=np.zeros_like(alpha), where=total > 0)[..., None]
+        colours = np.asarray(ink[:3], np.float32) * share + under[..., :3] * (1 - share)
+        under[..., :3], under[..., 3] = np.rint(colours), np.rint(255 * total)
+
+
+def image_of(layers: Iterable[Layer], width: int, height: int) -> NDArray[np.uint8]:
+    """Layers over each other as one image of the frame, (height, width, 4) with straight alpha."""
+    sheet = Image.new("RGBA", (width, height))
+    for layer in layers:
+        sheet.alpha_composite(Image.fromarray(layer.image), (max(layer.left, 0), max(layer.top, 0)))
+    return np.asarray(sheet)
+
+
+def named_boxes(pieces: Sequence[Piece]) -> dict[str, Box]:
+    """The boxes of the pieces that have a name."""
+    return {piece.name: piece.box for piece in pieces if piece.name}

@@ -1,0 +1,204 @@
+"""The foot: keys, or a message with a mark of its kind, or how far the work is, for which the hairline fills."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from shviewer.analysis.comparison import agrees
+from shviewer.viewer import message
+from shviewer.viewer.composition import Composition
+from shviewer.viewer.numbers_area import Line
+from shviewer.viewer.overlay.drawing import Curve, Fill, Piece, Text
+from shviewer.viewer.overlay.lettering import (
+    ACCENT,
+    ERROR,
+    FAINT,
+    GREY,
+    INK,
+    MEDIUM,
+    RULE,
+    WARNING,
+    Ink,
+    shortened_to,
+    width_of,
+)
+from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.panes import Box
+from shviewer.viewer.picture import Picture
+
+KEYS = (("↑ ↓", "bands"), ("0–9", "mute"), ("D", "error"), ("G", "whole sphere"), ("U", "sun apart"), ("H", "help"))
+"""The keys to begin with, and what they do; the last ones but one go first where there is no room."""
+
+INKS: dict[str, Ink] = {message.DONE: INK, "": INK, message.WARNING: WARNING, message.ERROR: ERROR}
+MARK, AFTER_MARK = 11.0, 18.0
+"""The size of a mark before a message, and where its words begin."""
+
+UNKNOWN = 0.2
+"""The part of the hairline that is lit where nobody knows how long the work takes."""
+
+TURN_SECONDS = 2.4
+"""The time that this part takes from end to end."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """What is at work behind the picture: in words, the share that is done, and the seconds left, where they are known."""
+
+    words: str
+    share: float | None = None
+    seconds_left: float | None = None
+    seconds: float = 0.0
+    """How long it has been at work."""
+
+
+def hairline_pieces(at: Composition, work: Work | None = None) -> list[Piece]:
+    """The hairline, which fills in the accent while something is at work."""
+    line = at.hairline
+    if line.bottom > at.height or line.right > at.width:
+        return []
+    pieces: list[Piece] = [Fill(line, RULE)]
+    if work is None:
+        return pieces
+    start, end = (0.0, min(max(work.share, 0.0), 1.0)) if work.share is not None else _moving(work.seconds)
+    thick = max(2, round(2 * at.scale))
+    if line.height > line.width:
+        lit = Box(line.left, line.top + start * line.height, line.left + thick, line.top + end * line.height)
+    else:
+        lit = Box(line.left + start * line.width, line.top, line.left + end * line.width, line.top + thick)
+    return [*pieces, Fill(lit, ACCENT)] if end > start else pieces
+
+
+def _moving(seconds: float) -> tuple[float, float]:
+    """The lit part of a work of unknown length: it goes to and fro."""
+    phase = (seconds / TURN_SECONDS) % 2
+    start = (1 - UNKNOWN) * (phase if phase < 1 else 2 - phase)
+    return start, start + UNKNOWN
+
+
+def said_of(picture: Picture, remark: str = "") -> str:
+    """The message of a picture: what a key said, a remark, the verdict on compared coefficients, or why no sun is apart."""
+    said = picture.state.view.message or remark
+    if said:
+        return said
+    if picture.verdict:
+        return picture.verdict if agrees(picture.verdict) else message.warning(picture.verdict)
+    refusal = picture.subject.refusal.partition(";")[0]
+    return message.warning(refusal) if refusal else ""
+
+
+def foot_pieces(at: Composition, said: str, work: Work | None = None, *, after: float = 0.0) -> list[Piece]:
+    """The line at the foot. said: a message; after: where what stands before the keys ends."""
+    line = message_line(at)
+    if line is None:
+        return []
+    if work is not None:
+        return work_pieces(at, work)
+    if said:
+        return message_pieces(line, said, at)
+    foot = at.numbers.foot
+    return [] if foot is None else _keys(foot._replace(left=max(foot.left, after)), at)
+
+
+def message_line(at: Composition) -> Line | None:
+    """The line on which messages stand: the foot as far as the frame reaches, or in a compact frame the figures' place."""
+    numbers = at.numbers
+    if numbers.foot is not None:
+        right = at.width - at.margin if numbers.legend is None else numbers.legend.left - at.px(12)
+        return numbers.foot._replace(right=min(max(right, numbers.foot.right), at.width - at.margin))
+    places = numbers.figures or numbers.answers
+    if not places:
+        return Line(at.margin, at.width - at.margin, at.height - at.px(8))
+    right = (
+        numbers.curve.left - at.px(12)
+        if numbers.curve and numbers.curve.top < places[0].value
+        else at.width - at.margin
+    )
+    return Line(places[0].left, right, places[0].value)
+
+
+def message_pieces(line: Line, said: str, at: Composition) -> list[Piece]:
+    """A message with its mark, shortened to its line; in a compact frame over two lines if need be."""
+    sign, words = message.parted(said)
+    size, ink = at.px(12.0 if at.compact else 13.0), INKS[sign]
+    left = line.left + (at.px(AFTER_MARK) if sign else 0)
+    pieces = _mark(sign, line.left, line.baseline, at.px(MARK), ink, at) if sign else []
+    shown = typeset(words)
+    lines = [shown]
+    if at.compact and width_of(shown, size) > line.right - left:
+        lines = _two_lines(shown, line.right - left, size)
+    for number, text in enumerate(lines):
+        text = shortened_to(text, line.right - left, size)
+        if text:
+            name = "message" if number == 0 else f"message_{number}"
+            pieces.append(Text(name, left, line.baseline + 1.25 * number * size, text, size, ink))
+    return pieces
+
+
+def _two_lines(text: str, room: float, size: float) -> list[str]:
+    """The text parted at the last space with which the first line has room."""
+    words = text.split(" ")
+    fitting = [n for n in range(1, len(words)) if width_of(" ".join(words[:n]), size) <= room]
+    if not fitting:
+        return [text]
+    return [" ".join(words[: fitting[-1]]), " ".join(words[fitting[-1] :])]
+
+
+def work_pieces(at: Composition, work: Work) -> list[Piece]:
+    """What is at work, and at the right how far it is."""
+    line = message_line(at)
+    if line is None:
+        return []
+    size, small = at.px(12.0 if at.compact else 13.0), at.px(11.0 if at.compact else 12.0)
+    parts = []
+    if work.share is not None:
+        parts.append(typeset(f"{100 * work.share:.0f} %"))
+    if work.seconds_left is not None:
+        parts.append(f"{max(1, round(work.seconds_left))} s left")
+    parts.append("Esc stops")
+    pieces: list[Piece] = []
+    far = at.width - at.margin if not at.compact else line.right
+    right = far
+    for number in range(len(parts) - 1, -1, -1):
+        x = round(right - width_of(parts[number], small))
+        if x < line.left + at.px(60):
+            break
+        pieces.append(Text(f"work_{number}", x, line.baseline, parts[number], small, GREY))
+        right = x - at.px(10)
+    words = shortened_to(typeset(work.words), right - at.px(8) - line.left, size)
+    if words:
+        pieces.append(Text("message", line.left, line.baseline, words, size, INK))
+    return pieces
+
+
+def _mark(sign: str, x: float, baseline: float, size: float, ink: Ink, at: Composition) -> list[Piece]:
+    """A tick, a triangle or a cross."""
+    clip = Box(x - 2, baseline - size - 2, x + size + 2, baseline + 3)
+    top, width = baseline - size + 1, at.px(1.6)
+
+    def place(right: float, down: float) -> tuple[float, float]:
+        return x + right * size, top + down * size
+
+    if sign == message.WARNING:
+        return [Curve((place(0.5, 0), place(1, 0.95), place(0, 0.95)), 0, ink, clip, closed=True, name="mark")]
+    if sign == message.DONE:
+        return [Curve((place(0, 0.5), place(0.35, 0.88), place(0.95, 0.12)), width, ink, clip, name="mark")]
+    strokes = ((place(0.05, 0.05), place(0.9, 0.9)), (place(0.05, 0.9), place(0.9, 0.05)))
+    return [Curve(stroke, width, ink, clip, name=f"mark_{n}") for n, stroke in enumerate(strokes)]
+
+
+def _keys(line: Line, at: Composition) -> list[Piece]:
+    """As many keys as have room; help is always among them."""
+    size = at.px(12.0)
+    for count in range(len(KEYS) - 1, -1, -1):
+        shown, x = (*KEYS[:count], KEYS[-1]), line.left
+        pieces: list[Piece] = []
+        if count == 0:
+            x = line.right - width_of("H", size, MEDIUM) - at.px(5) - width_of("help", size)
+        for key, words in shown:
+            pieces.append(Text(f"key_{key}", round(x), line.baseline, key, size, GREY, MEDIUM))
+            x = pieces[-1].box.right + at.px(6)
+            pieces.append(Text(f"key_{words}", round(x), line.baseline, words, size, FAINT))
+            x = pieces[-1].box.right + at.px(18)
+        if line.left <= pieces[0].box.left and pieces[-1].box.right <= line.right + 1:
+            return pieces
+    return []

@@ -1,0 +1,43 @@
+"""Numbers as they are set in the picture: a true minus, thin spaces, powers of ten."""
+
+from __future__ import annotations
+
+import re
+
+from shviewer.words import percent, radiance
+
+MINUS, THIN = "\u2212", "\u202f"
+"""The minus sign of mathematics, and a thin space at which no line breaks."""
+
+RAISE = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+BEYOND = 1.01
+"""A bound that lies further beyond what was found than this factor is said beside it."""
+
+
+def typeset(text: str) -> str:
+    """A text of words.py with its numbers as they are set: "-1.08e-5" as "−1.08 × 10⁻⁵", "5 %" with a thin space."""
+    text = re.sub(r"(?<=\d)e(-?\d+)", lambda found: f" × 10{found[1].translate(RAISE)}", text)
+    text = re.sub(r"(?<![\w.-])-(?=[\d.])", MINUS, text)
+    text = re.sub(r"(?<=\d) (?=\d{3}(?!\d))", THIN, text)
+    return text.replace(" %", f"{THIN}%")
+
+
+def share(value: float, digits: int = 3, floor: float = 0.0) -> str:
+    """A share of 1 in percent; below a thousandth of a percent it only says so."""
+    if floor < 1e-5 and (0 < value < 1e-5 or value < floor):
+        return typeset("< 0.001 %")
+    return typeset(percent(value, digits, floor))
+
+
+def value(found: float, peak: float) -> str:
+    return typeset(radiance(found, peak))
+
+
+def bound_text(found: float, bound: float | None, peak: float) -> str:
+    """The bound of an extreme that lies more than a hundredth beyond what was found, to stand after that; else ""."""
+    if bound is None or abs(bound) <= abs(found) * BEYOND or abs(bound) <= 1e-6 * peak:
+        return ""
+    said, other = value(bound, peak), value(found, peak)
+    if said == other:
+        return ""
+    return f" to {said}" if bound < 0 else f" – {said}"
