@@ -15,6 +15,7 @@ from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import Subject
 from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.channels import SEQUENCES
 from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, whole
 from shviewer.coefficients.stamp import Value, stamp_of
 from shviewer.coefficients.suns import sun_keys
@@ -127,6 +128,10 @@ class Projected(InNotebooks):
 
         UsageError if the convention has too few bands, cannot hold the quantity, or cannot be written as `kind`.
         """
+        if convention.sequence in SEQUENCES:
+            raise UsageError(
+                f"{convention.sequence} says how a list is read; what is written has a row for each l and m: leave it out"
+            )
         try:
             numbers = convention.from_ours(self.coefficients, self.quantity)
             return encode(numbers, self.stamp(convention, count_bands(numbers)), convention, kind, self.name)

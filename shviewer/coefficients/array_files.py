@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.coefficients.lists.cilm import rows_of_cilm
 from shviewer.coefficients.numbers import MAX_NUMBERS, Listed, arranged
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError
@@ -23,11 +24,16 @@ _LONGEST_HEADER = 2**17  # bytes
 
 
 def read_arrays(data: bytes) -> Listed:
-    """The numbers and the stamp in an .npz with `coefficients` and, if project wrote it, `stamp`; or in an .npy. LightError."""
+    """The numbers in an .npz with `coefficients` and, if project wrote it, `stamp`, or in an .npy; cilm is put in rows.
+
+    LightError if it is bad.
+    """
     most = 16 * MAX_NUMBERS + 2**16
     with decoding("readable NPZ or NPY"), warnings.catch_warnings(action="ignore"):  # of headers that Python 2 wrote
         arrays = _arrays(data, most)
     numbers = arrays["coefficients"]
+    if numbers.ndim > 2 and numbers.size and numbers.dtype.kind in "fiuc" and "stamp" not in arrays:
+        return rows_of_cilm(numbers)
     if numbers.dtype.kind not in "fiuc" or numbers.ndim not in (1, 2) or not numbers.size:
         raise LightError(f"coefficients of type {numbers.dtype} and shape {numbers.shape}; they are (n^2, 3) numbers")
     if "stamp" not in arrays:

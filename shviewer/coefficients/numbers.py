@@ -85,7 +85,7 @@ def in_sequence(listed: Listed, sequence: str) -> Numbers:
     if sequence == FLAT_BY_CHANNEL and numbers.ndim > 1:
         return numbers
     flat = numbers.T.reshape(-1) if listed.planar else numbers.reshape(-1)
-    if listed.placed or np.iscomplexobj(flat) or flat.size % 3 or not holds_light(flat.size):
+    if listed.placed or np.iscomplexobj(flat) or flat.size % 3 or not _is_square(flat.size // 3):
         if sequence == FLAT_BY_CHANNEL:
             return numbers
         what = "rows that name their l and m" if listed.placed else f"{flat.size} numbers"

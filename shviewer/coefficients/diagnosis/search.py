@@ -201,7 +201,8 @@ def _costs(
     for number, base in enumerate(CONVENTIONS.values()):
         if n_bands > (base.most_bands or n_bands) or way.complex != base.complex:
             continue
-        if base is not OURS and (way.order, way.shift) != (base.order, base.shift):
+        other_order = way.order != base.order and not listed.placed
+        if base is not OURS and (other_order or way.shift != base.shift):
             continue
         at_base = named is not None and named.name == base.name
         cost = 0.0 if at_base or (named is None and base is OURS) else PROGRAM if named is None else ANOTHER_PROGRAM
@@ -211,7 +212,7 @@ def _costs(
         if base.sequence == FLAT_BY_CHANNEL and way.sequence != sequence:
             continue
         cost += way.sequence != (sequence_of(listed, named.sequence) if at_base and named else sequence)
-        cost += (way.order != base.order) + (way.shift != base.shift)
+        cost += other_order + (way.shift != base.shift)
         turned = _axes_costs(base.basis_axes, base is OURS)
         for first in range(0, len(best), len(turned)):
             phase, mirrored, _ = orientations()[first]

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.coefficients.lists.cilm import rows_of_cilm
 from shviewer.coefficients.lists.names import are_places, channel_order, places_of
 from shviewer.coefficients.numbers import MAX_NUMBERS, Listed, arranged
 from shviewer.errors import LightError
@@ -33,7 +34,7 @@ def read_structure(found: object) -> Listed:
     if probes:
         return _three(probes[0]) if _is_probe(probes[0]) else _gltf(probes[0])
     if not isinstance(found, dict):
-        return arranged(rows_of_numbers(found))
+        return rows_of_cilm(_array(found)) if _depth(found) > 2 else arranged(rows_of_numbers(found))
     if "coefficients" in found:
         listed = arranged(rows_of_numbers(found["coefficients"]))
         if found.get("isSphericalHarmonics3") is not True:
@@ -65,6 +66,20 @@ def rows_of_numbers(found: object) -> NDArray[np.float64]:
     if numbers.ndim not in (1, 2) or not numbers.size or numbers.dtype.kind not in "fiu":
         raise LightError("coefficients must be rows of three numbers each, or one list of numbers")
     return numbers.astype(np.float64)
+
+
+def _depth(found: object) -> int:
+    """How many lists the first number is within."""
+    return 1 + _depth(found[0]) if isinstance(found, list) and found else 0
+
+
+def _array(found: object) -> NDArray[Any]:
+    try:
+        return np.array(found, dtype=np.float64)
+    except (ValueError, OverflowError, TypeError):
+        raise LightError(
+            "lists of different lengths, or of something else than numbers; rows are equally long"
+        ) from None
 
 
 def _by_channel(found: Mapping[str, Any]) -> list[Any] | None:

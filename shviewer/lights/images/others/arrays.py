@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from shviewer.coefficients.array_files import npy_header
+from shviewer.coefficients.lists.cilm import has_shape_of_cilm
 from shviewer.errors import LightError
 from shviewer.files import decoding, read_bytes
 from shviewer.lights.images.decoded import Decoded
@@ -21,7 +22,8 @@ from shviewer.limits import DEFAULT_LIMITS, Limits
 def holds_image(path: Path, limits: Limits = DEFAULT_LIMITS) -> bool:
     """Whether the array in a file has the three dimensions of an image. What cannot be read is none."""
     with suppress(LightError):  # a pipe, which can be read once, has no image
-        return len(_header(read_bytes(path, replace(limits, pipe_seconds=0)))[0]) == 3
+        shape, _ = _header(read_bytes(path, replace(limits, pipe_seconds=0)))
+        return len(shape) == 3 and not has_shape_of_cilm(shape)
     return False
 
 
@@ -29,7 +31,7 @@ def decode_array(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded:
     """The radiance in an .npy. LightError if it is no image of floating-point numbers, damaged or too large."""
     shape, dtype = _header(data)
     if len(shape) != 3 or shape[2] != 3:
-        raise LightError(f"an array of shape {shape}; an image is (height, width, 3)")
+        raise LightError(f"an array of shape {shape}; an image is (height, width, 3), cilm of SHTOOLS (2, n, n)")
     limits.check_image(shape[1], shape[0], (12 + 6 * dtype.itemsize) * shape[0] * shape[1])
     if dtype.kind != "f":
         raise LightError(f"an image of type {dtype}; radiance is linear and floating-point: linearise and convert it")
