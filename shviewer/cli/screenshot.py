@@ -12,6 +12,7 @@ from shviewer.errors import UsageError
 from shviewer.viewer.composition import frame_for
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.reference import compare_with_reference
+from shviewer.viewer.saving.sphere_maps import write_sphere_map
 from shviewer.viewer.screenshot import save_picture
 
 
@@ -34,8 +35,18 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(
             f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
         )
+    whole = state.view.whole_sphere and kind == ".exr"
+    width, height = options.size
+    if whole and width != 2 * height:
+        raise UsageError(
+            f"--size {width} {height}: a map is twice as wide as high; give --size {width} {width // 2} or leave it out"
+        )
     with speaking():
         picture = prepare(state, written=not options.no_overlay)
+    if whole:
+        write_sphere_map(picture, width, options.out)
+        print_notes(state.recipe)
+        return 0
     composition = frame_for(state.view, *options.size)
     pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     print_notes(state.recipe)

@@ -197,7 +197,12 @@ def toggle_sheet(state: State, sheet: str) -> State:
 
 def toggle_lobe_view(state: State) -> State:
     """Surfaces of the light and its reconstruction, or spheres again."""
-    return changed(state, lobe_view=not state.view.lobe_view, basis=None)
+    return changed(state, lobe_view=not state.view.lobe_view, basis=None, whole_sphere=False)
+
+
+def toggle_whole_sphere(state: State) -> State:
+    """The whole sphere as maps, or spheres again."""
+    return changed(state, whole_sphere=not state.view.whole_sphere, lobe_view=False, basis=None)
 
 
 def step_basis(state: State, step: int) -> State:
@@ -205,7 +210,7 @@ def step_basis(state: State, step: int) -> State:
     count = state.recipe.n_bands**2
     at = count if state.view.basis is None else index(*state.view.basis)
     at = (at + step) % (count + 1)
-    return changed(state, lobe_view=True, basis=None if at == count else degree_order(at))
+    return changed(state, lobe_view=True, whole_sphere=False, basis=None if at == count else degree_order(at))
 
 
 def toggle_sweep(state: State) -> State:
@@ -241,7 +246,13 @@ def escape(state: State) -> State | Command:
 
 
 def orbit(state: State, right: float, up: float) -> State:
-    """Turn all spheres as if their front was dragged, in radii of a sphere. The state says where the camera is."""
+    """Turn all spheres as if their front was dragged, in radii of a sphere; or move the maps, in radians of them.
+
+    The state says where the camera is.
+    """
+    if state.view.whole_sphere:
+        azimuth, elevation = state.view.map_centre
+        return _centred(state, azimuth + right * 180 / math.pi, elevation - up * 180 / math.pi)
     assert state.view.camera is not None
     azimuth, elevation = state.view.camera
     azimuth = (azimuth - right * 180 / math.pi) % 360
@@ -250,19 +261,32 @@ def orbit(state: State, right: float, up: float) -> State:
 
 
 def face(state: State, direction: Array) -> State:
-    """Turn all spheres so that a direction in the world (3,) is in front."""
+    """Turn all spheres so that a direction in the world (3,) is in front, or move the maps so that it is in the middle."""
+    if state.view.whole_sphere:
+        return _centred(state, *facing(direction))
     return changed(state, camera=facing(direction))
 
 
+def _centred(state: State, azimuth: float, elevation: float) -> State:
+    """The state with that in the middle of the maps, as far as they reach."""
+    most = 90 - 90 / max(state.view.zoom, 1.0)
+    return changed(state, map_centre=((azimuth + 180) % 360 - 180, min(max(elevation, -most), most)))
+
+
 def rotate_light(state: State, right: float, up: float) -> State:
-    """Turn the light as if the front of a sphere was dragged, in radii of a sphere. The state says where the camera is."""
-    assert state.view.camera is not None
-    return changed(state, light_rotation=turned_by_drag(state.view.light_rotation, state.view.camera, right, up))
+    """Turn the light as if the front of a sphere, or the middle of a map, was dragged; right and up as in `orbit`."""
+    view = state.view
+    if view.whole_sphere:  # which is seen from inside
+        return changed(state, light_rotation=turned_by_drag(view.light_rotation, view.map_centre, -right, up))
+    assert view.camera is not None
+    return changed(state, light_rotation=turned_by_drag(view.light_rotation, view.camera, right, up))
 
 
 def zoom(state: State, steps: float) -> State:
     low, high = ZOOM_RANGE
-    return changed(state, zoom=min(max(state.view.zoom * 1.1**steps, low), high))
+    low = 1.0 if state.view.whole_sphere else low  # a map has no more to show
+    state = changed(state, zoom=min(max(state.view.zoom * 1.1**steps, low), high))
+    return _centred(state, *state.view.map_centre)
 
 
 def open_light(state: State, light: str | Light) -> State:

@@ -112,7 +112,15 @@ def compose(
 
 def frame_for(view: View, width: int, height: int, content_scale: float = 1.0) -> Composition:
     """The frame of a view in a picture of this size."""
-    return compose(width, height, view.zoom, content_scale, view.n_spheres)
+    return compose(
+        width,
+        height,
+        view.zoom,
+        content_scale,
+        view.n_spheres,
+        whole_sphere=view.whole_sphere,
+        map_centre=view.map_centre,
+    )
 
 
 def _margin(width: float) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -46,6 +48,9 @@ of lobes and surfaces."""
 LEVEL = 0.012
 """Light whose mean direction is less horizontal than this comes from no side."""
 
+PEAK = 20.0
+"""How many times brighter than the mean of its light a peak has to be to be marked."""
+
 SURFACE_RADIUS = 222.0
 """The radius in pixels, at zoom 1, for which surfaces are fine enough: that of the 1280 x 640 design."""
 
@@ -67,13 +72,40 @@ def camera_of(view: View, light: Light) -> tuple[float, float]:
 
 
 @remember(most=1)
+def _low_bands(light: Light) -> Array:
+    """The coefficients of bands 0 and 1, (4, 3): the mean of a light, and its mean direction."""
+    return light.coefficients(2)
+
+
 def _mean_direction(light: Light) -> Array:
     """The mean of the directions (3,), each weighted with its share of the luminance; 0 if there is none.
 
     Bands 0 and 1 are constant and linear, so their coefficients are those integrals, but for a factor.
     """
-    total, along_y, along_z, along_x = light.coefficients(2) @ LUMINANCE
+    total, along_y, along_z, along_x = _low_bands(light) @ LUMINANCE
     return np.array([-along_x, -along_y, along_z]) / (np.sqrt(3) * total) if total > 0 else np.zeros(3)
+
+
+class Peak(NamedTuple):
+    """Where a light is brightest: a direction (3,) in its frame, and its largest channel there."""
+
+    direction: Array
+    radiance: float
+
+
+@remember(most=1)
+def peak(light: Light) -> Peak | None:
+    """The peak of a light, if it is more than PEAK times as bright as the light is on average: such as a sun."""
+    grid = error_grid(light, grid_rows(1))
+    values, places = grid.original.max(axis=1), light.landmarks()
+    row, column = divmod(int(values.argmax()), len(grid.phi))
+    found = Peak(directions_from_angles(grid.theta[[row]], grid.phi[[column]])[0], float(values[row, column]))
+    if len(places):
+        marked = light.radiance(places).max(axis=1)
+        best = int(marked.argmax())
+        found = max(found, Peak(places[best], float(marked[best])), key=lambda peak: peak.radiance)
+    mean = float(_low_bands(light)[0].mean()) / (2 * np.sqrt(np.pi))
+    return found if found.radiance > PEAK * abs(mean) else None
 
 
 def surfaces(

@@ -23,6 +23,7 @@ from shviewer.viewer.state import (
     describe_muted,
     describe_sanitizing,
 )
+from shviewer.viewer.view import View
 
 ROUGHER = 0.05
 """A step of roughness."""
@@ -154,6 +155,12 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
             lambda s: "surfaces" if s.view.lobe_view else "spheres",
         ),
         Binding(
+            "G",
+            "the whole sphere as a map",
+            {"G": do.toggle_whole_sphere},
+            lambda s: "map" if s.view.whole_sphere else "spheres",
+        ),
+        Binding(
             "Tab / Shift+Tab",
             "basis function after, before",
             _each(do.step_basis, {"Tab": 1, "Shift+Tab": -1}),
@@ -162,7 +169,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("drag", "turn the spheres", {}, lambda s: describe_camera(s.view)),
         Binding("double click", "face that point", {}),
         Binding("scroll", "zoom", {}, lambda s: f"{s.view.zoom:.2f} x"),
-        Binding("F", "face the light", {"F": partial(changed, camera=None, zoom=1.0)}),
+        Binding("F", "face the light", {"F": partial(changed, camera=None, zoom=1.0, map_centre=View.map_centre)}),
         Binding("R", "all but the light as at the start", {"R": do.reset}),
     ),
     "Program": (

@@ -24,14 +24,14 @@ from shviewer.lights.suns.sun import points_of_suns
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.beside import Beside, recipe_beside
-from shviewer.viewer.derived import camera_of, error_scale, exposure_stops, reconstruction_map, surfaces
+from shviewer.viewer.derived import Peak, camera_of, error_scale, exposure_stops, peak, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
 from shviewer.viewer.error_scale import ErrorScale
 from shviewer.viewer.state import FRONT, State, changed
 from shviewer.viewer.tone import steepest
 
 LIVE = (
-    *("camera", "light_rotation", "zoom", "marks", "cursor", "cursor_visible"),
+    *("camera", "light_rotation", "zoom", "whole_sphere", "map_centre", "marks", "cursor", "cursor_visible"),
     *("sweep_to", "help_visible", "help_page", "message", "roughness", "layout_tried"),
 )
 """Fields of the view on which nothing depends that takes time."""
@@ -78,6 +78,8 @@ class Picture:
     needs: Needs | Pending = PENDING
     needs_unsplit: Needs | Pending | None = None
     """The bands that the light would need with its suns; None if none were split off."""
+    peak: Peak | None = None
+    """Where the original is far brighter than elsewhere."""
     verdict: str = ""
     """How well the compared coefficients agree with the light's own, and if they do not, what is wrong with them."""
 
@@ -207,6 +209,7 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
         beside=Beside.of(other, drawn if view.lobe_view else drawn_as(other)) if other is not None else None,
         projection=projection,
         figures=found.sums,
+        peak=peak(whole),
         needs_unsplit=PENDING if found.subject.suns else None,
     )
 

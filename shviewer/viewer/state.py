@@ -48,6 +48,8 @@ class State:
         self.recipe.check()
         self.view.check()
         n_bands, basis = self.recipe.n_bands, self.view.basis
+        if self.view.whole_sphere and self.view.lobe_view:
+            raise UsageError("--map with --lobes or --basis: surfaces have no map; leave one out")
         if self.view.evaluate == "direct" and n_bands > MAX_DIRECT_BANDS:
             raise UsageError(f"{n_bands} bands: at most {MAX_DIRECT_BANDS} are summed directly; map or auto take more")
         if basis is not None and not abs(basis[1]) <= basis[0] < n_bands:

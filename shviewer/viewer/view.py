@@ -110,6 +110,11 @@ class View:
         ("AZIMUTH", "ELEVATION"),
     )
     """None: where `derived.camera_of` puts it."""
+    whole_sphere: bool = option(
+        False, Flag(), "the whole sphere as lat-long maps in place of spheres", "--map", const=True
+    )
+    map_centre: tuple[float, float] = (0.0, 0.0)
+    """Azimuth and elevation in the middle of the maps, degrees."""
     light_rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
     zoom: float = option(
         1.0,

@@ -93,7 +93,7 @@ def event_costs() -> None:
     def point() -> None:
         found = probe(picture, COMPOSITION, 330.0, 260.0)
         assert found is not None
-        probe_layers(found, COMPOSITION, 330.0, 260.0)
+        probe_layers(found, picture, COMPOSITION, 330.0, 260.0)
 
     for name, milliseconds in medians({"turn of the light": turn, "values under the mouse": point}, 25).items():
         print(f"{name}, 32 bands: {milliseconds:.2f} ms")

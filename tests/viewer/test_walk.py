@@ -127,7 +127,7 @@ class Walk:
         found = probe(picture, composition, x, y)
         if found is not None:
             assert np.isfinite([found.original, found.reconstruction, found.error]).all()
-            assert probe_layers(found, composition, x, y)
+            assert probe_layers(found, picture, composition, x, y)
 
 
 @pytest.fixture(scope="session")

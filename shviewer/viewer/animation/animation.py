@@ -85,8 +85,9 @@ def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SEC
         raise UsageError(f"--frames {frames}: a turn has 2 to {MAX_FRAMES}")
     state = prepare(state).placed(state)
     assert state.view.camera is not None
-    azimuth, elevation = state.view.camera
-    states = [changed(state, camera=((azimuth + 360 * k / frames) % 360, elevation)) for k in range(frames)]
+    turned = "map_centre" if state.view.whole_sphere else "camera"
+    azimuth, elevation = getattr(state.view, turned)
+    states = [changed(state, **{turned: ((azimuth + 360 * k / frames) % 360, elevation)}) for k in range(frames)]
     return _checked(states, [_milliseconds(seconds)] * frames, state, {"kind": "turntable"})
 
 

@@ -93,7 +93,7 @@ class Canvas:
         with suppress(ShviewerError):  # a light that cannot be evaluated there has no values to show
             found = probe(picture, composition, *pointer)
             if found is not None:
-                layers += probe_layers(found, composition, *pointer)
+                layers += probe_layers(found, picture, composition, *pointer)
         return layers
 
     def release(self) -> None:
@@ -108,7 +108,7 @@ class Canvas:
 
 def summed_pixels(composition: Composition) -> float:
     """The number of visible pixels that show the reconstruction or its error."""
-    return sum(sphere.visible_area for sphere in composition.spheres[1:])
+    return sum(pane.visible_area for pane in composition.panes[1:])
 
 
 def _overlay_key(picture: Picture, composition: Composition) -> object:

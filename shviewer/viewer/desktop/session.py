@@ -21,9 +21,8 @@ from shviewer.analysis.subjects import keep_light, read_again, version_read
 from shviewer.errors import ShviewerError, within_memory
 from shviewer.lights.light import Light
 from shviewer.lights.several import several
-from shviewer.viewer.actions import Command, open_light, show_light, step_sweep, with_bands
+from shviewer.viewer.actions import Command, face, open_light, show_light, step_sweep, with_bands
 from shviewer.viewer.animation.metronome import Metronome
-from shviewer.viewer.camera import facing
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.desktop.errands import save_coefficients, save_picture
 from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
@@ -378,7 +377,7 @@ class Session:
             return
         direction = self.picture.light_from_world.T @ marks[self._marks_faced % len(marks)].direction
         self._marks_faced += 1
-        self.state = changed(self.state, camera=facing(direction))
+        self.state = face(self.state, direction)
 
     def _log(self, text: str) -> None:
         if self.verbose:

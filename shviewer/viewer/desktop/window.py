@@ -31,6 +31,8 @@ from shviewer.viewer.desktop.glfw_window import key_name, open_window
 from shviewer.viewer.desktop.session import PATIENCE, Session
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
+from shviewer.viewer.overlay.probe import direction_at
+from shviewer.viewer.panes import Sphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.state import State, changed
@@ -302,8 +304,7 @@ class Window:
                 self.change(toggle_band(changed(state, message=""), band))
         if near and now - last[0] < DOUBLE_SECONDS:
             self.clicked = NEVER
-            found = (pane.direction(x, y, self.session.picture.world_from_view) for pane in composition.panes)
-            direction = next((one for one in found if one is not None), None)
+            direction = direction_at(self.session.picture, composition, x, y)
             if direction is not None:
                 self.change(face(state, direction))
 
@@ -325,7 +326,8 @@ class Window:
         if not self.dragged and moved < CLICK_PIXELS:
             return
         self.dragged = True
-        radius = composition.spheres[0].radius
+        pane = composition.panes[0]
+        radius = pane.radius if isinstance(pane, Sphere) else pane.width / math.tau
         right, up = (self.mouse[0] - self.dragged_to[0]) / radius, (self.dragged_to[1] - self.mouse[1]) / radius
         self.dragged_to = self.mouse
         shift = any(glfw.get_key(self.handle, key) for key in (glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT))
@@ -334,7 +336,7 @@ class Window:
 
     def _hover(self, composition: Composition) -> None:
         """Show the values under the mouse, or take them away."""
-        over = any(sphere.position(*self.mouse) is not None for sphere in composition.spheres)
+        over = direction_at(self.session.picture, composition, *self.mouse) is not None
         over = over and not self.session.state.view.lobe_view and not self.session.state.view.help_visible
         if over or self.hovering:
             self.hovering = over

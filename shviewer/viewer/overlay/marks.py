@@ -1,73 +1,89 @@
-"""Marks of the lowest radiance and of the largest error: a ring on the sphere, with the value beside it.
+"""Marks of the original's peak, of the lowest radiance and of the largest error: a ring, with the value beside it.
 
-Marks move with the spheres, so they are layers of their own: turning draws no text anew.
+What is on the far side of a sphere has a triangle outside the limb, so that nothing lies on what is in front. Marks move with
+the spheres, so they are layers of their own: turning draws no text anew.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
+from math import atan2, cos, degrees, pi, radians, sin
 
 import numpy as np
-from PIL import Image, ImageDraw
 
 from shviewer.analysis.figures import Pending
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composition import Composition
+from shviewer.viewer.overlay.drawing import Curve, Piece, Text, layer_of
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import GREY, INK, MIN_TYPE, Ink, font
-from shviewer.viewer.panes import Box, Sphere
+from shviewer.viewer.overlay.lettering import GREY, INK, MEDIUM
+from shviewer.viewer.overlay.numerals import share, value
+from shviewer.viewer.panes import Box, Pane, Sphere
 from shviewer.viewer.picture import Picture
-from shviewer.words import percent, radiance
 
-RING, THICKNESS, SHADOW = 6.0, 1.5, 1.25
-"""Radius, line width and dark rim of a ring, in pixels of the design."""
+RING, COMPACT_RING, THICKNESS, CASING_WIDTH = 6.5, 5.2, 1.5, 1.4
+"""Radius of a ring and in a compact frame, its line and the dark rim, in pixels of the design."""
 
-DARK: Ink = (10, 10, 12, 200)
-FINE = 4
-"""How many times larger a ring is drawn before it is averaged."""
+TYPE, COMPACT_TYPE, GAP = 12.0, 11.0, 5.0
+"""Sizes of the text, and the space before it."""
 
-DASHES = 8
-RECONSTRUCTION, ERROR = 1, 2
+AWAY, BASE, HEIGHT = 4.0, 8.0, 8.0
+"""The triangle: its distance from the limb, its base and its height."""
+
+STEP = 3
+"""Degrees in which triangles turn, and in which room for their text is sought along the limb."""
+
+SHORT, NEAR, FARTHEST = 4, 30, 84
+"""Degrees along the limb between a triangle and its text: up to SHORT no line joins them, up to NEAR all words are kept."""
+
+ORIGINAL, RECONSTRUCTION, ERROR = 0, 1, 2
+FAR = Box(-1e6, -1e6, 1e6, 1e6)
 
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """A marked direction of the light on one of the spheres, and the text beside it."""
+    """A marked direction of the light in one of the panes, and the text beside it."""
 
     name: str
-    sphere: int
+    pane: int
     direction: Array
     text: str
 
 
 @dataclass(frozen=True)
 class Placed:
-    """A mark in a frame: the middle of its ring, the box of its text, and the layer that shows both."""
+    """A mark in a frame: its pixel, the box of its text, and the layers that show both."""
 
     x: float
     y: float
     behind: bool
-    """Whether it is on the far side: then the ring is broken, and stands where one would see it through the sphere."""
-    label: Box
-    layer: Layer
+    """Whether it is on the far side: then x, y is where one would see it through the sphere."""
+    label: Box | None
+    """None where there is no room for words."""
+    layers: tuple[Layer, ...]
 
 
 def marks_of(picture: Picture) -> list[Mark]:
-    """Marks of the minimum, if it is negative, and of the largest error, if the error is shown; surfaces have no marks."""
-    state, extremes = picture.state, picture.extremes
+    """Marks of a peak, of the minimum, if it is negative, and of the largest error, if it is shown; surfaces have none."""
+    state, extremes, peak = picture.state, picture.extremes, picture.peak
     marks: list[Mark] = []
-    if isinstance(extremes, Pending) or not state.view.marks or state.view.lobe_view or state.view.help_visible:
+    if not state.view.marks or state.view.lobe_view or state.view.help_visible:
         return marks
-    lowest = radiance(extremes.minimum, extremes.peak)
+    if peak is not None:
+        marks.append(Mark("peak", ORIGINAL, peak.direction, f"peak {value(peak.radiance, 0.0)}"))
+    if isinstance(extremes, Pending):
+        return marks
+    lowest = value(extremes.minimum, extremes.peak)
     if extremes.minimum < 0 and lowest != "0":
         marks.append(Mark("minimum", RECONSTRUCTION, np.array(extremes.minimum_direction), f"minimum {lowest}"))
     scale = picture.error_scale
     if scale is not None and scale.worth_showing:
-        value = percent(scale.largest) if scale.kind == "relative" else radiance(scale.largest, extremes.peak)
+        said = share(scale.largest) if scale.kind == "relative" else value(scale.largest, extremes.peak)
         sign = "+" if scale.kind == "signed" and scale.largest > 0 else ""
-        marks.append(Mark("largest", ERROR, scale.direction, f"largest {sign}{value}"))
+        marks.append(Mark("largest", ERROR, scale.direction, f"largest {sign}{said}"))
     return marks
 
 
@@ -75,71 +91,158 @@ def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[
     """The marks in sight, by name. A mark under an obstacle is left out, and no text of a mark touches an obstacle."""
     placed = {}
     for mark in marks_of(picture):
-        sphere = composition.spheres[mark.sphere]
-        right, up, towards = mark.direction @ picture.light_from_world @ picture.world_from_view
-        x, y = sphere.x + sphere.radius * right, sphere.y - sphere.radius * up
-        if sphere.clip.contains(x, y) and not any(other.contains(x, y) for other in obstacles):
-            placed[mark.name] = _place(mark.text, x, y, bool(towards < 0), sphere, composition, obstacles)
+        pane = composition.panes[mark.pane]
+        x, y, behind = pane.place(picture.light_from_world.T @ mark.direction, picture.world_from_view)
+        if behind and isinstance(pane, Sphere):
+            found = _outside(mark.text, x, y, pane, composition, obstacles)
+        elif pane.clip.contains(x, y) and not any(other.contains(x, y) for other in obstacles):
+            found = _on(mark.text, x, y, pane, composition, obstacles)
+        else:
+            found = None
+        if found is not None:
+            placed[mark.name] = found
     return placed
 
 
 def mark_layers(picture: Picture, composition: Composition, obstacles: Sequence[Box] = ()) -> tuple[Layer, ...]:
-    return tuple(mark.layer for mark in place_marks(picture, composition, obstacles).values())
+    return tuple(layer for mark in place_marks(picture, composition, obstacles).values() for layer in mark.layers)
 
 
-def _place(
-    text: str, x: float, y: float, behind: bool, sphere: Sphere, composition: Composition, obstacles: Sequence[Box]
-) -> Placed:
-    """Place a mark with the longest text that finds room in the cell, right or left of the ring, or with no text."""
-    size = max(round(composition.px(12)), MIN_TYPE)
-    scale = max(composition.scale, MIN_TYPE / 12)
-    half = round(scale * (RING + THICKNESS + SHADOW)) + 1
-    gap = round(4 * scale)
-    choices = [(words, left) for words in (f"{text}, behind" if behind else text, text) for left in (False, True)]
-    for words, leftwards in (*choices, ("", False)):
-        image, label = _image(words, size, scale, half, gap, behind, leftwards)
-        left = round(x - 0.5) - (image.shape[1] - half - 1 if leftwards else half)
-        top = round(y - 0.5) - image.shape[0] // 2
-        box = Box(left + label[0], top + label[1], left + label[2], top + label[3])
-        within = sphere.clip.left <= box.left - gap and box.right + gap <= sphere.clip.right
-        if not words or (within and not any(box.overlaps(other) for other in obstacles)):
-            break
-    return Placed(x, y, behind, box, Layer(image, left, top))
+def _on(text: str, x: float, y: float, pane: Pane, composition: Composition, obstacles: Sequence[Box]) -> Placed:
+    """A ring with its text at the right, or at the left, or without one where there is no room."""
+    radius = composition.px(COMPACT_RING if composition.compact else RING)
+    left, top = round(x - 0.5), round(y - 0.5)
+    ring = _ring(radius, composition.scale)
+    size, reach = _type(composition), radius + composition.px(GAP)
+    baseline = 0.5 + 0.36 * size
+    words = Text("", 0.0, baseline, text, size, INK, MEDIUM, composition.px(CASING_WIDTH))
+    for start in (0.5 + reach, 0.5 - reach - words.right):
+        moved = _moved(words, start, baseline)
+        box = _shifted(moved.box, left, top)
+        if pane.clip.left + 2 <= box.left and box.right + 2 <= pane.clip.right and _free(box, obstacles):
+            return Placed(x, y, False, box, _layers((ring, moved), left, top))
+    return Placed(x, y, False, None, _layers((ring,), left, top))
+
+
+def _outside(
+    text: str, x: float, y: float, sphere: Sphere, composition: Composition, obstacles: Sequence[Box]
+) -> Placed | None:
+    """A triangle outside the limb that points away from the sphere, and its text where there is room; None without any."""
+    angle = STEP * round(degrees(atan2(sphere.y - y, x - sphere.x)) / STEP)
+    away = sphere.radius + composition.px(AWAY + HEIGHT / 2)
+    middle = sphere.x + away * cos(radians(angle)), sphere.y - away * sin(radians(angle))
+    half = composition.px(BASE / 2)
+    room = _room(composition)
+    around = Box(middle[0] - half, middle[1] - half, middle[0] + half, middle[1] + half)
+    if not (_within(around, room) and sphere.clip.contains(*_limb(sphere, angle)) and _free(around, obstacles)):
+        return None
+    left, top = round(middle[0]), round(middle[1])
+    triangle = _layers((_triangle(angle, composition.scale),), left, top)
+    taken, size = (*obstacles, around), _type(composition)
+    cell = Box(max(room.left, sphere.clip.left), room.top, min(room.right, sphere.clip.right), room.bottom)
+    for within, words in product((NEAR, FARTHEST), ((text, ", behind"), (text,))):
+        pieces, long, high = _label(words, size)
+        for offset, x_, y_ in _beside(sphere, angle, middle, long, high, composition):
+            at = round(x_), round(y_)
+            box = Box(at[0], at[1], at[0] + long, at[1] + high)
+            apart = Box(box.left - 2, box.top - 2, box.right + 2, box.bottom + 2)
+            clear = abs(offset) <= within and not any(pane.touches(apart) for pane in composition.panes)
+            if clear and _within(box, cell) and _free(box, taken):
+                words_ = _layers(pieces, *at)
+                arc = _arc(sphere, angle, offset, composition) if offset else ()
+                return Placed(x, y, True, box, (*arc, *triangle, *words_))
+    return Placed(x, y, True, None, triangle)
+
+
+def _beside(
+    sphere: Sphere, angle: int, middle: tuple[float, float], long: float, high: float, composition: Composition
+) -> Iterator[tuple[int, float, float]]:
+    """Top left corners for a text, the best first: beside the triangle, over or under it, and farther along the limb.
+
+    Each after the degrees between the two, counterclockwise.
+    """
+    x, y = middle
+    gap = composition.px(HEIGHT / 2 + GAP)
+    yield 0, x + gap, y - high / 2
+    yield 0, x - gap - long, y - high / 2
+    yield 0, x - long / 2, y - gap - high if y < sphere.y else y + gap
+    reach = sphere.radius + composition.px(AWAY + 3)
+    for offset in range(STEP, FARTHEST + 1, STEP):
+        for turn in (offset, -offset):
+            right, down = cos(radians(angle + turn)), -sin(radians(angle + turn))
+            x, y = sphere.x + reach * right, sphere.y + reach * down
+            yield turn, x - (long if right < 0 else 0.0), y - (high if down < 0 else 0.0)
+
+
+def _arc(sphere: Sphere, angle: int, turn: int, composition: Composition) -> tuple[Layer, ...]:
+    """A line along the limb from a triangle to its text."""
+    radius = sphere.radius + composition.px(AWAY)
+    begin, end = (angle + part * (1 if turn > 0 else -1) for part in (SHORT, abs(turn)))
+    if abs(turn) <= SHORT:
+        return ()
+    turns = np.radians(np.linspace(begin, end, 2 + abs(turn) // 3))
+    points = tuple((sphere.x + radius * cos(t), sphere.y - radius * sin(t)) for t in turns)
+    return _layers((Curve(points, composition.px(1.0), GREY, FAR),), 0, 0)
+
+
+def _limb(sphere: Sphere, angle: float) -> tuple[float, float]:
+    return sphere.x + sphere.radius * cos(radians(angle)), sphere.y - sphere.radius * sin(radians(angle))
+
+
+def _room(composition: Composition) -> Box:
+    """The part of the frame that the panes stand in."""
+    line = composition.hairline
+    if line.height > line.width:
+        return Box(2, 2, line.left - 2, composition.height - 2)
+    return Box(2, 2, composition.width - 2, line.top - 2 if line.top > 0 else composition.height - 2)
+
+
+def _type(composition: Composition) -> float:
+    return composition.px(COMPACT_TYPE if composition.compact else TYPE)
 
 
 @lru_cache(maxsize=64)
-def _image(
-    text: str, size: int, scale: float, half: int, gap: int, behind: bool, leftwards: bool
-) -> tuple[np.ndarray, tuple[int, int, int, int]]:
-    """An image of a ring, in a square of 2 half + 1 pixels, with its text beside it; and the box of the text in the image."""
-    face = font(size)
-    side, length = 2 * half + 1, round(face.getlength(text))
-    height = max(side, size + 6) | 1
-    image = Image.new("RGBA", (side + gap + length + 2, height), (*DARK[:3], 0))
-    place = (image.width - side if leftwards else 0, (height - side) // 2)
-    shadow, ring = _ring(half, scale, behind)
-    image.paste((*DARK[:3], 255), place, shadow)
-    image.paste((GREY if behind else INK), place, ring)
-    draw = ImageDraw.Draw(image)
-    x, y = (1 if leftwards else side + gap), height / 2
-    draw.text((x, y), text, INK, face, anchor="lm", stroke_width=max(1, round(scale)), stroke_fill=DARK)
-    pixels = np.asarray(image)
-    pixels.flags.writeable = False
-    left, top, right, bottom = draw.textbbox((x, y), text, font=face, anchor="lm")
-    return pixels, (int(left), int(top), int(right), int(bottom))
+def _label(words: tuple[str, ...], size: float) -> tuple[tuple[Piece, ...], float, float]:
+    """The pieces of a text from the corner (0, 0) on, its length and its height: the value, and where it is."""
+    value_ = Text("", 0.0, 0.78 * size, words[0], size, INK, MEDIUM)
+    rest = tuple(Text("", value_.right, 0.78 * size, word, size, GREY) for word in words[1:])
+    return (value_, *rest), (rest[-1] if rest else value_).right, size
 
 
-def _ring(half: int, scale: float, broken: bool) -> tuple[Image.Image, Image.Image]:
-    """Coverage of the dark rim and of the ring, (2 half + 1) pixels square."""
-    side = FINE * (2 * half + 1)
-    right, up = np.meshgrid(*2 * [(np.arange(side) + 0.5) / FINE - half - 0.5])
-    off = np.abs(np.hypot(right, up) - RING * scale)
-    drawn = np.ones_like(off, dtype=bool)
-    if broken:
-        drawn = np.floor((np.arctan2(up, right) / (2 * np.pi) + 0.5) * 2 * DASHES) % 2 == 0
-    masks = ((off < THICKNESS * scale / 2 + rim) & drawn for rim in (SHADOW * scale, 0.0))
-    shadow, ring = (
-        Image.fromarray((255 * mask).astype(np.uint8)).resize((2 * half + 1,) * 2, Image.Resampling.BOX)
-        for mask in masks
-    )
-    return shadow, ring
+@lru_cache(maxsize=16)
+def _ring(radius: float, scale: float) -> Curve:
+    """A ring round the middle of the pixel at 0, 0."""
+    around = [2 * pi * n / 64 for n in range(65)]
+    points = tuple((0.5 + radius * cos(angle), 0.5 + radius * sin(angle)) for angle in around)
+    return Curve(points, THICKNESS * scale, INK, FAR, casing=CASING_WIDTH * scale)
+
+
+@lru_cache(maxsize=256)
+def _triangle(angle: int, scale: float) -> Curve:
+    """A triangle round 0, 0 that points to an angle, degrees counterclockwise from the right."""
+    corners = ((HEIGHT / 2, 0.0), (-HEIGHT / 2, BASE / 2), (-HEIGHT / 2, -BASE / 2))
+    c, s = cos(radians(angle)), sin(radians(angle))
+    points = tuple((scale * (along * c + across * s), scale * (across * c - along * s)) for along, across in corners)
+    return Curve(points, 0.0, INK, FAR, closed=True)
+
+
+def _layers(pieces: tuple[Piece, ...], left: int, top: int) -> tuple[Layer, ...]:
+    """The layer of pieces, moved: pieces around 0, 0 are drawn once."""
+    found = layer_of(pieces)
+    return () if found is None else (Layer(found.image, found.left + left, found.top + top),)
+
+
+def _moved(text: Text, x: float, baseline: float) -> Text:
+    return Text(text.name, x, baseline, text.text, text.size, text.ink, text.weight, text.casing)
+
+
+def _shifted(box: Box, x: float, y: float) -> Box:
+    return Box(box.left + x, box.top + y, box.right + x, box.bottom + y)
+
+
+def _free(box: Box, obstacles: Sequence[Box]) -> bool:
+    return not any(box.overlaps(other) for other in obstacles)
+
+
+def _within(box: Box, room: Box) -> bool:
+    return room.left <= box.left and room.top <= box.top and box.right <= room.right and box.bottom <= room.bottom

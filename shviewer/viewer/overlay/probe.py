@@ -36,15 +36,18 @@ class Probe:
         return theta_phi_degrees(self.direction)
 
 
+def direction_at(picture: Picture, composition: Composition, x: float, y: float) -> Array | None:
+    """The direction in the world (3,) that a pixel of the frame shows, in whichever pane; None beside the panes."""
+    found = (pane.direction(x, y, picture.world_from_view) for pane in composition.panes)
+    return next((direction for direction in found if direction is not None), None)
+
+
 def probe(picture: Picture, composition: Composition, x: float, y: float) -> Probe | None:
-    """Probe the pixel at x, y of the frame; None beside the spheres, and where surfaces are shown."""
-    places = [sphere.position(x, y) for sphere in composition.spheres]
-    place = next((found for found in places if found is not None), None)
-    if place is None or picture.state.view.lobe_view:
+    """Probe the pixel at x, y of the frame; None beside the panes, and where surfaces are shown."""
+    seen = direction_at(picture, composition, x, y)
+    if seen is None or picture.state.view.lobe_view:
         return None
-    right, up = place
-    view = np.array([right, up, np.sqrt(max(0.0, 1 - right * right - up * up))])
-    direction = picture.light_from_world @ picture.world_from_view @ view
+    direction = picture.light_from_world @ seen
     direction /= np.linalg.norm(direction)
     rest = picture.rest_at(direction[None])[0]
     return Probe(
@@ -55,8 +58,8 @@ def probe(picture: Picture, composition: Composition, x: float, y: float) -> Pro
     )
 
 
-def probe_layers(found: Probe, composition: Composition, x: float, y: float) -> tuple[Layer, ...]:
-    """Layers of the numbers beside the mouse, where they fit, and of a cross in the same direction on the other spheres."""
+def probe_layers(found: Probe, picture: Picture, composition: Composition, x: float, y: float) -> tuple[Layer, ...]:
+    """Layers of the numbers beside the mouse, where they fit, and of a cross in the same direction in the other panes."""
     image = _table(found, composition)
     height, width = image.shape[:2]
     away = round(composition.px(AWAY))
@@ -66,20 +69,18 @@ def probe_layers(found: Probe, composition: Composition, x: float, y: float) -> 
     if top + height > composition.height:
         top = round(y) - away - height
     left = min(max(left, 0), max(composition.width - width, 0))
-    return (*_dots(composition, x, y), Layer(image, left, max(top, 0)))
+    return (*_dots(found, picture, composition, x, y), Layer(image, left, max(top, 0)))
 
 
-def _dots(composition: Composition, x: float, y: float) -> list[Layer]:
-    places = [sphere.position(x, y) for sphere in composition.spheres]
-    place = next(found for found in places if found is not None)
+def _dots(found: Probe, picture: Picture, composition: Composition, x: float, y: float) -> list[Layer]:
     size = max(round(composition.px(DOT)), 2)
     image = np.zeros((2 * size + 1, 2 * size + 1, 4), dtype=np.uint8)
     image[size], image[:, size] = INK, INK  # a cross
-    layers = []
-    for sphere, under_mouse in zip(composition.spheres, places, strict=True):
-        at = sphere.x + place[0] * sphere.radius, sphere.y - place[1] * sphere.radius
-        if under_mouse is None and sphere.clip.contains(*at):
-            layers.append(Layer(image, round(at[0] - 0.5) - size, round(at[1] - 0.5) - size))
+    direction, layers = picture.light_from_world.T @ found.direction, []
+    for pane in composition.panes:
+        at = pane.place(direction, picture.world_from_view)
+        if not pane.clip.contains(x, y) and not at.behind and pane.clip.contains(at.x, at.y):
+            layers.append(Layer(image, round(at.x - 0.5) - size, round(at.y - 0.5) - size))
     return layers
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,15 +34,25 @@ def png_bytes(pixels: NDArray[np.uint8], text: str) -> bytes:
     return buffer.getvalue()
 
 
-def write_exr(path: Path, pixels: NDArray[np.float32], text: str) -> None:
-    """Write an EXR of float32 RGB with `text` in the attribute shviewer. OutputError if that fails or OpenEXR is missing."""
+def write_exr(
+    path: Path, pixels: NDArray[np.float32], text: str, layers: Mapping[str, NDArray[np.float32]] = MappingProxyType({})
+) -> None:
+    """Write an EXR of float32 RGB, and of layers by their names, with `text` in the attribute shviewer.
+
+    OutputError if that fails or OpenEXR is missing.
+    """
     try:
         import OpenEXR
     except ImportError as error:
         raise OutputError(f"{path}: writing EXR needs the package OpenEXR (pip install OpenEXR)") from error
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, "shviewer": text}
     buffer = io.BytesIO()
-    OpenEXR.File(header, {"RGB": pixels}).write(buffer)
+    channels = {"RGB": pixels} | {
+        f"{name}.{letter}": np.ascontiguousarray(layer[..., channel])
+        for name, layer in layers.items()
+        for channel, letter in enumerate("RGB")
+    }
+    OpenEXR.File(header, channels).write(buffer)
     write_atomically(path, buffer.getvalue())
 
 

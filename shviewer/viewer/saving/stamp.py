@@ -9,9 +9,10 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from shviewer.analysis.figures import Figures, Needs, Pending
 from shviewer.analysis.projections import project, sampling_of
@@ -22,8 +23,8 @@ from shviewer.lights.suns.sun import Sun
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.version import __version__
 from shviewer.viewer.colour_maps import map_of
-from shviewer.viewer.composition import Composition
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
+from shviewer.viewer.panes import Sphere, WholeSphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.file_marks import mark_of
 from shviewer.viewer.state import State
@@ -44,11 +45,27 @@ DIGITS = 9
 """Significant digits of the coefficients in a stamp: those of float32."""
 
 
-def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
+class Frame(Protocol):
+    """The size of a picture, and where in it the light is drawn."""
+
+    @property
+    def width(self) -> int: ...
+
+    @property
+    def height(self) -> int: ...
+
+    @property
+    def spheres(self) -> Sequence[Sphere]: ...
+
+    @property
+    def maps(self) -> Sequence[WholeSphere]: ...
+
+
+def metadata(picture: Picture, composition: Frame, opengl: str, *, overlay: bool = True) -> str:
     """Everything that made the picture, and the figures that are there, as one JSON text; equal arguments give equal text."""
     state, figures, projection = picture.state, picture.figures, picture.projection
     scale, beside = picture.error_scale, picture.beside
-    third = "error" if beside is None else "beside"
+    panes = "original", "reconstruction", "error" if beside is None else "beside"
     description: dict[str, Any] = {
         "schema": SCHEMA,
         "version": __version__,
@@ -106,7 +123,11 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "light_from_world": picture.light_from_world.tolist(),
         "spheres": {
             name: {"centre": [sphere.x, sphere.y], "radius": sphere.radius, "clip": list(sphere.clip)}
-            for name, sphere in zip(("original", "reconstruction", third), composition.spheres, strict=False)
+            for name, sphere in zip(panes, composition.spheres, strict=False)
+        },
+        "maps": {
+            name: {"zero": [pane.x, pane.y], "width": pane.width, "clip": list(pane.clip)}
+            for name, pane in zip(panes, composition.maps, strict=False)
         },
         "opengl": opengl,
         "figures": {

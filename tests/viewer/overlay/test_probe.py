@@ -89,7 +89,7 @@ def test_the_numbers_stay_in_the_frame_and_off_the_pixel_they_are_of(size: tuple
                 x, y = sphere.x + across * sphere.radius, sphere.y + down * sphere.radius
                 found = probe(shown, composition, x, y)
                 assert found is not None
-                *dots, table = probe_layers(found, composition, x, y)
+                *dots, table = probe_layers(found, shown, composition, x, y)
                 height, width = table.image.shape[:2]
                 assert table.left >= 0
                 assert table.left + width <= size[0]
