@@ -1,9 +1,9 @@
 """What the programs draw, in float32 and in their own axes, and how far that is from what it should be.
 
-Each draws a white sphere from six sides and flat tiles, lit as the guide says, by a file and some lines of code, and once
-more lit by a constant light; where it can, the lat-long image around the camera; and the coefficients that it makes of that
-image itself. What a pixel shows over what it shows under the constant light is the irradiance over pi: with a Lambertian
-material the pixel itself, and with one that takes something off, what it would be without that.
+Each draws a white sphere from six sides and flat tiles, lit as the guide says, by a file and some lines of code, and once more
+by a constant light whose one number is written by hand; where it can, the lat-long image around the camera; and the
+coefficients that it makes of that image itself. What a pixel shows over what it shows under the constant light is the irradiance
+over pi: with a Lambertian material the pixel itself, and with one that takes something off, what it would be without that.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ VIEWS = np.array(
 """Forward and up of the six cameras, as in browser/page.mjs."""
 TILES = 64
 CONSTANT = 0.5
-"""The radiance of the constant light."""
+"""The irradiance over pi of the constant light."""
 DISC = 0.97
 """How far from its middle the sphere is looked at: at its rim a pixel is several degrees wide."""
 PATIENCE = 600
@@ -50,9 +50,6 @@ Seen = tuple[Array, Array]
 def write_job(folder: Path) -> None:
     """What browser/page.mjs asks for: light.hdr, normals.f32, and for each program what the guide says: files and code."""
     (folder / "light.hdr").write_bytes(light_file())
-    (folder / "constant.toml").write_text(
-        f'[[lobe]]\nprofile = "constant"\nradiance = [{", ".join([str(CONSTANT)] * 3)}]\n'
-    )
     normals = np.random.default_rng(3).normal(size=(TILES, 3))
     (folder / "normals.f32").write_bytes(
         (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype("<f4").tobytes()
@@ -60,9 +57,10 @@ def write_job(folder: Path) -> None:
     for name, program in PROGRAMS.items():
         command, lines = program.typed
         (folder / f"{name}.js").write_text(lines, encoding="utf-8")
-        for light, file in (("light.hdr", f"{name}.json"), ("constant.toml", f"{name}-constant.json")):
-            meant = {"sky.hdr": str(folder / light), "sky.json": str(folder / file)}
-            assert main([*(meant.get(word, word) for word in command), "--force"]) == 0
+        meant = {"sky.hdr": str(folder / "light.hdr"), "sky.json": str(folder / f"{name}.json")}
+        assert main([*(meant.get(word, word) for word in command), "--force"]) == 0
+        constant = [[CONSTANT * program.one] * 3, *[[0.0] * 3] * 8]
+        (folder / f"{name}-constant.json").write_text(json.dumps({"coefficients": constant}), encoding="utf-8")
 
 
 def draw(folder: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import shutil
@@ -27,10 +28,14 @@ class Program:
     """Its name on npm."""
     convention: str
     """The name that `shviewer project --convention` is given."""
+    one: float
+    """Row 0 of a light of irradiance pi, after the program's own sources: what its numbers are measured by."""
     section: str = ""
     """Where the guide says what to type, if it is not what the program is called."""
     hand: int = 1
     """1 if its axes are right-handed, -1 if left-handed: which way is right in a picture of it."""
+    matt: bool = True
+    """Whether it has a material that shows the irradiance over pi and nothing else."""
     turned: str = ""
     """The axes in which it shows the light, if they are not the convention's."""
 
@@ -54,14 +59,18 @@ class Program:
         return str(package["version"])
 
 
+ROOT = math.sqrt(4 * math.pi)
+"""1 over Y(0,0)."""
 PROGRAMS = {
-    "three": Program("three.js", "three", "three"),
-    "babylon": Program("Babylon.js", "babylonjs", "babylon", hand=-1),
-    "babylon-right": Program("Babylon.js, right-handed", "babylonjs", "babylon", "Babylon.js", turned="-y+z-x"),
-    "gltf": Program("glTF in Babylon.js", "babylonjs-loaders", "gltf", hand=-1),
-    "filament": Program("Filament", "filament", "filament"),
-    "playcanvas": Program("PlayCanvas", "playcanvas", "playcanvas"),
-    "cesium": Program("Cesium", "cesium", "cesium"),
+    "three": Program("three.js", "three", "three", ROOT),
+    "babylon": Program("Babylon.js", "babylonjs", "babylon", ROOT, hand=-1),
+    "babylon-right": Program(
+        "Babylon.js, right-handed", "babylonjs", "babylon", ROOT, section="Babylon.js", turned="-y+z-x"
+    ),
+    "gltf": Program("glTF in Babylon.js", "babylonjs-loaders", "gltf", math.pi * ROOT, hand=-1),
+    "filament": Program("Filament", "filament", "filament", 1.0, matt=False),
+    "playcanvas": Program("PlayCanvas", "playcanvas", "playcanvas", 1.0),
+    "cesium": Program("Cesium", "cesium", "cesium", 1.0, matt=False),
 }
 """By the names of their files in browser/programs/."""
 

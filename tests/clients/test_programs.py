@@ -77,6 +77,16 @@ def test_a_lat_long_image_is_seen_where_its_coefficients_light(program: Drawn) -
 
 
 @programs
+def test_a_light_of_one_number_is_shown_as_that_number(program: Drawn) -> None:
+    """Absolutely: it is what the light is measured by. Filament and Cesium have no material that takes nothing off."""
+    middle, mean = program.white("constant")
+    if program.program.matt:
+        assert [middle, mean] == pytest.approx([1, 1], abs=FLAT)
+    else:
+        assert 0.97 < mean < middle < 1
+
+
+@programs
 def test_what_is_stated_of_a_program_is_measured_again(program: Drawn) -> None:
     """The guide's table. How far a sphere is off is geometry; below 1e-5 it is the last digits of float32."""
     found, said = stated(program), MEASURED[program.name]
