@@ -1,9 +1,11 @@
 """What the programs draw, in float32 and in their own axes, and how far that is from what it should be.
 
-Each draws a white sphere from six sides and flat tiles, lit as the guide says, by a file and some lines of code, and once more
-by a constant light whose one number is written by hand; where it can, the lat-long image around the camera; and the
-coefficients that it makes of that image itself. What a pixel shows over what it shows under the constant light is the irradiance
-over pi: with a Lambertian material the pixel itself, and with one that takes something off, what it would be without that.
+Each draws a white sphere from six sides and flat tiles, lit as the guide says, by a file and some lines of code; the tiles lit
+by the line that is in the file, too, and by the function of a module; and all once more by a constant light whose one number
+is written by hand. Where it can, it shows the lat-long image around the camera, and makes coefficients of the image itself.
+
+What a pixel shows over what it shows under the constant light is the irradiance over pi: with a Lambertian material the pixel
+itself, and with one that takes something off, what it would be without that.
 """
 
 from __future__ import annotations
@@ -56,9 +58,19 @@ def write_job(folder: Path) -> None:
     )
     for name, program in PROGRAMS.items():
         command, lines = program.typed
-        (folder / f"{name}.js").write_text(lines, encoding="utf-8")
+        (folder / f"{name}-guide.js").write_text(lines, encoding="utf-8")
         meant = {"sky.hdr": str(folder / "light.hdr"), "sky.json": str(folder / f"{name}.json")}
         assert main([*(meant.get(word, word) for word in command), "--force"]) == 0
+        module = [
+            "--bands",
+            "3",
+            "--convention",
+            program.convention,
+            "--force",
+            "-o",
+            str(folder / f"{name}-module.js"),
+        ]
+        assert main(["project", str(folder / "light.hdr"), *module]) == 0
         constant = [[CONSTANT * program.one] * 3, *[[0.0] * 3] * 8]
         (folder / f"{name}-constant.json").write_text(json.dumps({"coefficients": constant}), encoding="utf-8")
 
@@ -108,12 +120,12 @@ class Drawn:
         white = self.floats("constant-sphere")[:, ON_SPHERE] / CONSTANT
         return normals.reshape(-1, 3), (self.floats("light-sphere")[:, ON_SPHERE] / white).reshape(-1, 3)
 
-    def tiles(self) -> Seen:
-        """The same of the tiles, each in its middle."""
+    def tiles(self, what: str = "light") -> Seen:
+        """The same of the tiles, each in its middle. what: "use" or "module" if the lines of a file were typed."""
         normals = np.fromfile(self.folder / "normals.f32", "<f4").astype(np.float64).reshape(-1, 3)
         step = SIZE // round(TILES**0.5)
         at = np.arange(step // 2, SIZE, step)
-        shown = self.floats("light-tiles")[0] / self.floats("constant-tiles")[0] * CONSTANT
+        shown = self.floats(f"{what}-tiles")[0] / self.floats("constant-tiles")[0] * CONSTANT
         return normals, shown[np.ix_(at, at[:: self.program.hand])].reshape(-1, 3)
 
     def surroundings(self) -> Seen:

@@ -71,7 +71,15 @@ def read() -> dict[str, Measured]:
 
 
 def write(found: dict[str, Measured]) -> None:
-    FILE.write_text(json.dumps({name: asdict(row) for name, row in found.items()}, indent=2) + "\n", encoding="utf-8")
+    """With four digits: the others are the machine's."""
+    rows = {name: {key: _rounded(value) for key, value in asdict(row).items()} for name, row in found.items()}
+    FILE.write_text(json.dumps(rows, indent=2) + "\n", encoding="utf-8")
+
+
+def _rounded(value: object) -> object:
+    if isinstance(value, tuple):
+        return [_rounded(part) for part in value]
+    return float(f"{value:.4g}") if isinstance(value, float) else value
 
 
 MEASURED = read() if FILE.exists() else {}

@@ -67,6 +67,13 @@ def test_flat_tiles_show_the_numbers_themselves(program: Drawn) -> None:
     assert min(errors.values()) > OTHERWISE
 
 
+@programs
+@pytest.mark.parametrize("what", ["use", "module"])
+def test_the_line_in_the_file_and_the_function_of_a_module_do_what_the_guide_says(program: Drawn, what: str) -> None:
+    normals, colours = program.tiles(what)
+    assert off(colours, program.irradiance_over_pi(normals @ program.axes.matrix)) <= FLAT
+
+
 @pytest.mark.parametrize("name", [name for name in PROGRAMS if MEASURED[name].surroundings])
 def test_a_lat_long_image_is_seen_where_its_coefficients_light(program: Drawn) -> None:
     directions, colours = program.surroundings()

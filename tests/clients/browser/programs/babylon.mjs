@@ -24,6 +24,7 @@ export async function open(canvas, size, rightHanded = false) {
       scene.environmentTexture = cube;
       await typed({BABYLON, scene});
     },
+    around: (line) => `const texture = scene.environmentTexture; ${line}`,
     shape(given) {
       mesh?.dispose();
       mesh = new BABYLON.Mesh('body', scene);

@@ -28,6 +28,7 @@ export async function open(canvas, size) {
       lit = typed;
       model = null;
     },
+    around: (line) => `${line}; model.environmentMapManager.enabled = false`,
     shape(given) {
       geometry = given;
       model = null;

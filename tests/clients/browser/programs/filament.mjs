@@ -25,6 +25,7 @@ export async function open(canvas, size) {
   let body = null;
   return {
     light: (typed) => typed({Filament, engine, scene, lux: 1}),
+    around: (line) => `const light = ${line}; light.setIntensity(lux); scene.setIndirectLight(light)`,
     shape({positions, normals, indices}) {
       const count = positions.length / 3;
       const types = Filament['VertexBuffer$AttributeType'], names = Filament.VertexAttribute;

@@ -11,6 +11,11 @@ export async function open(canvas, size) {
   const images = Array.from({length: 6}, () => ({uri: black.toDataURL('image/png')}));
   return {
     shape, look, usual,
+    around: (line) => `
+      gltf.extensionsUsed = ['EXT_lights_image_based'];
+      gltf.extensions = {EXT_lights_image_based: {lights: [{intensity: 1, specularImages, specularImageSize}]}};
+      gltf.scenes[0].extensions = {EXT_lights_image_based: {light: 0}};
+      ${line}`,
     async light(typed) {
       const gltf = {asset: {version: '2.0'}, images, scene: 0, scenes: [{nodes: []}]};
       await typed({gltf, specularImages: [[0, 1, 2, 3, 4, 5]], specularImageSize: 2});

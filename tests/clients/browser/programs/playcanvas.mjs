@@ -35,6 +35,7 @@ export async function open(canvas, size) {
   };
   return {
     light: (typed) => typed({material}),
+    around: (line) => `${line}; material.update()`,
     shape({positions, normals, indices}) {
       const mesh = new pc.Mesh(device);
       mesh.setPositions(positions);

@@ -21,6 +21,7 @@ export async function open(canvas, size) {
       scene.remove(...scene.children.filter((child) => child.isLightProbe));
       await typed({THREE, scene});
     },
+    around: (line) => `const probe = new THREE.LightProbe(); scene.add(probe); ${line}`,
     shape({positions, normals, indices}) {
       mesh.geometry = new THREE.BufferGeometry();
       mesh.geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
