@@ -176,6 +176,7 @@ complete -c shviewer -n '__fish_seen_subcommand_from report' -l methods -r -d 'o
 complete -c shviewer -n '__fish_seen_subcommand_from report' -l seed -r -d 'seed of all random samples (default 0)'
 complete -c shviewer -n '__fish_seen_subcommand_from report' -l against -r -d 'say what is faster, slower, better or worse than in that report'
 complete -c shviewer -n '__fish_seen_subcommand_from report' -l peers -d 'also ducc0, shtns, pyshtools, sphericart and SciPy, if installed'
+complete -c shviewer -n '__fish_seen_subcommand_from report' -l moving -d 'also lights that turn, projected anew in every frame: what flickers, within 60 s'
 complete -c shviewer -n '__fish_seen_subcommand_from report' -l stability -d 'also the hard cases; exit 1 if one fails'
 complete -c shviewer -n '__fish_seen_subcommand_from report' -l no-shader -d 'nothing is drawn; needs no OpenGL'
 complete -c shviewer -n '__fish_seen_subcommand_from report' -l force -d 'replace a file even if shviewer did not write it'

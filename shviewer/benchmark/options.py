@@ -18,6 +18,9 @@ DEFAULT_BUDGET, QUICK_BUDGET = 120.0, 11.0
 STABILITY_SECONDS = 15.0
 """The time of the hard cases, which comes on top of the budget: all of them are always run."""
 
+MOVING_SECONDS = 60.0
+"""The most time of the section on lights that move, which comes on top of the budget, too."""
+
 SECTIONS = ("projection", "reconstruction", "end to end")
 SHARES = {"projection": 0.55, "reconstruction": 0.2, "end to end": 0.15, "peers": 0.1}
 
@@ -35,6 +38,8 @@ class Options:
     against: Path | None = None
     stability: bool = False
     peers: bool = False
+    moving: bool = False
+    """Whether lights that move are measured."""
     seed: int = 0
     methods: tuple[str, ...] = ()
     """Names of experiments.METHODS; empty for all. The best way, the reference, is always added."""
@@ -67,6 +72,8 @@ class Options:
             shares["projection"] += 1 - sum(shares.values())
         budget = min(self.budget, QUICK_BUDGET) if self.quick else self.budget
         seconds = {name: budget * share / sum(shares.values()) for name, share in shares.items()}
+        if self.moving:
+            seconds["moving"] = min(MOVING_SECONDS, budget)
         return seconds | ({"hard cases": STABILITY_SECONDS} if self.stability else {})
 
 

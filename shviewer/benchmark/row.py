@@ -22,7 +22,7 @@ class Row:
     """Times are wall milliseconds, errors relative L2 norms, memory is in MiB."""
 
     section: str
-    """"projection", "reconstruction", "end to end" or "peers"."""
+    """"projection", "reconstruction", "end to end", "peers" or "moving"."""
     method: str
     light: str = ""
     """Empty if no light is concerned."""

@@ -9,24 +9,25 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from shviewer.benchmark import encodings, end_to_end, experiments, projection_rows, roughness
+from shviewer.benchmark import encodings, end_to_end, experiments, moving, projection_rows, roughness
 from shviewer.benchmark.front import sentences, where_bands_stop_paying
 from shviewer.benchmark.hard_cases import table as stability
 from shviewer.benchmark.hard_cases.shader import renderer_or_reason
 from shviewer.benchmark.machine import machine_record, versions, yardstick
 from shviewer.benchmark.measured_lights import QUICK_TOLERANCES, TOLERANCES, MeasuredLight, find_measured_lights
 from shviewer.benchmark.options import Clock, Options, Progress
-from shviewer.benchmark.page import plots, writing
+from shviewer.benchmark.page import moving_page, plots, writing
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import YARDSTICK, Report, read_report
 from shviewer.benchmark.page.tables import lines_not_measured, rows_table
 from shviewer.benchmark.peers import INSTALL, peer_rows
 from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.row import Row, not_measured
 from shviewer.benchmark.timing import summarise
+from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.ending import at_the_end
 from shviewer.errors import UsageError
-from shviewer.lights.find import file_of
+from shviewer.lights.find import file_of, split_light
 from shviewer.lights.light import Light
 from shviewer.outputs import Replacing
 from shviewer.viewer.gl.renderer import Renderer
@@ -100,8 +101,10 @@ def write_report(
     """
     options = options or Options()
     before = None if options.against is None else read_report(options.against)
-    writing.make_folder(folder)
     chosen = list(lights) or list(experiments.QUICK_LIGHTS if options.quick else experiments.LIGHTS)
+    if options.moving:
+        _check_moving(chosen)
+    writing.make_folder(folder)
     found = find_measured_lights(chosen, QUICK_TOLERANCES if options.quick else TOLERANCES, options.reading)
     inputs = [*map(file_of, chosen), options.against]
     replacing = Replacing(tuple(path for path in inputs if path), options.force)
@@ -126,6 +129,15 @@ def write_report(
     run.clock.finish()
     count = sum(row.measured for row in report.rows)
     return Summary(folder, (*writing.FILES, *run.page.plots), count, _summary(run), run.stability_failed)
+
+
+def _check_moving(lights: Sequence[str | Light]) -> None:
+    """UsageError for a light of given coefficients: nothing of it is projected, however it moves."""
+    for light in lights:
+        is_file = isinstance(light, str) and split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES
+        if is_file or (not isinstance(light, str) and light.about.n_bands is not None):
+            name = light if isinstance(light, str) else light.name
+            raise UsageError(f"{name}: --moving projects a light in every frame; coefficients are projected already")
 
 
 def _light_record(measured: MeasuredLight) -> dict[str, object]:
@@ -161,6 +173,7 @@ def _measure_sections(run: Run) -> None:
             run.report.renderer = drawing.version
         run.measure("reconstruction", _reconstruction, drawing)
         run.measure("end to end", _end_to_end, drawing)
+    run.measure("moving", _moving)
     run.measure("hard cases", _stability)
 
 
@@ -237,6 +250,23 @@ def _end_to_end(run: Run, drawing: Renderer | str) -> None:
     rows = [row for row in run.report.rows if row.section == "end to end"]
     lines = ["What a user waits for.", "", *rows_table(rows, ("note",))]
     run.page.hosted["End to end"] = "\n".join([*lines, "", *(f"- Without {line}" for line in missing)])
+
+
+def _moving(run: Run) -> None:
+    seed, found = run.options.seed, list[moving.Sampled]()
+    exact = {measured.name: moving.turned_exactly(measured) for measured in run.page.lights}
+    stated = [*moving.noise(seed), *moving.sun(seed)]
+    rounds = [(one, count, way) for one in run.page.lights for count in moving.SAMPLES for way in moving.WAYS]
+    for number, (measured, count, way) in enumerate(rounds):
+        if run.clock.left() < 0:
+            left = [(one.name, way, count) for one, count, way in rounds[number:]]
+            run.add([not_measured(moving.SECTION, way, name, None, count) for name, way, count in left])
+            break
+        run.clock.tell(f"{measured.name}, {way}, {count} samples")
+        found += moving.sampled(measured, way, count, seed)
+    run.add([one.row for one in found])
+    run.report.extra[moving.SECTION] = moving.as_extra(exact, found, stated)
+    run.page.hosted[moving_page.TITLE] = moving_page.as_markdown(exact, found, stated)
 
 
 def _stability(run: Run) -> None:

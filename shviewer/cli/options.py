@@ -220,6 +220,11 @@ def report_parser() -> OneLineParser:
     parser.add_argument(
         "--peers", action="store_true", help="also ducc0, shtns, pyshtools, sphericart and SciPy, if installed"
     )
+    parser.add_argument(
+        "--moving",
+        action="store_true",
+        help="also lights that turn, projected anew in every frame: what flickers, within 60 s",
+    )
     parser.add_argument("--stability", action="store_true", help="also the hard cases; exit 1 if one fails")
     parser.add_argument("--no-shader", action="store_true", help="nothing is drawn; needs no OpenGL")
     add_force(parser)

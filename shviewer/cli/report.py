@@ -22,6 +22,7 @@ def run(options: argparse.Namespace) -> int:
         against=options.against,
         stability=options.stability,
         peers=options.peers,
+        moving=options.moving,
         seed=options.seed,
         methods=tuple(options.methods.split(",")) if options.methods else (),
         reading=reading_from(options),

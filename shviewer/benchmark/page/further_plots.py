@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from shviewer.benchmark.page.plot_marks import DASHES, LOOKS, log_axes, shorten
+from shviewer.benchmark.page.moving_page import curves
+from shviewer.benchmark.page.plot_marks import DASHES, LOOKS, Curve, draw_curves, log_axes, padded, shorten
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -14,7 +15,10 @@ if TYPE_CHECKING:
 ROUGHNESS_BANDS = "roughness-bands"
 """Stem of the files of the plot of bands against roughness."""
 
-STEMS = (ROUGHNESS_BANDS,)
+MOVING = "moving-bands"
+"""That of the error of a light that turns."""
+
+STEMS = (ROUGHNESS_BANDS, MOVING)
 TICKS = (1, 2, 3, 5, 9, 16, 32, 64, 128)
 PLOTTED = "0.05"
 
@@ -24,6 +28,8 @@ def further_plots(extra: Mapping[str, Any]) -> dict[str, Callable[[Figure], None
     plots: dict[str, Callable[[Figure], None]] = {}
     if found := extra.get("roughness"):
         plots[ROUGHNESS_BANDS] = partial(draw_staircases, roughness=found["roughness"], counts=found["fewest_bands"])
+    if found := extra.get("moving", {}).get("sampled"):
+        plots[MOVING] = partial(draw_moving, samples=found)
     return plots
 
 
@@ -42,4 +48,16 @@ def draw_staircases(figure: Figure, roughness: list[float], counts: dict[str, di
         shift = 1 + 0.012 * (look - len(counts) / 2)  # counts that are equal are seen beside each other
         line = {"color": LOOKS[look % len(LOOKS)][0], "linestyle": DASHES[look % len(DASHES)]}
         axes.step(roughness, [shift * value for value in values], where="post", label=shorten(name), **line)
+    figure.legend(loc="outside lower left", ncols=2)
+
+
+def draw_moving(figure: Figure, samples: list[dict[str, Any]]) -> None:
+    """Draw the RMS error of a light that turns against bands, for each way to sample its frames; beyond 100 % it is noise."""
+    found = [Curve(name, tuple(points), look) for look, (name, points) in enumerate(curves(samples).items())]
+    x, y = padded(n for n, _ in found[0].points), padded(error for curve in found for _, error in curve.points)
+    axes = log_axes(figure, f"{shorten(samples[0]['light'])}: RMS over frames", x, y)
+    axes.set_xticks([n for n, _ in found[0].points], [f"{n:g}" for n, _ in found[0].points])
+    axes.set_xlabel("bands")
+    axes.axhline(100, color="0.45", linewidth=0.7, linestyle=(0, (1, 2)), zorder=1)
+    draw_curves(axes, found)
     figure.legend(loc="outside lower left", ncols=2)
