@@ -29,31 +29,31 @@ class Mutant(NamedTuple):
 
 BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
     "harmonics/basis.py": (
-        ("recurrence without (l-m)", "((2 * l - 1) / (l + np.arange(l)))", "((2 * l - 1) / (l + 0 * np.arange(l)))"),
+        ("recurrence without (l-m)", "(l + np.arange(len(ratio)))", "(l + 0 * np.arange(len(ratio)))"),
         ("wrong double factorial", "-np.sqrt((2 * m + 1) / (2 * m))", "-np.sqrt((2 * m - 1) / (2 * m))"),
         (
             "missing sin^m",
-            "_azimuth_powers(south * x, south * y, n_bands)",
-            "_azimuth_powers(*(south * np.array([x, y]) / np.maximum(np.hypot(x, y), 1e-300)), n_bands)",
+            "np.multiply(x, south, out=real[1])",
+            "np.divide(x * south, np.maximum(np.hypot(x, y), 1e-300), out=real[1])",
         ),
         (
             "K of signed m",
-            "np.multiply(row[:0:-1], sines[l:0:-1]",
-            "np.multiply(row[:0:-1] / norms[l, l:0:-1, None] ** 2, sines[l:0:-1]",
+            "np.multiply(row[:0:-1], imaginary[l:0:-1]",
+            "np.multiply(row[:0:-1] / norms[l, l:0:-1, None] ** 2, imaginary[l:0:-1]",
         ),
         ("no sqrt(2)", "(np.sqrt(2) if m else 1)", "1"),
         ("no 2l+1", "np.sqrt((2 * l + 1) * (l + m) / ((2 * l - 1) * (l - m)))", "np.sqrt((l + m) / (l - m))"),
         (
             "last band dropped",
-            "    for l in range(n_bands):\n        if l:",
-            "    table[:] = 0\n    for l in range(n_bands - 1):\n        if l:",
+            "        for l in range(self.n_bands):\n",
+            "        table[:] = 0\n        for l in range(self.n_bands - 1):\n",
         ),
         ("no Condon-Shortley phase", "sectoral *= -np.sqrt", "sectoral *= np.sqrt"),
-        ("sign of the sine", "x * imaginary[m - 1] + y * real[m - 1]", "x * imaginary[m - 1] - y * real[m - 1]"),
+        ("sign of the sine", "imaginary[l] += turned[0]", "imaginary[l] -= turned[0]"),
         (
             "m and -m swapped",
-            "    return real, imaginary\n",
-            "    return imaginary + (np.arange(count) == 0)[:, None], real\n",
+            "np.multiply(row, real[: l + 1], out=",
+            "np.multiply(row, np.concatenate([real[:1], imaginary[1 : l + 1]]), out=",
         ),
     ),
     "harmonics/metrics.py": (

@@ -27,6 +27,8 @@ from math import isqrt
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from shviewer.harmonics.workspace import borrowed
+
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
@@ -35,6 +37,12 @@ MAX_BANDS = 1400
 
 MAX_VALUES = 2**28
 """The most basis values one call may return (2 GiB); callers evaluate larger sets in blocks."""
+
+BLOCK_VALUES = 32768
+"""Values of one kind, directions times bands, that are worked on at a time, so that they stay in the cache."""
+
+UNIT = 1e-15
+"""Directions are taken as they are where x^2 + y^2 + z^2 differs from 1 by less: by rounding alone."""
 
 
 def index(l: int, m: int) -> int:
@@ -117,50 +125,86 @@ def evaluate_basis(directions: ArrayLike, n_bands: int) -> Array:
     shaders/sh.glsl runs the same recurrence in float32.
     """
     check_bands(n_bands)
-    unit = normalise(directions)
-    points = unit.reshape(-1, 3)
+    vectors = np.asarray(directions, dtype=np.float64)
+    if vectors.ndim == 0 or vectors.shape[-1] != 3:
+        vectors = normalise(vectors)  # which says what is wrong
+    points = vectors.reshape(-1, 3)
     if points.shape[0] * n_bands**2 > MAX_VALUES:
         raise ValueError(
             f"{points.shape[0]} directions x {n_bands**2} functions: at most {MAX_VALUES} values at once; use blocks"
         )
     table = np.empty((n_bands**2, len(points)))
-    block = max(128, 32768 // n_bands)  # keeps the working rows of one block in the cache
-    for start in range(0, len(points), block):
-        x, y, z = points[start : start + block].T
-        _fill(table[:, start : start + block], x, y, z, n_bands)
-    return table.T.reshape(*unit.shape[:-1], n_bands**2)
+    size = max(1, min(len(points), max(128, BLOCK_VALUES // n_bands)))
+    with borrowed(_Rows, n_bands, size, keep=n_bands * size <= BLOCK_VALUES) as rows:
+        for start in range(0, len(points), size):
+            block = slice(start, start + size)
+            if not rows.take(points[block]):
+                points = normalise(vectors).reshape(-1, 3)
+                rows.take(points[block])
+            rows.fill(table[:, block])
+    return table.T.reshape(*vectors.shape[:-1], n_bands**2)
 
 
-def _fill(table: Array, x: Array, y: Array, z: Array, n_bands: int) -> None:
-    """Write Y(l, m) at index l(l+1) + m of `table`, shape (n_bands**2, k), for k unit directions."""
-    norms = normalisation(n_bands)
-    south = np.where(z < 0, -1.0, 1.0)
-    one_minus_z = (x * x + y * y) / (1 + np.abs(z))
-    cosines, sines = _azimuth_powers(south * x, south * y, n_bands)
-    ratio = np.ones((n_bands, len(x)))
-    difference = np.zeros((n_bands, len(x)))
-    scratch = np.empty((n_bands, len(x)))
-    for l in range(n_bands):
-        if l:
-            d, g, work = difference[:l], ratio[:l], scratch[:l]
-            np.multiply(one_minus_z, g, out=work)
-            np.subtract(d, work, out=work)
-            work *= ((2 * l - 1) / (l + np.arange(l)))[:, None]
-            np.subtract(work, d, out=d)
-            g += d
-        row = scratch[: l + 1]
-        np.multiply(ratio[: l + 1], norms[l, : l + 1, None], out=row)
-        if l % 2:
-            row *= south
-        np.multiply(row, cosines[: l + 1], out=table[l * l + l : (l + 1) ** 2])
-        np.multiply(row[:0:-1], sines[l:0:-1], out=table[l * l : l * l + l])
+class _Rows:
+    """The memory to evaluate the basis in a block of directions: rows of values, small enough for the cache."""
 
+    def __init__(self, n_bands: int, block: int) -> None:
+        self.n_bands = n_bands
+        self.points, self.squares = np.empty((2, 3, block))
+        self.azimuth = np.empty((2, n_bands, block))  # {Re, Im} (x + iy)^m
+        self.ratio, self.difference, self.scratch = np.empty((3, n_bands, block))  # G and D of each m
+        self.south, self.rest, self.height = np.empty((3, block))
+        self.count = 0
 
-def _azimuth_powers(x: Array, y: Array, count: int) -> tuple[Array, Array]:
-    """Real and imaginary part of (x + iy)^m for m = 0 to count-1, each of shape (count, k)."""
-    real, imaginary = np.empty((count, len(x))), np.empty((count, len(x)))
-    real[0], imaginary[0] = 1, 0
-    for m in range(1, count):
-        real[m] = x * real[m - 1] - y * imaginary[m - 1]
-        imaginary[m] = x * imaginary[m - 1] + y * real[m - 1]
-    return real, imaginary
+    def take(self, directions: Array) -> bool:
+        """Take unit directions (k, 3), k <= block. False if some are not unit to rounding, or not finite."""
+        self.count = len(directions)
+        points, squares = self.points[:, : self.count], self.squares[:, : self.count]
+        points[...] = directions.T
+        with np.errstate(over="ignore"):
+            np.multiply(points, points, out=squares)
+        squares[0] += squares[1]
+        squares[2] += squares[0]
+        return self.count == 0 or bool(squares[2].min() > 1 - UNIT and squares[2].max() < 1 + UNIT)  # NaN is not
+
+    def fill(self, table: Array) -> None:
+        """Write Y(l, m) at index l(l+1) + m of `table`, shape (n_bands**2, k), for the directions taken."""
+        x, y, z = self.points[:, : self.count]
+        south, rest, height = (row[: self.count] for row in (self.south, self.rest, self.height))
+        np.copysign(1.0, z, out=south)
+        np.abs(z, out=height)
+        np.divide(self.squares[0, : self.count], np.add(height, 1, out=rest), out=rest)  # 1 - |z|
+        real, imaginary = azimuth = self.azimuth[..., : self.count]
+        ratio, difference, scratch = (a[:, : self.count] for a in (self.ratio, self.difference, self.scratch))
+        norms = normalisation(self.n_bands)
+        real[0], imaginary[0] = 1, 0
+        for l in range(self.n_bands):
+            if l == 1:
+                np.multiply(x, south, out=real[1])
+                np.multiply(y, south, out=imaginary[1])
+            elif l:
+                np.multiply(azimuth[:, l - 1], real[1], out=azimuth[:, l])
+                turned = np.multiply(azimuth[:, l - 1], imaginary[1], out=scratch[:2])
+                real[l] -= turned[1]
+                imaginary[l] += turned[0]
+                self._step(l, ratio[: l - 1], difference[: l - 1], scratch[: l - 1], rest)
+            row = scratch[: l + 1]
+            np.multiply(ratio[: max(l - 1, 0)], norms[l, : max(l - 1, 0), None], out=row[: max(l - 1, 0)])
+            if l:
+                ratio[l - 1], difference[l - 1] = height, 0
+                difference[l - 1] -= rest
+                np.multiply(height, norms[l, l - 1], out=row[l - 1])
+            row[l] = norms[l, l]
+            if l % 2:
+                row *= south
+            np.multiply(row, real[: l + 1], out=table[l * l + l : (l + 1) ** 2])
+            np.multiply(row[:0:-1], imaginary[l:0:-1], out=table[l * l : l * l + l])
+
+    @staticmethod
+    def _step(l: int, ratio: Array, difference: Array, scratch: Array, rest: Array) -> None:
+        """G(l) and D(l) from G(l-1) and D(l-1), for m = 0 to l - 2."""
+        np.multiply(rest, ratio, out=scratch)
+        np.subtract(difference, scratch, out=scratch)
+        scratch *= ((2 * l - 1) / (l + np.arange(len(ratio))))[:, None]
+        np.subtract(scratch, difference, out=difference)
+        ratio += difference

@@ -4,7 +4,8 @@ Every Y(l, m) is one of 2n functions of the azimuth times a combination of n fun
 the products of the two: one matrix product, (2n, block) by (block, 3n) for three channels. The dependence on l is a small
 table, applied once at the end. There are two pairs of functions:
 
-    few bands   {Re, Im} (x + iy)^m and z^k: the cheapest, but the sums of powers lose a third of a digit per band;
+    few bands   {Re, Im} (x + iy)^m and z^k (scattered_powers.py): the cheapest, but the sums of powers lose a third of a digit
+                per band;
     more        {cos, sin}(m phi), for odd m times sin(theta), and T(k)(z) = cos(k theta), into which theta_series.py expands
                 the Legendre functions. No value is much larger than 1, so that nothing cancels.
 
@@ -15,19 +16,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Protocol
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, check_bands, evaluate_basis, normalisation, normalise
+from shviewer.harmonics.basis import Array, check_bands, evaluate_basis, normalise
 from shviewer.harmonics.quadrature import DirectionSet, Radiance
+from shviewer.harmonics.scattered_powers import NOT_UNIT, POWER_BANDS, PowerSums
 from shviewer.harmonics.theta_series import degrees_and_orders, theta_series
+from shviewer.harmonics.workspace import borrowed
 from shviewer.progress import tell
 
 Values = Callable[[slice], tuple[Array, Array | float]]
 """A slice of the samples -> their values (k, 3) and weights, (k,) or one for all."""
-
-POWER_BANDS = 6
-"""The most bands for which powers are used; the magnitudes in their table add up to 18, for an error of 1e-14."""
 
 WAVE_BANDS = 128
 """The most bands with a table, which has n**3 values; with more, the basis is evaluated."""
@@ -41,8 +42,8 @@ BASIS_VALUES = 2**21
 SMALL_PRODUCT, SLICED_BANDS = 900_000, 20
 """Multiplications in one product: below a million, OpenBLAS reads operands in place, which pays below 20 bands."""
 
-NOT_UNIT = 1e-14
-"""Directions are normalised if x^2 + y^2 + z^2 is further from 1 than this."""
+KEPT_VALUES = 100_000
+"""Samples times bands up to which the memory of a projection, up to 7 MiB, is kept for the next: fetching it takes as long."""
 
 AT_A_POLE = 1e-200
 """Where x^2 + y^2 is less than this it has lost its digits, and the azimuth cannot matter."""
@@ -68,22 +69,40 @@ def _project(directions: Array, values: Values, n_bands: int) -> Array:
     count = len(directions)
     block = max(1, -(-count // max(1, -(-count // BLOCK))))  # blocks of one size
     blocks = (slice(start, min(start + block, count)) for start in range(0, count, block))
-    sums = _Products(n_bands, block) if n_bands <= WAVE_BANDS else _BasisSums(n_bands)
-    for rows in blocks:
-        tell("projecting", rows.start / count)
-        sums.add(directions[rows], *values(rows))
-    return sums.coefficients()
+    make: Callable[[int, int], _Sums] = (
+        PowerSums if n_bands <= POWER_BANDS else _WaveSums if n_bands <= WAVE_BANDS else _BasisSums
+    )
+    with borrowed(make, n_bands, block, keep=block * n_bands <= KEPT_VALUES) as sums:
+        sums.restart()
+        for rows in blocks:
+            tell("projecting", rows.start / count)
+            sums.add(directions[rows], *values(rows))
+        return sums.coefficients()
+
+
+class _Sums(Protocol):
+    """Sums over samples against all bands, and the memory to add a block of samples."""
+
+    def restart(self) -> None:
+        """Forget all samples."""
+
+    def add(self, directions: Array, values: Array, weights: Array | float) -> None:
+        """Add samples: directions (k, 3), values (k, 3), weights (k,), not more than a block of them."""
+
+    def coefficients(self) -> Array:
+        """Coefficients (n_bands**2, 3) of all samples added."""
 
 
 class _BasisSums:
-    """Sums over samples of value * Y, for more bands than `_Products` has tables for."""
+    """Sums over samples of value * Y, for more bands than `_WaveSums` has tables for."""
 
-    def __init__(self, n_bands: int) -> None:
+    def __init__(self, n_bands: int, block: int) -> None:
         self.n_bands = n_bands
-        self.sums = np.zeros((n_bands**2, 3))
+
+    def restart(self) -> None:
+        self.sums = np.zeros((self.n_bands**2, 3))
 
     def add(self, directions: Array, values: Array, weights: Array | float) -> None:
-        """Add samples: directions (k, 3), values (k, 3), weights (k,)."""
         weighted = np.multiply(values.T, weights).T
         step = max(64, BASIS_VALUES // self.n_bands**2)
         for start in range(0, len(directions), step):
@@ -91,11 +110,10 @@ class _BasisSums:
             self.sums += evaluate_basis(directions[rows], self.n_bands).T @ weighted[rows]
 
     def coefficients(self) -> Array:
-        """Coefficients (n_bands**2, 3) of all samples added."""
         return self.sums
 
 
-class _Products:
+class _WaveSums:
     """Sums over samples of value * function of the azimuth * function of z, and the memory to add a block of samples."""
 
     def __init__(self, n_bands: int, block: int) -> None:
@@ -104,18 +122,18 @@ class _Products:
         length = -(-block // (8 * self.slices)) * 8 * self.slices
         self.points = np.empty((3, length))
         self.squares = np.empty((3, length))
-        self.azimuth = np.empty((2, n_bands, length))  # {cos, sin} or {Re, Im}, m
+        self.azimuth = np.empty((2, n_bands, length))  # {cos, sin}, m
         self.azimuth[0, 0], self.azimuth[1, 0] = 1, 0
         self.weighted = np.empty((n_bands, 3, length))  # function k of z times each channel
         self.scratch = np.empty((3, length))
-        self.values = self.weighted[:1]  # k = 0
-        if n_bands > POWER_BANDS:
-            self.values = np.empty((2, 3, length))  # as they are, and with the sign of z
-            self.waves = np.empty((n_bands, length))
+        self.values = np.empty((2, 3, length))  # as they are, and with the sign of z
+        self.waves = np.empty((n_bands, length))
         self.sums = np.zeros((2 * n_bands, 3 * n_bands))
 
+    def restart(self) -> None:
+        self.sums[:] = 0
+
     def add(self, directions: Array, values: Array, weights: Array | float) -> None:
-        """Add samples: directions (k, 3), values (k, 3), weights (k,), not more than a block of them."""
         self.points[:, : len(directions)] = directions.T
         np.multiply(values.T, weights, out=self.values[0, :, : len(directions)])
         self.points[:, len(directions) :] = [[0], [0], [1]]
@@ -123,20 +141,15 @@ class _Products:
         if not self._square():
             self.points[...] = normalise(self.points.T).T
             self._square()
-        if self.n_bands > POWER_BANDS:
-            self._fill_waves()
-        else:
-            self._fill_powers()
+        self._fill_waves()
         left = self.azimuth.reshape(2 * self.n_bands, self.slices, -1).transpose(1, 0, 2)
         right = self.weighted.reshape(3 * self.n_bands, self.slices, -1).transpose(1, 2, 0)
         self.sums += np.matmul(left, right).sum(axis=0)
 
     def coefficients(self) -> Array:
-        """Coefficients (n_bands**2, 3) of all samples added."""
         n = self.n_bands
-        table = _wave_table(n) if n > POWER_BANDS else _power_table(n)
         sums = self.sums.reshape(2, n, n, 3).transpose(1, 2, 0, 3).reshape(n, n, 6)
-        by_order = np.matmul(table, sums).reshape(n, n, 2, 3)
+        by_order = np.matmul(_wave_table(n), sums).reshape(n, n, 2, 3)
         degree, order, sine = degrees_and_orders(n)
         return np.asarray(by_order[order, degree, sine])
 
@@ -147,21 +160,6 @@ class _Products:
         np.add(self.squares[0], self.squares[1], out=self.scratch[0])
         norms = np.add(self.scratch[0], self.squares[2], out=self.scratch[1])
         return bool(norms.min() > 1 - NOT_UNIT and norms.max() < 1 + NOT_UNIT)  # NaN is not
-
-    def _fill_powers(self) -> None:
-        x, y, z = self.points
-        powers = self.azimuth  # {Re, Im} (x + iy)^m
-        powers[:, 1:2] = self.points[:2, None][:, : self.n_bands - 1]
-        if self.n_bands > 2:
-            np.subtract(self.squares[0], self.squares[1], out=powers[0, 2])
-            np.multiply(np.multiply(2, x, out=powers[1, 2]), y, out=powers[1, 2])
-        for m in range(3, self.n_bands):
-            np.multiply(powers[:, m - 1], x, out=powers[:, m])
-            turned = np.multiply(powers[:, m - 1], y, out=self.scratch[:2])
-            powers[0, m] -= turned[1]
-            powers[1, m] += turned[0]
-        for k in range(1, self.n_bands):
-            np.multiply(self.weighted[k - 1], z, out=self.weighted[k])
 
     def _fill_waves(self) -> None:
         """Fill with waves. T(k)(|z|) serves both hemispheres: for odd k the values take the sign of z."""
@@ -216,22 +214,6 @@ class _Products:
             new -= waves[b - 1 :: -1][:count]
             b *= 2
         np.subtract(1, waves, out=waves)
-
-
-@lru_cache(maxsize=8)
-def _power_table(n_bands: int) -> Array:
-    """The coefficient of z^k in Y(l, m) over {Re, Im} (x + iy)^m, (m, l, k): the recurrence of basis.py, in powers."""
-    table = np.zeros((n_bands, n_bands, n_bands))
-    for m in range(n_bands):
-        table[m, m, 0] = 1
-        for l in range(m + 1, n_bands):
-            q = (2 * l - 1) / (l + m)
-            table[m, l, 1:] = q * table[m, l - 1, :-1]
-            if l > m + 1:
-                table[m, l] -= (q - 1) * table[m, l - 2]
-    table *= normalisation(n_bands).T[..., None]
-    table.flags.writeable = False
-    return table
 
 
 @lru_cache(maxsize=8)

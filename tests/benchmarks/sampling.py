@@ -3,9 +3,11 @@
 Every figure is the CPU time of one thread, the least of interleaved runs, since other programs can only add to it. Both start
 from directions, weights and the values of three channels and end with the coefficients. sphericart is run twice: on all
 samples at once, and in blocks that fit the cache; the ratio is to the faster of the two. "ns" is per sample and function.
+The basis alone is beside sphericart's own, and beside the bound of numpy: every value written once, by one multiplication.
 
-Goals: a ratio of at most 1 to sphericart on all samples for 3 to 32 bands; at most 200 MiB beside a million samples at 16
-bands; 10 000 evaluations projected by Gauss-Legendre within 0.5 ms up to 32 bands, not counting the light itself.
+Goals: a ratio of at most 1 to sphericart for 3 to 32 bands and 10 000 to a million samples, and of 1.5 for the basis alone; at
+most 200 MiB beside a million samples at 16 bands; 10 000 evaluations projected by Gauss-Legendre within 0.5 ms up to 32 bands,
+not counting the light itself.
 
 sphericart is one of the extra `bench` (pip install -e '.[bench]'); without it only ours is shown.
 """
@@ -15,6 +17,7 @@ from __future__ import annotations
 import os
 import tracemalloc
 from collections.abc import Callable
+from functools import partial
 
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = os.environ["RAYON_NUM_THREADS"] = "1"
 os.environ.pop("OPENBLAS_CORETYPE", None)  # may be set to slow numpy down; read when numpy is first imported
@@ -22,12 +25,17 @@ os.environ.pop("OPENBLAS_CORETYPE", None)  # may be set to slow numpy down; read
 import numpy as np
 from measure import cpu_milliseconds, machine
 
+from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import DirectionSet, Radiance, gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
 
 BANDS = (3, 4, 5, 6, 7, 8, 9, 12, 16, 24, 32)
-SAMPLES, REPEATS = 100_000, 15
+SAMPLES = {10_000: 60, 100_000: 15, 1_000_000: 3}
+"""How many, and how often each is run."""
+
+MOST_VALUES = 2**26
+"""The largest basis that is held: 512 MiB."""
 PEER_BLOCK = 2**18
 """Basis values of one block, 2 MiB: about the fastest."""
 
@@ -71,29 +79,41 @@ def sphericart_peer(samples: DirectionSet, values: np.ndarray, n_bands: int, blo
     return project
 
 
-def against_sphericart() -> None:
-    samples = jittered(SAMPLES, 0)
+def against_sphericart(count: int, repeats: int) -> None:
+    samples = jittered(count, 0)
     values = np.random.default_rng(0).random((len(samples.weights), 3))
-    print(f"\n{len(values)} samples; least of {REPEATS}")
-    print("bands   ours ms     ns   sphericart ms     ns   in blocks ms     ns   ratio to: all at once, the faster")
+    print(f"\n{len(values)} samples; least of {repeats}")
+    print(
+        "bands   ours ms     ns   sphericart ms     ns   in blocks ms     ns   ratio to the faster    basis: ns ratio bound"
+    )
     for n_bands in BANDS:
+        if len(values) * n_bands**2 > MOST_VALUES:
+            continue
         candidates: dict[str, Callable[[], object]] = {
-            "ours": lambda n_bands=n_bands: project_samples(recorded(values), samples, n_bands)
+            "ours": lambda n_bands=n_bands: project_samples(recorded(values), samples, n_bands),
+            "basis": lambda n_bands=n_bands: evaluate_basis(samples.directions, n_bands),
+            "bound": lambda n_bands=n_bands: np.multiply(
+                samples.weights, samples.weights, out=np.empty((n_bands**2, len(values)))
+            ),
         }
         try:
+            from sphericart import SphericalHarmonics
+
             candidates["whole"] = sphericart_peer(samples, values, n_bands, len(values))
             candidates["blocks"] = sphericart_peer(samples, values, n_bands, max(64, PEER_BLOCK // n_bands**2))
+            candidates["their basis"] = partial(SphericalHarmonics(n_bands - 1).compute, samples.directions)
         except ImportError:
             if n_bands == BANDS[0]:
                 print("sphericart is missing")
-        times = least(candidates, REPEATS)
+        times = least(candidates, repeats)
         per_value = 1e6 / (len(values) * n_bands**2)
         line = f"{n_bands:>5} {times['ours']:9.2f} {times['ours'] * per_value:6.2f}"
         if "whole" in times:
             whole, blocks = times["whole"], times["blocks"]
             line += f" {whole:15.2f} {whole * per_value:6.2f} {blocks:14.2f} {blocks * per_value:6.2f}"
-            line += f"{times['ours'] / whole:24.2f} {times['ours'] / min(whole, blocks):12.2f}"
-        print(line)
+            line += f"{times['ours'] / min(whole, blocks):22.2f} {times['basis'] * per_value:12.2f}"
+            line += f"{times['basis'] / times['their basis']:6.2f}{times['bound'] / times['their basis']:6.2f}"
+        print(line, flush=True)
 
 
 def memory() -> None:
@@ -119,7 +139,8 @@ def separable() -> None:
 
 def main() -> None:
     print(machine(), "- one thread")
-    against_sphericart()
+    for count, repeats in SAMPLES.items():
+        against_sphericart(count, repeats)
     memory()
     separable()
 

@@ -1,6 +1,7 @@
 """What shviewer.harmonics.scattered promises: the plain sum over scattered samples, in little memory."""
 
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -150,3 +151,25 @@ def test_jittered_projection_of_greens_light_converges_as_measured(n_samples, me
     estimates = [project_samples(GREEN.radiance, jittered(n_samples, seed), 4)[:, 0] for seed in range(5)]
     squares = [((found - GREEN_EXACT) ** 2).mean() for found in estimates]
     assert measured / 3 < np.sqrt(np.mean(squares)) < 3 * measured  # root mean square of 20 runs
+
+
+def test_a_light_that_projects_samples_itself_does_not_disturb_the_projection_it_is_part_of():
+    """The memory of one projection is kept for the next of the same size, but nobody has it twice."""
+    samples, calls = jittered(400, 0), []
+
+    def light(directions):
+        calls.append(project_values(directions, np.ones((len(directions), 3)), 4))
+        return np.abs(directions)
+
+    plain = project_samples(np.abs, samples, 4)
+    assert_array_equal(project_samples(light, samples, 4), plain)
+    assert_array_equal(project_samples(np.abs, samples, 4), plain)
+    assert len(calls) == 1
+
+
+def test_threads_project_side_by_side():
+    samples = jittered(10_000, 0)
+    alone = [project_samples(np.abs, samples, n) for n in (3, 9)]
+    with ThreadPoolExecutor(4) as threads:
+        for n, found in threads.map(lambda n: (n, project_samples(np.abs, samples, n)), [3, 9] * 20):
+            assert_array_equal(found, alone[n == 9])
