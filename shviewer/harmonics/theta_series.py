@@ -19,6 +19,9 @@ from shviewer.harmonics.quadrature import column_azimuths
 MAX_SEPARABLE_BANDS = 512
 """The most bands with a table D, which has n**3 values: 1 GiB at 512 bands."""
 
+DEGREES = 48
+"""About as many degrees of one parity are summed at a time."""
+
 
 @lru_cache(maxsize=8)
 def theta_series(n_bands: int) -> Array:
@@ -76,10 +79,16 @@ def from_waves(sums: Array) -> Array:
     """
     n_bands, _, channels, _ = sums.shape
     table = np.empty((n_bands, 2 * channels, n_bands))  # m, ..., l
+    rows = sums.reshape(n_bands, -1, n_bands)
     start = 0
     for parity, series in enumerate(series_by_parity(n_bands)):
-        stop = start + series.shape[1]
-        table[..., parity::2] = sums.reshape(n_bands, -1, n_bands)[..., start:stop] @ series
-        start = stop
+        half = series.shape[1]
+        step = max(1, -(-half // (1 + half // DEGREES)))
+        for first in range(0, half, step):  # some degrees l at a time: only m <= l and k <= l belong to them
+            last = min(first + step, half)
+            highest = min(2 * last - 1 + parity, n_bands)
+            product = rows[:highest, :, start : start + last] @ series[:highest, :last, first:last]
+            table[:highest, :, 2 * first + parity : 2 * last + parity : 2] = product
+        start += half
     degree, order, sine = degrees_and_orders(n_bands)
     return np.asarray(table.reshape(n_bands, 2, channels, n_bands)[order, sine, :, degree])
