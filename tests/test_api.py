@@ -114,8 +114,8 @@ def test_saving_converts_and_keeps_figures_only_where_they_hold(tmp_path: Path) 
     np.testing.assert_array_equal(filament["coefficients"], found.numbers("filament"))
     assert three["relative-l2"] == found.figures.relative_l2
     assert filament["relative-l2"] == found.figures.irradiance_relative_l2
-    assert "max-error" in three
-    assert "max-error" not in filament
+    assert "minimum" in three
+    assert "minimum" not in filament
     for path, convention, says in (
         ("a.png", "three", "format 'png'"),
         ("a.json", "maya", "must be one of"),

@@ -18,7 +18,7 @@ from shviewer.analysis.subjects import load_light, through
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
-from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
+from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes, Lows
 from shviewer.harmonics.filters import per_coefficient, window
 from shviewer.harmonics.metrics import (
     PARSEVAL_FLOOR,
@@ -176,15 +176,28 @@ def sums(light: Light, projection: Projection, what: Shown) -> tuple[Array, Sums
 def figures_of(light: Light, projection: Projection, what: Shown) -> Figures:
     """All figures of a projection as it is shown."""
     shown, known = sums(light, projection, what)
+    return Figures(
+        **vars(known),
+        irradiance_relative_l2=irradiance_error(light, projection, what),
+        extremes=error_grid(light, grid_rows(what.n_bands)).compare(shown),
+    )
+
+
+@remember(most=64)
+def lows_of(light: Light, projection: Projection, what: Shown) -> Lows:
+    """Those of the extremes that take no look at the light."""
+    return error_grid(light, grid_rows(what.n_bands)).lows(sums(light, projection, what)[0])
+
+
+@remember(most=64)
+def irradiance_error(light: Light, projection: Projection, what: Shown) -> float:
+    """`Figures.irradiance_relative_l2`, without the others."""
+    shown, known = sums(light, projection, what)
     irradiance = through(light, IRRADIANCE)
     own = project(light, *BEST, projection.n_bands).radiance[: len(shown)]
     shading = projection.radiance[: len(shown)] * per_coefficient(np.array(known.factors))
     norm = irradiance.products().diagonal()
-    return Figures(
-        **vars(known),
-        irradiance_relative_l2=relative(sum(squared_error(norm, *map(irradiance.from_source, (own, shading)))), norm),
-        extremes=error_grid(light, grid_rows(what.n_bands)).compare(shown),
-    )
+    return relative(sum(squared_error(norm, *map(irradiance.from_source, (own, shading)))), norm)
 
 
 def _window_factors(coefficients: Array, name: str, width: float | None) -> Array:

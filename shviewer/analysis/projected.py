@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from shviewer.analysis.figures import Figures
+from shviewer.analysis.figures import Figures, Sums, irradiance_error, lows_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import Subject
@@ -21,9 +21,9 @@ from shviewer.coefficients.stamp import Value, stamp_of
 from shviewer.coefficients.suns import sun_keys
 from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import encode
-from shviewer.errors import UsageError
+from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.extremes.error_grid import Triple
+from shviewer.harmonics.extremes.error_grid import Lows, Triple
 from shviewer.harmonics.rotation import check_rotation, rotate
 from shviewer.lights.find import file_of
 from shviewer.lights.suns.sun import Sun
@@ -37,8 +37,6 @@ ERRORS = (
     "relative-l2",
     "left-out",
     "added",
-    "max-error",
-    "max-error-bound",
     "minimum",
     "minimum-bound",
     "negative-area",
@@ -57,7 +55,12 @@ class Projected(InNotebooks):
 
     coefficients: Array
     quantity: str
-    figures: Figures
+    sums: Sums
+    """The figures that need no search."""
+    lows: Lows
+    """The lowest of the reconstruction, and how much of it is below zero."""
+    irradiance_relative_l2: float
+    """As in `Figures`."""
     about: dict[str, Value]
     name: str
     relative_l2_as: dict[str, float] = field(default_factory=dict)
@@ -68,11 +71,40 @@ class Projected(InNotebooks):
     """The files that the light, and coefficients compared with it, were read from."""
     notes: tuple[str, ...] = ()
     """The notes on the light, such as negative texels, and why no sun was found where one was asked for."""
+    searched: Figures | None = None
+    """All figures, once they have been asked for."""
+    turn: Array | None = None
+    """The rotation (3, 3) by which it was turned; None for none."""
     recipe: Recipe | None = None
     """What was asked for: a notebook draws it. It may hold an image, so that it is not pickled."""
 
     def __getstate__(self) -> dict[str, object]:
-        return vars(self) | {"recipe": None}
+        return vars(self) | {"recipe": None, "searched": self._all_figures()}
+
+    @property
+    def figures(self) -> Figures:
+        """All figures. Those of the error are searched for when they are first asked for: no file holds them.
+
+        LightError if the light has to be read again for that, and has changed.
+        """
+        figures = self._all_figures()
+        if self.turn is None:
+            return figures
+        extremes = figures.extremes
+        largest, lowest = (
+            cast(Triple, tuple((self.turn @ np.array(direction)).tolist()))
+            for direction in (extremes.max_error_direction, extremes.minimum_direction)
+        )
+        return replace(figures, extremes=replace(extremes, max_error_direction=largest, minimum_direction=lowest))
+
+    def _all_figures(self) -> Figures:
+        """The figures of the light as it is, not turned. It holds no light, which may be an image: that is looked up."""
+        if self.searched is None:
+            if self.recipe is None or (found := reconstruction_of(self.recipe)).sums != self.sums:
+                raise LightError(f"{self.name} has changed since it was projected: project it again")
+            object.__setattr__(self, "searched", found.figures)
+            return found.figures
+        return self.searched
 
     @property
     def n_bands(self) -> int:
@@ -94,16 +126,10 @@ class Projected(InNotebooks):
         Suns and the directions of the figures turn with it; all other figures stay.
         """
         matrix = check_rotation(rotation)
-        extremes = self.figures.extremes
-        largest, lowest = (
-            cast(Triple, tuple((matrix @ np.array(direction)).tolist()))
-            for direction in (extremes.max_error_direction, extremes.minimum_direction)
-        )
-        extremes = replace(extremes, max_error_direction=largest, minimum_direction=lowest)
         return replace(
             self,
             coefficients=rotate(self.coefficients, matrix),
-            figures=replace(self.figures, extremes=extremes),
+            turn=matrix if self.turn is None else matrix @ self.turn,
             about=self.about | {"turned": " ".join(f"{value:.12g}" for value in matrix.ravel() + 0.0)},
             suns=tuple(replace(sun, axis=matrix @ sun.axis) for sun in self.suns),
         )
@@ -145,19 +171,20 @@ class Projected(InNotebooks):
         if written != self.quantity:  # the errors of one quantity are not those of the other
             about = {key: value for key, value in about.items() if key not in ERRORS}
             if written == IRRADIANCE:
-                about["relative-l2"] = float(self.figures.irradiance_relative_l2)
+                about["relative-l2"] = self.irradiance_relative_l2
         return about | sun_keys([sun.directional_light for sun in self.suns], convention.axes)
 
 
 def project_recipe(recipe: Recipe) -> Projected:
     """The coefficients that the window shows for a recipe. LightError or UsageError, as in `reconstruction_of`."""
     found = reconstruction_of(recipe, ahead=MAX_BANDS)
-    shown, projection, figures = found.subject, found.projection, found.figures
-    of_radiance = found.sums
+    shown, projection, of_radiance = found.subject, found.projection, found.sums
+    known = shown.light, projection, recipe.shown
+    shading, lows = irradiance_error(*known), lows_of(*known)
     if recipe.quantity != RADIANCE:
         of_radiance = reconstruction_of(replace(recipe, quantity=RADIANCE)).sums
-    errors = {RADIANCE: of_radiance.relative_l2, IRRADIANCE: figures.irradiance_relative_l2}
-    errors[recipe.quantity] = figures.relative_l2
+    errors = {RADIANCE: of_radiance.relative_l2, IRRADIANCE: shading}
+    errors[recipe.quantity] = found.sums.relative_l2
     about: dict[str, Value] = {
         **_light(recipe, shown),
         "window": _window(recipe),
@@ -165,14 +192,25 @@ def project_recipe(recipe: Recipe) -> Projected:
         "method": projection.method,
         "samples": projection.evaluations,
         "seed": recipe.seed if recipe.method == "jittered" else None,
-        **_errors(figures),
+        **_errors(found.sums, lows, shading),
     }
     about = {key: value for key, value in about.items() if value is not None and value != ""}
     given = [recipe.light, *([recipe.compare] if recipe.compare else [])]
     inputs = tuple(path for path in map(file_of, given) if path)
     notes = (*shown.light.notes, *([shown.refusal] if shown.refusal else []))
     return Projected(
-        found.coefficients, recipe.quantity, figures, about, shown.light.name, errors, shown.suns, inputs, notes, recipe
+        found.coefficients,
+        recipe.quantity,
+        found.sums,
+        lows,
+        shading,
+        about,
+        shown.light.name,
+        errors,
+        shown.suns,
+        inputs,
+        notes,
+        recipe=recipe,
     )
 
 
@@ -192,21 +230,20 @@ def _window(recipe: Recipe) -> str:
     return f"{recipe.window} of {recipe.window_width or recipe.n_bands:g} bands"
 
 
-def _errors(figures: Figures) -> dict[str, Value]:
-    whole, extremes = figures.channels["all"], figures.extremes
+def _errors(sums: Sums, lows: Lows, shading: float) -> dict[str, Value]:
+    """The figures of the stamp. shading: the error of the irradiance."""
+    whole = sums.channels["all"]
     values = (
         whole.relative_l2,
         whole.left_out,
         whole.added,
-        extremes.max_error,
-        extremes.max_error_bound,
-        extremes.minimum,
-        extremes.minimum_bound,
-        extremes.negative_area,
-        figures.irradiance_relative_l2,
+        lows.minimum,
+        lows.minimum_bound,
+        lows.negative_area,
+        shading,
     )
     found = zip(ERRORS, values, strict=True)
-    return {key: float(value) for key, value in found if value is not None and np.isfinite(value)}
+    return {key: float(value) for key, value in found if np.isfinite(value)}
 
 
 def _one_line(text: str) -> str:

@@ -118,7 +118,7 @@ def summary(rows: Sequence[Row]) -> str:
             f"{error_in_percent(row.projected, quantity):>{max(10, len(in_words(quantity)))}}"
             for quantity in quantities
         )
-        minimum = row.projected.figures.extremes.minimum
+        minimum = row.projected.lows.minimum
         numbers = f"{row.projected.n_bands:>5} {errors}  {minimum:>10.4g}"
         lines.append(f"{label:<{width}}  {numbers}  {row.file}")
     written = sum(row.projected is not None for row in rows)
@@ -127,5 +127,5 @@ def summary(rows: Sequence[Row]) -> str:
 
 def error_in_percent(projected: Projected, quantity: str) -> str:
     """The relative L2 error, or the floor below which it cannot be told from rounding."""
-    error, floor = projected.relative_l2_as[quantity], projected.figures.floor
+    error, floor = projected.relative_l2_as[quantity], projected.sums.floor
     return f"{100 * error:.3g} %" if error >= floor else f"< {100 * floor:.0e} %"

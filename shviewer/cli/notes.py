@@ -39,7 +39,7 @@ def print_notes_on(projected: Projected, axes: Axes) -> None:
 
 def warn_below_zero(projected: Projected) -> None:
     """Print that the reconstruction that was written is below zero, if it is by more than rounding."""
-    minimum = projected.figures.extremes.minimum
+    minimum = projected.lows.minimum
     if minimum >= -ROUNDING * float(np.abs(projected.coefficients).max()):
         return
     says = f"the {projected.quantity} of its {counted(projected.n_bands, 'band')} goes to {minimum:.3g}"

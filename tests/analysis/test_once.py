@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import numpy as np
 import pytest
 from lights.images.hdr_files import exr_file
 
-from shviewer.analysis.cache import MEMORY
+from shviewer.analysis.cache import MEMORY, array_bytes
 from shviewer.analysis.figures import PENDING
 from shviewer.analysis.information import describe
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
+from shviewer.coefficients.texts import parse_convention
+from shviewer.errors import LightError
+from shviewer.harmonics.extremes.error_grid import ErrorGrid
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.reading import DEFAULT_READING
 from shviewer.viewer.picture import prepare
@@ -56,3 +60,29 @@ def test_a_picture_without_text_searches_for_no_figure_and_looks_the_same(sunny:
     assert not bare.complete
     assert bare.error_scale is whole.error_scale
     assert bare.coefficients is whole.coefficients
+
+
+def test_a_projection_searches_for_the_error_only_when_asked_and_holds_no_image(
+    sunny: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked, real = [], ErrorGrid.compare
+    monkeypatch.setattr(ErrorGrid, "compare", lambda self, shown: asked.append(1) or real(self, shown))
+    found = project_recipe(Recipe(sunny))
+    data = found.encode(parse_convention("shviewer"), "json")
+    assert b"minimum" in data
+    assert not asked
+    assert array_bytes(vars(found)) < 10_000
+    extremes = found.figures.extremes
+    assert (found.lows.minimum, found.lows.negative_area) == (extremes.minimum, extremes.negative_area)
+    assert found.figures.extremes is extremes
+    assert len(asked) == 1
+    sent = pickle.loads(pickle.dumps(project_recipe(Recipe(sunny))))
+    assert sent.figures == found.figures
+
+
+def test_figures_of_a_file_that_has_changed_are_refused(sunny: str) -> None:
+    found = project_recipe(Recipe(sunny))
+    Path(sunny).write_bytes(exr_file(dict.fromkeys("RGB", np.ones((8, 16), np.float16))))
+    MEMORY.clear()
+    with pytest.raises(LightError, match="sunny has changed since it was projected: project it again"):
+        _ = found.figures

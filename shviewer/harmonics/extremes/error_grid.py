@@ -62,6 +62,16 @@ class Extremes:
     """The largest |radiance| of the original seen on the same grid."""
 
 
+class Lows(NamedTuple):
+    """Those of the extremes that are of the reconstruction alone, named as in `Extremes`."""
+
+    minimum: float
+    minimum_bound: float
+    minimum_direction: Triple
+    negative_area: float
+    negative_energy: float
+
+
 class _Seen(NamedTuple):
     """A reconstruction on the grid, (rows, 3, columns), and everything that is made of it once."""
 
@@ -110,31 +120,44 @@ class ErrorGrid:
         self.form = form
 
     def compare(self, shown: Array) -> Extremes:
-        """The extremes of the reconstruction with coefficients `shown`, (n**2, 3)."""
-        synthesis = Synthesis(shown)
-        values = synthesis.on_rows(self.theta, len(self.phi))
-        seen = _Seen(shown, synthesis, values, Waves(values, synthesis.n_bands))
+        """The extremes of the reconstruction with coefficients `shown`, (n**2, 3), and of its error."""
+        seen = self._see(shown)
         if isinstance(self.form, Lobes):
-            zonal, rest = self.form.factors(shown)
-            lowest = self._lowest_of_lobes(seen, self.form, zonal, rest)
-            error = self._error_of_lobes(seen, self.form, zonal, rest)
+            error = self._error_of_lobes(seen, self.form, *self.form.factors(shown))
         else:
-            lowest = self._lowest(seen)
             error = self._error_of_raster(seen, self.form) if isinstance(self.form, Raster) else self._climbed(seen)
             if isinstance(self.form, Bands):
                 error = self._error_of_bands(seen, self.form, error)
-        luminance = sum(weight * values[:, channel] for channel, weight in enumerate(LUMINANCE))
-        area = float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share)
+        lows = self._lows(seen)
         return Extremes(
             max_error=error.value,
             max_error_bound=None if self.form is None else max(error.value, error.bound),
             max_error_direction=_triple(error.direction),
+            peak=self.peak,
+            **lows._asdict(),
+        )
+
+    def lows(self, shown: Array) -> Lows:
+        """The same of the reconstruction alone, which takes no look at the light."""
+        return self._lows(self._see(shown))
+
+    def _see(self, shown: Array) -> _Seen:
+        synthesis = Synthesis(shown)
+        values = synthesis.on_rows(self.theta, len(self.phi))
+        return _Seen(shown, synthesis, values, Waves(values, synthesis.n_bands))
+
+    def _lows(self, seen: _Seen) -> Lows:
+        if isinstance(self.form, Lobes):
+            lowest = self._lowest_of_lobes(seen, self.form, *self.form.factors(seen.shown))
+        else:
+            lowest = self._lowest(seen)
+        luminance = sum(weight * seen.values[:, channel] for channel, weight in enumerate(LUMINANCE))
+        return Lows(
             minimum=lowest.value,
             minimum_bound=min(lowest.value, lowest.bound),
             minimum_direction=_triple(lowest.direction),
-            negative_area=area,
-            negative_energy=self._negative_energy(values, shown),
-            peak=self.peak,
+            negative_area=float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share),
+            negative_energy=self._negative_energy(seen.values, seen.shown),
         )
 
     @property
