@@ -18,7 +18,7 @@ Schema 1. A reader needs the first three keys; the others are for people, and mu
     sun-1-radiance          red green blue, of a disc of uniform radiance with that irradiance,
     sun-1-width             the angle across this disc in degrees
     relative-l2, left-out, added, max-error, minimum, negative-area, irradiance-relative-l2
-    max-error-bound, minimum-bound      that no direction passes; the first is missing for a Python function
+    minimum-bound                       that no direction is below; max-error and max-error-bound are in older files only
 
 Errors compare the coefficients in the rows with the light; relative errors are over all channels. max-error and minimum are in
 units of the radiance, or of the irradiance before it is divided by pi. An unknown key is ignored; a later schema is refused.
