@@ -111,7 +111,7 @@ def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
     [
         (
             ("phase",),
-            "without the Condon-Shortley phase, or of a map that is turned by half a turn, which is the same",
+            "without the Condon-Shortley phase, or of the map turned by half a turn, which is the same",
         ),
         (("y-up", "pi"), "in axes +x+z-y (y-up) and divided by pi"),
         (("order", "4pi"), "with m and -m swapped and divided by sqrt(4 pi)"),
@@ -221,7 +221,7 @@ def test_small_disagreement_is_a_figure() -> None:
         (lambda c: c[:, ::-1], "with channels in the order B G R"),
         (
             lambda c: 2 * spoiled(c, "phase")[:, ::-1],
-            "without the Condon-Shortley phase, or of a map that is turned by half a turn, which is the same, with channels"
+            "without the Condon-Shortley phase, or of the map turned by half a turn, which is the same, with channels"
             " in the order B G R and times 2",
         ),
         (lambda c: c.T.reshape(9, 3), "listed channel by channel"),

@@ -14,12 +14,12 @@ USUAL_AXES = {"+y+z+x": "z forward", "+z+x+y": "y polar"} | {text: name for name
 """Axes that programs have; any others cost as much as two mistakes."""
 
 TURNS = {
-    "-x-y+z": "with its map turned by half a turn",
-    "+y-x+z": "with its map turned by a quarter, its left in the middle",
-    "-y+x+z": "with its map turned by a quarter, its right in the middle",
-    "+x-y+z": "with its map mirrored, left and right exchanged",
-    "+x+y-z": "with its map upside down, mirrored",
-    "-x-y-z": "with every direction opposite",
+    "-x-y+z": "of the map turned by half a turn",
+    "+y-x+z": "of the map turned by a quarter, its left in the middle",
+    "-y+x+z": "of the map turned by a quarter, its right in the middle",
+    "+x-y+z": "of the map mirrored, left and right exchanged",
+    "+x+y-z": "of the map upside down and mirrored",
+    "-x-y-z": "of the light from opposite directions",
 }
 """What happened to a light, if the axes are these against those that were meant -> words. Our y is left, our x the middle."""
 

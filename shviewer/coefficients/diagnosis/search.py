@@ -17,7 +17,7 @@ for odd ones, and no more for a program's own convention, which explains many th
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from itertools import product
 
 import numpy as np
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.diagnosis.chance import chance
 from shviewer.coefficients.diagnosis.orientations import TURNS, USUAL_AXES, Orientation, between, orientations, undoing
-from shviewer.coefficients.diagnosis.ways import Way, sequence_of, ways
+from shviewer.coefficients.diagnosis.ways import Taken, Way, sequence_of, ways
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.parts.axes import Axes, all_axes
 from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, FLAT_BY_CHANNEL, channel_places
@@ -97,7 +97,7 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
     if not exact.any() or not found[0].table[: n_bands**2].any():
         return None
     tried = [_Tried(way, exact, n_bands) for way in found]
-    costs = [_costs(one.way, one.combinations, n_bands, named, listed) for one in tried]
+    costs = [_costs(one.taken, n_bands, named, listed.numbers.ndim == 1, listed.placed) for one in tried]
     for one, (cost, _) in zip(tried, costs, strict=True):
         one.misfits[:, np.isinf(cost)] = np.inf
     least = min(float(one.misfits.min()) for one in tried)
@@ -117,7 +117,7 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
     base = CONVENTIONS[list(CONVENTIONS)[bases[orientation, combination]]]
     factor = one.constant(channels, orientation, combination, good)
     convention = _convention(
-        base, one.way, orientations()[orientation], CHANNEL_ORDERS[channels], one.combinations[combination], factor
+        base, one.taken, orientations()[orientation], CHANNEL_ORDERS[channels], one.combinations[combination], factor
     )
     within = sum(
         int((CHANNEL_COSTS[:, None, None] + cost <= most + 1e-9).sum()) * (1 + len(CONSTANTS)) for cost, _ in costs
@@ -133,8 +133,8 @@ class _Tried:
     """All that is tried with one way to take the rows; arrays over channels, orientations and combinations."""
 
     def __init__(self, way: Way, exact: Array, n_bands: int) -> None:
-        self.way = way
-        self.combinations: list[Combination] = list(product(QUANTITIES, way.scales))
+        self.taken = way.taken
+        self.combinations = _combinations(way.taken)
         self.factors = np.array([_factors(*combination, n_bands) for combination in self.combinations])
         starts = np.arange(n_bands) ** 2
         turned = undoing(n_bands) @ way.table[: n_bands**2]  # (192, n**2, 3)
@@ -149,7 +149,7 @@ class _Tried:
             share = np.where(self.linear > 0, self.linear**2 / (power * model), 0.0)
             self.constants = np.where(self.linear > 0, power / self.linear, 1.0)
         self.misfits = np.sqrt(np.maximum(1 - np.nan_to_num(share), 0.0))
-        if way.shift:  # what is shifted has no factor: it would shift, too
+        if way.taken.shift:  # what is shifted has no factor: it would shift, too
             self.misfits[np.abs(self.constants - 1) > NO_FACTOR] = np.inf
 
     def constant_costs(self, good: float) -> Array:
@@ -192,35 +192,41 @@ def _factors(quantity: str, scale: str, n_bands: int) -> Array:
     )
 
 
+def _combinations(taken: Taken) -> list[Combination]:
+    return list(product(QUANTITIES, taken.scales))
+
+
+@lru_cache(512)
 def _costs(
-    way: Way, combinations: list[Combination], n_bands: int, named: Convention | None, listed: Listed
+    taken: Taken, n_bands: int, named: Convention | None, flat: bool, placed: bool
 ) -> tuple[Array, NDArray[np.int64]]:
     """The cost of each orientation and combination, (192, k), without channels and constant, and the base that has it."""
+    combinations = _combinations(taken)
     best = np.full((len(orientations()), len(combinations)), np.inf)
     bases = np.zeros(best.shape, dtype=np.int64)
     for number, base in enumerate(CONVENTIONS.values()):
-        if n_bands > (base.most_bands or n_bands) or way.complex != base.complex:
+        if n_bands > (base.most_bands or n_bands) or taken.complex != base.complex:
             continue
-        other_order = way.order != base.order and not listed.placed
-        if base is not OURS and (other_order or way.shift != base.shift):
+        other_order = taken.order != base.order and not placed
+        if base is not OURS and (other_order or taken.shift != base.shift):
             continue
         at_base = named is not None and named.name == base.name
         cost = 0.0 if at_base or (named is None and base is OURS) else PROGRAM if named is None else ANOTHER_PROGRAM
         if not at_base and any(base.name in readings for readings in READINGS.values()):
             cost = OPEN_READING if named is None else ANOTHER_PROGRAM
-        sequence = sequence_of(listed, base.sequence)
-        if base.sequence == FLAT_BY_CHANNEL and way.sequence != sequence:
+        sequence = sequence_of(base.sequence, flat)
+        if base.sequence == FLAT_BY_CHANNEL and taken.sequence != sequence:
             continue
-        cost += way.sequence != (sequence_of(listed, named.sequence) if at_base and named else sequence)
-        cost += other_order + (way.shift != base.shift)
+        cost += taken.sequence != (sequence_of(named.sequence, flat) if at_base and named else sequence)
+        cost += other_order + (taken.shift != base.shift)
         turned = _axes_costs(base.basis_axes, base is OURS)
         for first in range(0, len(best), len(turned)):
             phase, mirrored, _ = orientations()[first]
-            if "polynomial" in way.scales and (phase or (mirrored and n_bands > 2)):
+            if "polynomial" in taken.scales and (phase or (mirrored and n_bands > 2)):
                 continue  # the phase of polynomials is a half turn, and their factors are those of m and not of -m
             if base is not OURS and (phase, mirrored) != (base.phase, base.mirrored):
                 continue
-            free = (phase != base.phase and "polynomial" not in way.scales) + (mirrored != base.mirrored)
+            free = (phase != base.phase and "polynomial" not in taken.scales) + (mirrored != base.mirrored)
             for column, (quantity, scale) in enumerate(combinations):
                 held = base.quantity or (named.quantity if at_base and named else None) or RADIANCE
                 if base is not OURS and (scale != base.scale or (base.quantity and quantity != base.quantity)):
@@ -253,7 +259,7 @@ def _axes_costs(meant: Axes, ours: bool) -> Array:
 
 
 def _convention(
-    base: Convention, way: Way, orientation: Orientation, channels: str, combination: Combination, factor: float
+    base: Convention, taken: Taken, orientation: Orientation, channels: str, combination: Combination, factor: float
 ) -> Convention:
     quantity, scale = combination
     held = quantity if quantity != RADIANCE or base.quantity else None
@@ -265,9 +271,9 @@ def _convention(
         axes=orientation.axes.then(base.pole.inverse),
         scale=scale,
         quantity=held,
-        order=way.order if way.order != ACN else base.order,
-        shift=way.shift,
-        sequence=base.sequence if base.sequence == FLAT_BY_CHANNEL else way.sequence,
+        order=taken.order if taken.order != ACN else base.order,
+        shift=taken.shift,
+        sequence=base.sequence if base.sequence == FLAT_BY_CHANNEL else taken.sequence,
         channels=channels,
         factor=factor,
     )

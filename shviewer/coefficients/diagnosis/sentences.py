@@ -15,7 +15,7 @@ from shviewer.coefficients.parts.rows import ORDERS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 
 NO_PHASE = "without the Condon-Shortley phase"
-HALF_TURN = f"{NO_PHASE}, or of a map that is turned by half a turn, which is the same"
+HALF_TURN = f"{NO_PHASE}, or of the map turned by half a turn, which is the same"
 
 
 def words(convention: Convention, named: Convention | None = None) -> str:
@@ -34,7 +34,7 @@ def differences(convention: Convention) -> list[str]:
     if convention.sequence in (BY_CHANNEL, INTERLEAVED):
         found.append("listed channel by channel" if convention.sequence == BY_CHANNEL else "listed row by row")
     if convention.order != base.order:
-        found.append(f"in rows of {convention.order} ({ORDERS[convention.order][1]})")
+        found.append(f"with rows in the order {ORDERS[convention.order][1]}")
     if convention.phase != base.phase and convention.scale != "polynomial":
         alone = convention.axes == base.axes and not convention.mirrored
         found.append((HALF_TURN if alone else NO_PHASE) if base.phase else "with the Condon-Shortley phase")

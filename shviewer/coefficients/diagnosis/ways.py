@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,17 +24,23 @@ BY_DEGREE = ("orthonormal", "4pi", "schmidt", "sn3d")
 """Normalisations whose factors are those of the degree; the others are undone here, before orders are mixed."""
 
 
-@dataclass(frozen=True, eq=False)
-class Way:
-    """One way to take the rows. table: what is left to be turned, in our order of rows, (n**2, 3)."""
+@dataclass(frozen=True)
+class Taken:
+    """How the rows are taken."""
 
-    table: Array
     sequence: str = ""
     order: str = ACN
     scales: tuple[str, ...] = BY_DEGREE
     """The normalisations that the table may still have."""
     shift: float = 0.0
     complex: bool = False
+
+
+class Way(NamedTuple):
+    """One way to take the rows, and the table that is left to be turned, in our order of rows, (n**2, 3)."""
+
+    table: Array
+    taken: Taken
 
 
 def ways(listed: Listed, usual: str = "") -> Iterator[Way]:
@@ -48,26 +55,27 @@ def ways(listed: Listed, usual: str = "") -> Iterator[Way]:
             with suppress(ValueError):  # more bands than the order has
                 rows = np.empty_like(table)
                 rows[row_order(order, n_bands)] = table
-                yield Way(rows, sequence, order)
+                yield Way(rows, Taken(sequence, order))
                 if n_bands <= POLYNOMIAL_BANDS and n_bands > 1:
-                    yield Way(rows / SCALES["polynomial"][0](n_bands)[:, None], sequence, order, ("polynomial",))
+                    undone = rows / SCALES["polynomial"][0](n_bands)[:, None]
+                    yield Way(undone, Taken(sequence, order, ("polynomial",)))
                 if n_bands <= FUMA_BANDS and order in FUMA_ORDERS:
-                    yield Way(rows / SCALES["fuma"][0](n_bands)[:, None], sequence, order, ("fuma",))
+                    yield Way(rows / SCALES["fuma"][0](n_bands)[:, None], Taken(sequence, order, ("fuma",)))
         shifted = table.copy()
         shifted[0] += SHIFT * np.sqrt(4 * np.pi)
-        yield Way(shifted, sequence, scales=("orthonormal",), shift=SHIFT)
+        yield Way(shifted, Taken(sequence, scales=("orthonormal",), shift=SHIFT))
 
 
-def sequence_of(listed: Listed, sequence: str) -> str:
-    """What a sequence means for this list: "" if it leaves it as it stands, or one of SEQUENCES."""
+def sequence_of(sequence: str, flat: bool) -> str:
+    """What a sequence means for a list with or without rows: "" if it leaves it as it stands, or one of SEQUENCES."""
     if sequence == FLAT_BY_CHANNEL:
-        return BY_CHANNEL if listed.numbers.ndim == 1 else ""
+        return BY_CHANNEL if flat else ""
     return sequence
 
 
 def _sequences(listed: Listed, usual: str) -> Iterator[tuple[str, Numbers]]:
     """The numbers as they were read, and then as they were not."""
-    usual = sequence_of(listed, usual)
+    usual = sequence_of(usual, listed.numbers.ndim == 1)
     yield usual, in_sequence(listed, usual) if usual else listed.numbers
     other = INTERLEAVED if (usual or (BY_CHANNEL if listed.planar else INTERLEAVED)) == BY_CHANNEL else BY_CHANNEL
     with suppress(LightError):
@@ -79,6 +87,6 @@ def _sequences(listed: Listed, usual: str) -> Iterator[tuple[str, Numbers]]:
 def _complex(listed: Listed) -> Iterator[Way]:
     table = as_table(listed.numbers, complex_pairs=True)
     try:
-        yield Way(from_complex(table), scales=("orthonormal",), complex=True)
+        yield Way(from_complex(table), Taken(scales=("orthonormal",), complex=True))
     except ValueError as error:
         raise LightError(str(error)) from error
