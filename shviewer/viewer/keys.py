@@ -99,6 +99,12 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("I", "radiance, irradiance or glossy", {"I": do.next_quantity}, lambda s: in_words(s.recipe.quantity)),
         Binding("K / Shift+K", "rougher, smoother surface", _each(do.rougher, {"K": ROUGHER, "Shift+K": -ROUGHER})),
         Binding(
+            "J",
+            "bands against roughness",
+            _each(do.toggle, {"J": "against_roughness"}),
+            lambda s: "shown" if s.view.against_roughness else "hidden",
+        ),
+        Binding(
             "U",
             "sun as a disc of its own",
             _each(do.toggle, {"U": "split_sun"}),

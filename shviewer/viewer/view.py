@@ -93,6 +93,13 @@ class View:
         "--basis",
         ("L", "M"),
     )
+    against_roughness: bool = option(
+        False,
+        Flag(),
+        "plot the fewest bands within the tolerance against roughness, in place of error against bands",
+        "--against-roughness",
+        const=True,
+    )
     sheet: str = ""
     """One of the SHEETS over the spheres: "plane" is time against error in this session, and no two runs agree on it."""
     evaluate: str = option(

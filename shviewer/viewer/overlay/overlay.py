@@ -26,6 +26,7 @@ from shviewer.viewer.overlay.help_sheet import help_pieces
 from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
+from shviewer.viewer.overlay.steps import steps_legend, steps_of, steps_pieces
 from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 
@@ -117,14 +118,19 @@ def draw_overlay(
         answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])
     blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
     if numbers.curve is not None:
-        series = band_series(picture, least_slots(at))
-        axes = axes_of(series, at)
-        bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
-        blocks += [curve_pieces(series, state, at), legend_pieces(series, state, at, hovered)]
+        if state.view.against_roughness:
+            steps = steps_of(picture)
+            blocks += [steps_pieces(steps, picture, at), steps_legend(steps, picture, at)]
+        else:
+            series = band_series(picture, least_slots(at))
+            axes = axes_of(series, at)
+            bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
+            blocks += [curve_pieces(series, state, at), legend_pieces(series, state, at, hovered)]
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)
-            blocks.append([Text("curve_head", head.left, head.baseline, "error against bands", size, INK, SEMIBOLD)])
+            words = "bands against roughness" if state.view.against_roughness else "error against bands"
+            blocks.append([Text("curve_head", head.left, head.baseline, words, size, INK, SEMIBOLD)])
     found = _overlay(at, blocks, bars)
     if plane is not None:
         found.plane = plane
@@ -143,6 +149,8 @@ def status_layers(status: str | Work, composition: Composition) -> tuple[Layer, 
 def foresee(picture: Picture) -> None:
     """Compute what the text of a picture needs beyond the picture, so that drawing it takes no time for the light."""
     band_series(picture)
+    if picture.state.view.against_roughness:
+        steps_of(picture)
 
 
 def _overlay(at: Composition, blocks: Sequence[Sequence[Piece]], bars: dict[int, Box] | None = None) -> Overlay:

@@ -1,0 +1,137 @@
+"""The steps: the fewest bands within the tolerance against roughness, in place of the curve.
+
+A bar under the axis is lit where the bands in use are enough.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from shviewer.analysis.figures import Pending
+from shviewer.analysis.roughness import ROUGHNESS, Staircase, staircase
+from shviewer.harmonics.quantities.names import IRRADIANCE, roughness_of
+from shviewer.limits import MAX_BANDS
+from shviewer.viewer.composition import Composition
+from shviewer.viewer.overlay.curve import LABELS, RING
+from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece, Text
+from shviewer.viewer.overlay.lettering import (
+    ACCENT,
+    BAR,
+    FAINT,
+    GREY,
+    GROUND,
+    INK,
+    REGULAR,
+    RULE,
+    SEMIBOLD,
+    UNUSED,
+    Ink,
+    shortened_to,
+    width_of,
+)
+from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.panes import Box
+from shviewer.viewer.picture import Picture
+
+COUNTS = (1, 2, 3, 5, 9, 16, 32, 64, MAX_BANDS)
+TICKS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+LANE = 5.0
+"""The height of the bar under the axis, pixels of the design."""
+
+
+def steps_of(picture: Picture) -> Staircase | None:
+    """The steps of a picture's light; None while figures are pending."""
+    return None if isinstance(picture.needs, Pending) else staircase(picture.state.recipe)
+
+
+def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> list[Piece]:
+    """Grid, steps, the line of the bands in use, and what they serve."""
+    box, recipe = at.numbers.curve, picture.state.recipe
+    assert box is not None
+    n_bands, size = recipe.n_bands, at.px(11.0 if at.compact else 12.0)
+    line, thick = max(1, round(at.scale)), max(2, round(at.px(LANE)))
+    left, right, top, base = box.left + at.px(LABELS), box.right, box.top, box.bottom - thick
+    counts = [count for count in steps.counts if count is not None] if steps else []
+    most = next(count for count in COUNTS if count >= max([16, n_bands, *counts]))
+
+    def x(roughness: float) -> float:
+        return left + (roughness - ROUGHNESS[0]) / (ROUGHNESS[-1] - ROUGHNESS[0]) * (right - left)
+
+    def y(count: float) -> float:
+        return base - math.log(count) / math.log(most) * (base - top)
+
+    pieces: list[Piece] = []
+    written = [y(n_bands)]
+    for count in (count for count in reversed(COUNTS) if count <= most and count != n_bands):
+        pieces.append(Fill(Box(left, round(y(count)), right, round(y(count)) + line), RULE))
+        if all(abs(y(count) - other) > 1.1 * size for other in written):
+            written.append(y(count))
+            pieces.append(_ended(f"count_{count}", left - at.px(8), y(count) + 0.36 * size, str(count), size, FAINT))
+    pieces.append(Fill(Box(left, round(y(n_bands)), right, round(y(n_bands)) + line), ACCENT, "bands_in_use"))
+    pieces.append(_ended("in_use", left - at.px(8), y(n_bands) + 0.36 * size, str(n_bands), size, INK, SEMIBOLD))
+    lane = round(base + line)
+    pieces.append(Fill(Box(left, lane, right, lane + thick), UNUSED))
+    if steps is not None:
+        for low, high in steps.served(n_bands):
+            pieces.append(
+                Fill(
+                    Box(round(x(low)), lane, max(round(x(high)), round(x(low)) + 2), lane + thick),
+                    BAR,
+                    f"served_{low:g}",
+                )
+            )
+        for run in _runs(steps):
+            points = [(x(ROUGHNESS[run[0]]), y(steps.counts[run[0]] or 1))]
+            for number in run[1:]:
+                at_x, count = x(ROUGHNESS[number]), steps.counts[number] or 1
+                points += [(at_x, points[-1][1])] if y(count) != points[-1][1] else []
+                points.append((at_x, y(count)))
+            clip = Box(left - 2, top - at.px(4), right + 2, base + 2)
+            pieces.append(Curve(tuple(points), at.px(1.8), INK, clip, at.px(1.2), GROUND, name="steps"))
+        pieces += _shown(picture, x, y, at)
+    baseline = lane + thick + size
+    for roughness in TICKS:
+        text = typeset(f"{roughness:g}")
+        wide = width_of(text, size)
+        place = round(min(max(x(roughness) - wide / 2, left), right - wide))
+        pieces.append(Text(f"roughness_{roughness:g}", place, baseline, text, size, GREY))
+    pieces.append(_ended("roughness_axis", left - at.px(8), baseline, "rough" if at.compact else "rough.", size, FAINT))
+    return pieces
+
+
+def steps_legend(steps: Staircase | None, picture: Picture, at: Composition) -> list[Piece]:
+    """The sentence: what serves shading, and what the bands in use serve."""
+    line = at.numbers.legend
+    if line is None or steps is None:
+        return []
+    size, n_bands = at.px(12.0), picture.state.recipe.n_bands
+    said = typeset(steps.sentence(n_bands))
+    return [
+        Text("steps_sentence", line.left, line.baseline, shortened_to(said, line.right - line.left, size), size, INK)
+    ]
+
+
+def _runs(steps: Staircase) -> list[list[int]]:
+    """The numbers of neighbouring roughnesses that have a count."""
+    runs: list[list[int]] = [[]]
+    for number, count in enumerate(steps.counts):
+        if count is not None:
+            runs[-1].append(number)
+        elif runs[-1]:
+            runs.append([])
+    return [run for run in runs if run]
+
+
+def _shown(picture: Picture, x: Callable[[float], float], y: Callable[[float], float], at: Composition) -> list[Piece]:
+    """A dot where the quantity shown stands, if it is glossy or irradiance."""
+    quantity = picture.state.recipe.quantity
+    roughness = 1.0 if quantity == IRRADIANCE else roughness_of(quantity)
+    needs = picture.needs
+    if roughness is None or isinstance(needs, Pending) or needs.shown is None:
+        return []
+    return [Disc(x(roughness), y(needs.shown), at.px(RING + 0.6), ACCENT, at.px(1.2), GROUND, "roughness_shown")]
+
+
+def _ended(name: str, right: float, baseline: float, text: str, size: float, ink: Ink, weight: str = REGULAR) -> Text:
+    return Text(name, round(right - width_of(text, size, weight)), baseline, text, size, ink, weight)
