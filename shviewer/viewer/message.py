@@ -1,31 +1,46 @@
-"""Kinds of messages. A message is a text; its first sign says its kind, so that shape says it, too."""
+"""Messages of the window: texts that know of what kind they are. A text without a kind is a note."""
 
 from __future__ import annotations
 
-DONE, WARNING, ERROR = "✓", "▲", "×"
+from typing import Self
 
-LASTING = (WARNING, ERROR)
-"""The kinds that stay until the next key; the others go after some seconds."""
+DONE, WARNING, ERROR = "✓", "▲", "×"
+"""The kinds, by the signs that stand before their words; "" is the kind of a note."""
 
 SECONDS = 4.0
+"""How long notes, and what has been done, are shown; warnings and errors stay until the next key."""
 
 
-def done(text: str) -> str:
+class Message(str):
+    """A text with the kind of message it is."""
+
+    kind: str
+
+    def __new__(cls, text: str, kind: str = "") -> Self:
+        made = super().__new__(cls, text)
+        made.kind = kind
+        return made
+
+
+def done(text: str) -> Message:
     """Something that was asked for and has been done."""
-    return f"{DONE} {text}"
+    return Message(text, DONE)
 
 
-def warning(text: str) -> str:
-    """Something that may be wrong with what is shown."""
-    return f"{WARNING} {text}"
+def warning(text: str) -> Message:
+    """Something that may be wrong with what is shown; "" stays no message at all."""
+    return Message(text, WARNING if text else "")
 
 
-def error(text: str) -> str:
+def error(text: str) -> Message:
     """Something that was asked for and could not be done."""
-    return f"{ERROR} {text}"
+    return Message(text, ERROR)
 
 
-def parted(message: str) -> tuple[str, str]:
-    """The sign of a message, "" for a note, and its words."""
-    sign, space, words = message.partition(" ")
-    return (sign, words) if space and sign in (DONE, WARNING, ERROR) else ("", message)
+def kind_of(text: str) -> str:
+    return text.kind if isinstance(text, Message) else ""
+
+
+def passes(text: str) -> bool:
+    """Whether a message goes after some seconds by itself."""
+    return kind_of(text) in ("", DONE)

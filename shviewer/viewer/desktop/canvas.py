@@ -13,6 +13,7 @@ from shviewer.viewer.desktop.evaluation import Evaluation
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.captions import describe_evaluation
+from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.marks import mark_layers
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
@@ -42,7 +43,7 @@ class Canvas:
         pixels = summed_pixels(composition)
         return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
 
-    def show(self, picture: Picture, composition: Composition, status: str = "") -> bool:
+    def show(self, picture: Picture, composition: Composition, work: Work | None = None) -> bool:
         """Upload what has changed, and draw its text, with what is being done meanwhile in place of the message.
 
         Return False while a large map is on its way: the last picture stays. GraphicsError for a map that this OpenGL
@@ -50,16 +51,16 @@ class Canvas:
         """
         if not self.renderer.show(picture, None if self.renderer.picture is None else UPLOAD_SECONDS):
             return False
-        key = status, _overlay_key(picture, composition)
+        key = work, _overlay_key(picture, composition)
         if key != self._overlay_key:
             opengl = self.renderer.version
-            self.overlay = draw_overlay(picture, composition, timing=True, opengl=opengl, status=status)
+            self.overlay = draw_overlay(picture, composition, timing=True, opengl=opengl, work=work)
             self._overlay_key = key
         return True
 
-    def wait(self, status: str, composition: Composition) -> None:
+    def wait(self, work: Work, composition: Composition) -> None:
         """Draw what is being done, as long as there is no picture."""
-        self.renderer.draw_text(self.renderer.context.screen, composition, status_layers(status, composition))
+        self.renderer.draw_text(self.renderer.context.screen, composition, status_layers(work, composition))
 
     def draw(self, composition: Composition, pointer: Point | None = None, *, alone: bool = True) -> bool:
         """Draw the picture last shown, with the values under the pointer; return whether another frame is due.

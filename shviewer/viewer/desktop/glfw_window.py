@@ -11,8 +11,8 @@ import glfw
 from shviewer.errors import GraphicsError
 from shviewer.viewer.gl.renderer import GL_VERSIONS
 
-SMALLEST_WINDOW = (600, 320)
-"""The smallest size, in screen coordinates, in which the help can still be read."""
+SMALLEST_WINDOW = (400, 300)
+"""The smallest size, in screen coordinates, in which nothing that matters is left out."""
 
 SPECIAL_KEYS = {
     glfw.KEY_UP: "Up",

@@ -6,6 +6,7 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.lights.find import split_light
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
+from shviewer.viewer.message import Message, warning
 from shviewer.viewer.state import describe_sanitizing
 
 
@@ -27,9 +28,9 @@ def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
     return f"{refusal}; {', '.join(keys)}"
 
 
-def notes_of(light: Light) -> str:
-    """All notes of a light in one line; "" if there are none."""
-    return f"{light.name}: {'; '.join(light.notes)}" if light.notes else ""
+def notes_of(light: Light) -> Message:
+    """All notes of a light in one line, a warning; "" if there are none."""
+    return warning(f"{light.name}: {'; '.join(light.notes)}" if light.notes else "")
 
 
 def reading_news(before: Recipe, after: Recipe) -> str:

@@ -31,6 +31,8 @@ from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
+from shviewer.viewer.message import DONE, ERROR, SECONDS, WARNING, Message, passes
+from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, prepare, stages, still
@@ -102,7 +104,9 @@ class Session:
         """The still part of the state whose figures are not wanted any more: the search was stopped, or failed."""
         self._later: list[Callable[[], None]] = []
         """Commands that wait for the picture and all its figures."""
-        self._said = ""
+        self._said: Work | None = None
+        self._message, self._message_at = "", 0.0
+        """The message last seen, and when it came."""
 
     @property
     def placed(self) -> State:
@@ -165,6 +169,11 @@ class Session:
         task = self._task
         return task.status if task is not None and task.seconds > QUIET else ""
 
+    @property
+    def work(self) -> Work | None:
+        """The same with how far it is, for the hairline; None while nothing is at work."""
+        return self._task.work if self._task is not None and self.status else None
+
     def stop(self) -> None:
         """End the task, and stay with the picture there is."""
         if self._task is not None:
@@ -199,7 +208,7 @@ class Session:
             self.state = opened(state, as_image=self.as_image)
         except ShviewerError as error:
             if not self._pass_over(state, error):
-                self.say(str(error))
+                self.say(str(error), ERROR)
 
     def _pass_over(self, tried: State, error: ShviewerError) -> bool:
         """Go on from a light that cannot be opened to the next of those that were asked for; return whether there is one."""
@@ -209,7 +218,7 @@ class Session:
             self._passed.append(light_name(bad))
             print(f"shviewer: {error}; skipped", file=sys.stderr, flush=True)
             left = tuple(one for one in tried.lights if one != bad)
-            message = skipped(self._passed, str(error))
+            message = Message(skipped(self._passed, str(error)), ERROR)
             tried = changed(show_light(self.picture.state, light), lights=left, message=message)
             try:
                 self.state = opened(tried, as_image=self.as_image)
@@ -218,14 +227,18 @@ class Session:
                 error = another
         return False
 
-    def say(self, message: str) -> None:
-        """Show a message, on one line."""
-        self.state = changed(self.state, message=one_line(message))
+    def say(self, text: str, kind: str = "") -> None:
+        """Show a message of a kind, on one line."""
+        self.state = changed(self.state, message=Message(one_line(text), kind))
 
     def tick(self, now: float) -> bool:
         """Take a step of the sweep and a look at a watched file, where they are due; return whether anything changed."""
         last, reading, said = self.state, self._reading, self._said
-        self._said = self.status
+        self._said = self.work
+        if self.state.view.message is not self._message:
+            self._message, self._message_at = self.state.view.message, now
+        elif self._message and passes(self._message) and now - self._message_at >= SECONDS:
+            self.state = changed(self.state, message="")
         if self._task is None and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
         if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
@@ -301,6 +314,7 @@ class Session:
             message = self._news(picture.light, again=again and state.recipe.light == last.state.recipe.light)
             message = "; ".join(filter(None, (reading_news(last.state.recipe, state.recipe), message)))
             if message and not state.view.message:
+                message = Message(message, WARNING if picture.light.notes else "")
                 self.state = changed(state, message=message)
                 picture = replace(picture, state=self.state)
         self.picture, self.by_map, self._taken = picture, by_map, made
@@ -321,7 +335,7 @@ class Session:
         """Stay with the picture there is, or go back to another one, and say why; a sweep ends."""
         shown = (picture or self.picture).seen(self.state)
         keep_light(shown.state.recipe, shown.subject.whole)
-        message = with_keys(str(error), self.state.recipe.light, shown.state.recipe.reading)
+        message = Message(with_keys(str(error), self.state.recipe.light, shown.state.recipe.reading), ERROR)
         tried = self.state.view.layout_tried
         self._refused = None if self.state.recipe.light == shown.state.recipe.light else self.state.recipe.light
         self.state = changed(shown.state, message=message, sweep_to=None, layout_tried=tried)
@@ -343,9 +357,9 @@ class Session:
         try:
             path = write(*arguments, **named)
         except ShviewerError as error:
-            self.say(str(error))
+            self.say(str(error), ERROR)
         else:
-            self.say(f"saved {path} in {Path.cwd()}")
+            self.say(f"saved {path} in {Path.cwd()}", DONE)
             self._log(f"saved {path}")
 
     def _news(self, light: Light, *, again: bool) -> str:

@@ -8,8 +8,12 @@ from time import perf_counter
 from typing import Generic, TypeVar
 
 from shviewer.progress import Stopped, in_words, listening
+from shviewer.viewer.overlay.foot import Work
 
 T = TypeVar("T")
+
+LEAST_DONE = 0.03
+"""The share of a work that must be done before the rest is estimated from it."""
 
 
 class Task(Generic[T]):
@@ -22,6 +26,10 @@ class Task(Generic[T]):
         self.started = perf_counter()
         self.status = ""
         """What it is doing, in words."""
+        self._words = ""
+        self._share: float | None = None
+        self._begun = (self.started, 0.0)
+        """When it began with that, and the share that was done by then."""
         self._stopped = False
         self._over = Event()
         """Set before `done` is called, which must find the task finished."""
@@ -34,6 +42,16 @@ class Task(Generic[T]):
     @property
     def seconds(self) -> float:
         return perf_counter() - self.started
+
+    @property
+    def work(self) -> Work:
+        """What it is doing and how far it is; how long it will take as soon as a part of it is done."""
+        share, (begun, before) = self._share, self._begun
+        if share is None:
+            return Work(self._words, seconds=round(self.seconds, 1))
+        spent, done = perf_counter() - begun, share - before
+        left = spent * (1 - share) / done if done > LEAST_DONE else None
+        return Work(self._words, round(share, 3), None if left is None else float(round(left)))
 
     @property
     def finished(self) -> bool:
@@ -73,5 +91,8 @@ class Task(Generic[T]):
     def _hear(self, what: str, share: float | None) -> None:
         if self._stopped:
             raise Stopped
+        if what and what != self._words:
+            self._words, self._begun = what, (perf_counter(), share or 0.0)
+        self._share = share
         if what:
             self.status = in_words(what, share)

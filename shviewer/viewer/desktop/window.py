@@ -31,6 +31,8 @@ from shviewer.viewer.desktop.glfw_window import key_name, open_window
 from shviewer.viewer.desktop.session import PATIENCE, Session
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
+from shviewer.viewer.message import DONE, ERROR, WARNING
+from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.probe import direction_at
 from shviewer.viewer.panes import Sphere
 from shviewer.viewer.picture import Picture
@@ -77,15 +79,15 @@ def run(
 
 def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
     """Say what is done for the first picture, until it is there; return False if the window is closed before."""
-    said = ""
+    said: Work | None = None
     while not first.wait(PATIENCE):
         glfw.poll_events()
         if glfw.window_should_close(handle) or glfw.get_key(handle, glfw.KEY_ESCAPE) == glfw.PRESS:
             first.stop()
             return False
         width, height = glfw.get_framebuffer_size(handle)
-        if first.status != said and width * height:
-            said = first.status
+        if first.work != said and first.status and width * height:
+            said = first.work
             canvas.wait(said, compose(width, height, 1.0, _scale(handle)))
             glfw.swap_buffers(handle)
     return True
@@ -185,7 +187,7 @@ class Window:
         ready = session.prepare(self.canvas.by_map(session.state, composition), PATIENCE)
         composition = self.composition() or composition  # a state that was refused has left another one
         try:
-            uploaded = self.canvas.show(session.picture, composition, session.status)
+            uploaded = self.canvas.show(session.picture, composition, session.work)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             if self.shown is None:
                 raise
@@ -254,15 +256,15 @@ class Window:
         try:
             text = make()
         except ShviewerError as error:
-            self.session.say(str(error))
+            self.session.say(str(error), ERROR)
             return
         if self.has_clipboard:
             glfw.get_error()  # of whatever was before
             glfw.set_clipboard_string(self.handle, text)
             if glfw.get_error()[0] == glfw.NO_ERROR:
-                self.session.say(f"copied {what}")
+                self.session.say(f"copied {what}", DONE)
                 return
-            self.session.say(f"no clipboard here: {what} is printed in the terminal")
+            self.session.say(f"no clipboard here: {what} is printed in the terminal", WARNING)
         self.has_clipboard = False
         print(text, flush=True)
 

@@ -265,18 +265,20 @@ class _Paper:
     def _blend(self, coverage: NDArray[np.uint8], left: int, top: int, ink: Ink) -> None:
         """Lay an ink over what is there, with straight alpha."""
         y, x = top - self.top, left - self.left
-        above, before = max(-y, 0), max(-x, 0)
+        above, beside = max(-y, 0), max(-x, 0)
         under = self.pixels[max(y, 0) : y + coverage.shape[0], max(x, 0) : x + coverage.shape[1]]
-        over = coverage[above : above + under.shape[0], before : before + under.shape[1]]
+        over = coverage[above : above + under.shape[0], beside : beside + under.shape[1]]
         if not under[..., 3].any():
             under[..., :3], under[..., 3] = ink[:3], over
             return
-        alpha = over.astype(np.float32) / 255
-        kept = under[..., 3].astype(np.float32) / 255 * (1 - alpha)
+        rows, columns = np.nonzero(over)  # a curve touches few of the pixels in its box
+        alpha = over[rows, columns].astype(np.float32)[:, None] / 255
+        before = under[rows, columns].astype(np.float32)
+        kept = before[:, 3:] / 255 * (1 - alpha)
         total = alpha + kept
-        share = np.divide(alpha, total, out=np.zeros_like(alpha), where=total > 0)[..., None]
-        colours = np.asarray(ink[:3], np.float32) * share + under[..., :3] * (1 - share)
-        under[..., :3], under[..., 3] = np.rint(colours), np.rint(255 * total)
+        before[:, :3] = (np.asarray(ink[:3], np.float32) * alpha + before[:, :3] * kept) / total
+        before[:, 3:] = 255 * total
+        under[rows, columns] = np.rint(before)
 
 
 def image_of(layers: Iterable[Layer], width: int, height: int) -> NDArray[np.uint8]:

@@ -118,7 +118,7 @@ def message_line(at: Composition) -> Line | None:
 
 def message_pieces(line: Line, said: str, at: Composition) -> list[Piece]:
     """A message with its mark, shortened to its line; in a compact frame over two lines if need be."""
-    sign, words = message.parted(said)
+    sign, words = message.kind_of(said), str(said)
     size, ink = at.px(12.0 if at.compact else 13.0), INKS[sign]
     left = line.left + (at.px(AFTER_MARK) if sign else 0)
     pieces = _mark(sign, line.left, line.baseline, at.px(MARK), ink, at) if sign else []

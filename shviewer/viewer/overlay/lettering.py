@@ -82,7 +82,7 @@ def width_of(text: str, size: float, weight: str = REGULAR) -> float:
 @lru_cache(maxsize=1024)
 def escaped(text: str) -> str:
     """The text with an escape, such as \\u4e2d, for everything that no face of this machine has as a letter."""
-    return "".join(c if _face_of(c) is not None else c.encode("ascii", "backslashreplace").decode() for c in text)
+    return "".join(c if _face_of(c) is not None else ascii(c)[1:-1] for c in text)
 
 
 def shortened_to(text: str, most: float, size: float, weight: str = REGULAR) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from shviewer.words import percent, radiance
 
@@ -14,6 +15,7 @@ BEYOND = 1.01
 """A bound that lies further beyond what was found than this factor is said beside it."""
 
 
+@lru_cache(maxsize=1024)
 def typeset(text: str) -> str:
     """A text of words.py with its numbers as they are set: "-1.08e-5" as "−1.08 × 10⁻⁵", "5 %" with a thin space."""
     text = re.sub(r"(?<=\d)e(-?\d+)", lambda found: f" × 10{found[1].translate(RAISE)}", text)

@@ -82,15 +82,14 @@ def draw_overlay(
     *,
     timing: bool = False,
     opengl: str = "",
-    status: str | Work = "",
+    work: Work | None = None,
     hovered: int | None = None,
 ) -> Overlay:
     """Draw everything that is written.
 
     timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
-    status: what is at work meanwhile, in place of messages. hovered: the band under the mouse.
+    work: what is at work meanwhile, in place of messages. hovered: the band under the mouse.
     """
-    work = Work(status) if isinstance(status, str) and status else status or None
     at, state = composition, picture.state
     if state.view.help_visible:
         return _overlay(at, [help_pieces(state, at, opengl, state.view.help_page)])
@@ -139,9 +138,8 @@ def draw_overlay(
     return found
 
 
-def status_layers(status: str | Work, composition: Composition) -> tuple[Layer, ...]:
+def status_layers(work: Work, composition: Composition) -> tuple[Layer, ...]:
     """What is being done, where messages stand; for a window that has no picture yet."""
-    work = Work(status) if isinstance(status, str) else status
     blocks = [hairline_pieces(composition, work), foot_pieces(composition, "", work)]
     return _overlay(composition, blocks).layers
 

@@ -263,7 +263,7 @@ with window.open_window((320, 160)) as handle:
     print(titles[-1])
     show = shown.canvas.show
 
-    def too_large(picture, composition, status=""):
+    def too_large(picture, composition, work=None):
         if picture.light.name == "studio":
             raise GraphicsError("a map too large")
         return show(picture, composition)

@@ -336,7 +336,7 @@ def test_the_kind_of_a_message_has_a_shape_and_a_colour(said: str, ink: Ink, mar
     pieces = foot_pieces(compose(1280, 640), said)
     (text,) = (piece for piece in pieces if piece.name == "message")
     assert text.ink == ink  # type: ignore[union-attr]
-    assert text.text == message.parted(said)[1]  # type: ignore[union-attr]
+    assert text.text == said  # type: ignore[union-attr]
     assert len([piece for piece in pieces if piece.name.startswith("mark")]) == marks
 
 
@@ -358,7 +358,7 @@ def test_the_hairline_fills_with_the_work_that_is_done() -> None:
     start, end = lit(at, Work("looking for suns", seconds=1.2))
     assert end - start == pytest.approx(0.2, abs=0.001)
     assert not [piece for piece in hairline_pieces(at) if isinstance(piece, Fill) and piece.ink == ACCENT]
-    said = text_of(draw_overlay(PICTURES["green"], at, status=Work("reading sky.exr", 0.43, 3.0)))
+    said = text_of(draw_overlay(PICTURES["green"], at, work=Work("reading sky.exr", 0.43, 3.0)))
     assert "reading sky.exr" in said
     assert all(words in said for words in ("43 %", "3 s left", "Esc stops"))
 
