@@ -21,7 +21,8 @@ from shviewer.coefficients.reading import interpreted
 from shviewer.coefficients.texts import convention_text
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.filters import irradiance_factors, per_coefficient
+from shviewer.harmonics.filters import per_coefficient
+from shviewer.harmonics.quantities.kernels import kernel_of
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
@@ -110,7 +111,7 @@ def error_of(exact: Array, coefficients: Array, quantity: str) -> float:
 
 def _held(exact: Array, quantity: str) -> Array:
     """The coefficients of a quantity, of a light whose radiance has these."""
-    return exact if quantity == RADIANCE else exact * per_coefficient(irradiance_factors(count_bands(exact)))
+    return exact if quantity == RADIANCE else exact * per_coefficient(kernel_of(quantity).factors(count_bands(exact)))
 
 
 def _numbers(given: CoefficientLight) -> Array:

@@ -393,3 +393,10 @@ def test_a_list_alone_is_refused_and_told_how_to_find_out(tmp_path: Path) -> Non
     (tmp_path / "bare.txt").write_text("1 1 1")
     with pytest.raises(LightError, match=r"--compare finds it out: shviewer LIGHT --compare FILE"):
         find_light(str(tmp_path / "bare.txt"))
+
+
+def test_what_a_glossy_surface_reflects_is_compared_as_that(tmp_path: Path) -> None:
+    file = tmp_path / "glossy.json"
+    assert main(["project", "venice_sunset", "--bands", "4", "--for", "glossy:0.4", "-o", str(file)]) == 0
+    recipe = compared_with(Recipe(venice()), str(file))[0]
+    assert verdict(venice(), recipe.compare) == "glossy.json agrees with the light's own to 0.0001 % over its 4 bands"
