@@ -1,22 +1,33 @@
-"""What a frame costs: python tests/benchmarks/frames.py
+"""What a frame costs: python tests/benchmarks/frames.py [OLD]
 
 CPU time of all threads, which on software OpenGL is the cost of the shaders. 1280 x 640, Green's light. The base, measured in
 the same run, shows a constant light with one band on the right. The reconstruction is summed per pixel, or drawn from its
 map (goal: at most 25 cpu-ms whatever n is), with a third sphere for the error, and with everything written over it. Then how
 far the map is from the sum (goal: under half a step of white up to 32 bands), and the CPU work of events outside the draw:
 a band key (goal: under 2 ms up to 16 bands) with its overlay, a turn of the light, and the values under the mouse.
+
+With a commit OLD, frames of it and of this checkout instead, in turns: their medians, and the ratio of the least ones (goal for
+the lines over negative light: at most 1.15 at 5 bands, and 1.10 from 9 on).
 """
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
+import tempfile
 from dataclasses import replace
+from pathlib import Path
+from statistics import median
 
 import numpy as np
+from commits import ROOT, lay_out
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
 from shviewer.analysis.figures import reconstruct
 from shviewer.viewer.actions import rotate_light
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composition import compose, frame_for
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.marks import mark_layers
@@ -36,11 +47,12 @@ def frame_costs(renderer: Renderer) -> dict[str, float]:
     pictures = {"base": base} | {f"{n} bands, sum": prepare(state_of(n_bands=n)) for n in BANDS}
     pictures |= {f"{n} bands, map": prepare(state_of(n_bands=n), by_map=True) for n in (3, 16, 32, 128)}
     pictures["16 bands, map, error"] = prepare(state_of(n_bands=16, error="signed"), by_map=True)
+    pictures["9 bands, whole sphere"] = prepare(state_of(n_bands=9, whole_sphere=True))
     pictures["16 bands, map, written over"] = pictures["16 bands, map"]
     costs = {}
     with offscreen(renderer, COMPOSITION) as target:
         for name, picture in pictures.items():  # one after the other: uploading a map is no part of a frame
-            composition = compose(1280, 640, n_spheres=picture.state.view.n_spheres)
+            composition = frame_for(picture.state.view, 1280, 640)
             layers: tuple[Layer, ...] = ()
             if "written" in name:
                 layers = (*mark_layers(picture, composition), *draw_overlay(picture, composition).layers)
@@ -99,8 +111,70 @@ def event_costs() -> None:
         print(f"{name}, 32 bands: {milliseconds:.2f} ms")
 
 
+OF_A_COMMIT = """
+import json, sys, time
+from shviewer.viewer.composition import compose
+from shviewer.viewer.picture import prepare
+from shviewer.viewer.screenshot import headless_renderer, offscreen
+from shviewer.viewer.state import state_of
+
+frame = compose(1280, 640)
+seen = {"camera": (78.0, 22.0)}
+pictures = {f"{n} bands, sum": prepare(state_of(n_bands=n, **seen)) for n in (1, 5, 9, 16)}
+pictures |= {f"{n} bands, map": prepare(state_of(n_bands=n, **seen), by_map=True) for n in (9, 16)}
+pictures["venice_sunset, 9 bands"] = prepare(state_of("venice_sunset", n_bands=9, **seen))
+with headless_renderer() as renderer, offscreen(renderer, frame) as target:
+    for line in sys.stdin:
+        costs = {}
+        for name, picture in pictures.items():
+            renderer.show(picture)
+            times = []
+            for _ in range(6):
+                start = time.process_time()
+                renderer.draw(target, frame)
+                renderer.context.finish()
+                times.append(1000 * (time.process_time() - start))
+            costs[name] = min(times[1:])
+        print(json.dumps(costs), flush=True)
+"""
+"""A process that draws frames of its checkout whenever it gets a line, and prints what each cost."""
+
+
+def between_commits(old: str, rounds: int = 9) -> None:
+    """Print what frames cost in another commit and here, drawn in turns."""
+    with tempfile.TemporaryDirectory() as name:
+        checkouts = lay_out(old, Path(name) / "old"), ROOT
+        children = [
+            subprocess.Popen(
+                [sys.executable, "-c", OF_A_COMMIT],
+                cwd=name,
+                env={**os.environ, "PYTHONPATH": str(checkout)},
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            for checkout in checkouts
+        ]
+        costs: list[list[dict[str, float]]] = [[], []]
+        for _ in range(rounds):
+            for child, found in zip(children, costs, strict=True):
+                assert child.stdin is not None
+                assert child.stdout is not None
+                child.stdin.write("\n")
+                child.stdin.flush()
+                found.append(json.loads(child.stdout.readline()))
+        for child in children:
+            child.communicate()
+        for what in costs[0][0]:
+            before, after = ([cost[what] for cost in found] for found in costs)
+            print(f"{what:<28}{median(before):8.1f} cpu-ms{median(after):8.1f} cpu-ms{min(after) / min(before):8.3f}")
+
+
 def main() -> None:
     print(machine())
+    if len(sys.argv) > 1:
+        between_commits(sys.argv[1])
+        return
     with headless_renderer() as renderer:
         print(renderer.version)
         costs = frame_costs(renderer)

@@ -392,6 +392,21 @@ def test_a_missing_include_lists_the_files_there_are(renderer: Renderer, shaders
 
 GOLDENS = {
     "golden-green.png": ["green", "--bands", "5", "--no-overlay", "--size", "320", "160"],
+    "golden-map.png": ["venice_sunset", "--bands", "9", "--map", "--error", "signed", "--size", "640", "400"],
+    "golden-behind.png": [
+        "studio",
+        "--bands",
+        "6",
+        "--camera",
+        "250",
+        "-20",
+        "--error",
+        "absolute",
+        "--size",
+        "900",
+        "400",
+    ],
+    "golden-surfaces.png": ["green", "--bands", "6", "--lobes", "--no-overlay", "--size", "320", "160"],
     "golden-studio.png": ["studio", "--bands", "8", "--mute", "2", "--size", "640", "320"],
 }
 

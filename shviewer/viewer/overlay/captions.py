@@ -202,8 +202,9 @@ def _beside_words(picture: Picture, second: Beside) -> tuple[str, list[Part]]:
 
 
 def _radius(clipped: bool) -> list[Part]:
-    """What the radius of a surface is."""
-    return [("radius: magnitude",), *([("cut at the circle", "cut")] if clipped else [])]
+    """What the radius of a light's surface is."""
+    root = ("radius: square root of magnitude", "radius: root of magnitude", "radius: root")
+    return [root, *([("cut at the circle", "cut")] if clipped else [])]
 
 
 def _foot(picture: Picture, line: Line, at: Composition, timing: bool, *, unsaid: bool) -> list[Piece]:

@@ -30,14 +30,14 @@ RING, COMPACT_RING, THICKNESS, CASING_WIDTH = 6.5, 5.2, 1.5, 1.4
 TYPE, COMPACT_TYPE, GAP = 12.0, 11.0, 5.0
 """Sizes of the text, and the space before it."""
 
-AWAY, BASE, HEIGHT = 4.0, 8.0, 8.0
+AWAY, BASE, HEIGHT = 3.0, 7.0, 10.0
 """The triangle: its distance from the limb, its base and its height."""
 
 STEP = 3
 """Degrees in which triangles turn, and in which room for their text is sought along the limb."""
 
-SHORT, NEAR, FARTHEST = 4, 30, 84
-"""Degrees along the limb between a triangle and its text: up to SHORT no line joins them, up to NEAR all words are kept."""
+NEAR, FARTHEST = 30, 84
+"""Degrees along the limb between a triangle and its text: up to NEAR all words are kept."""
 
 ORIGINAL, RECONSTRUCTION, ERROR = 0, 1, 2
 FAR = Box(-1e6, -1e6, 1e6, 1e6)
@@ -175,12 +175,13 @@ def _beside(
 
 
 def _arc(sphere: Sphere, angle: int, turn: int, composition: Composition) -> tuple[Layer, ...]:
-    """A line along the limb from a triangle to its text."""
+    """A line along the limb from a triangle to its text, unless they nearly touch."""
     radius = sphere.radius + composition.px(AWAY)
-    begin, end = (angle + part * (1 if turn > 0 else -1) for part in (SHORT, abs(turn)))
-    if abs(turn) <= SHORT:
+    aside = degrees(composition.px(BASE / 2 + 2) / radius)
+    if abs(turn) < 2 * aside:
         return ()
-    turns = np.radians(np.linspace(begin, end, 2 + abs(turn) // 3))
+    begin = aside if turn > 0 else -aside
+    turns = np.radians(angle + np.linspace(begin, turn, 2 + abs(turn) // 3))
     points = tuple((sphere.x + radius * cos(t), sphere.y - radius * sin(t)) for t in turns)
     return _layers((Curve(points, composition.px(1.0), GREY, FAR),), 0, 0)
 

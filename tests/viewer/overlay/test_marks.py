@@ -87,8 +87,8 @@ def test_what_is_behind_is_told_outside_the_limb_in_its_direction(size: tuple[in
         height, width = triangle.image.shape[:2]
         right, down = triangle.left + width / 2 - sphere.x, triangle.top + height / 2 - sphere.y
         towards = np.array([mark.x - sphere.x, mark.y - sphere.y])
-        assert np.array([right, down]) @ towards / np.hypot(right, down) / np.linalg.norm(towards) > np.cos(0.06)
-        assert np.hypot(right, down) < sphere.radius + 14 * composition.scale
+        assert np.array([right, down]) @ towards / np.hypot(right, down) / np.linalg.norm(towards) > np.cos(0.08)
+        assert np.hypot(right, down) < sphere.radius + 12 * composition.scale
         if mark.label:
             assert not any(mark.label.overlaps(other) for other in obstacles)
             assert not any(other.touches(mark.label) for other in composition.spheres)
