@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -13,6 +14,7 @@ from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.api import LightLike, find_light, recipe_of, with_options
 from shviewer.errors import UsageError
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.viewer import screenshot as offscreen
 from shviewer.viewer.composition import frame_for
 from shviewer.viewer.picture import first_picture, prepare
@@ -80,6 +82,8 @@ def _state(light: LightLike, bands: int | None, options: dict[str, Any], size: A
     view = View(**taken(options, View))
     view.check()
     recipe = recipe_of(light, bands, options, View)
+    if bands is None and view.encode:
+        recipe = replace(recipe, n_bands=ENCODED_BANDS[view.encode])
     state = State(recipe, view, (recipe.light,))
     state.check((width, height))
     return state

@@ -14,6 +14,7 @@ import numpy as np
 
 from shviewer.analysis.cache import MEMORY, remember
 from shviewer.analysis.recipe import Recipe
+from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
@@ -40,6 +41,8 @@ class Projection:
     """The time; None if nothing was projected: given coefficients, or some that the light had kept."""
     radiance: Array
     """The coefficients of the light's source, from which those of another quantity follow."""
+    encoding: str = ""
+    """The encoding of irradiance that the coefficients stand for; "" for the plain bands."""
 
     @property
     def n_bands(self) -> int:
@@ -130,6 +133,21 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
             known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
         if len(known) > MOST_MEASUREMENTS:
             known.popitem(last=False)
+
+
+@remember(most=16, doing="encoding the irradiance")
+def encoded(light: Light, projection: Projection, name: str) -> Projection:
+    """An irradiance as one of ENCODINGS keeps it, made of the first bands of a projection."""
+    from shviewer.harmonics.quantities.encodings import BANDS, ENCODINGS
+
+    encoding = ENCODINGS[name]
+    try:
+        made = encoding.make(projection.radiance[: BANDS**2])
+    except ValueError as error:
+        raise UsageError(f"encode {name}: {error}") from error
+    coefficients = np.zeros_like(projection.coefficients)
+    coefficients[: len(made)] = made
+    return replace(projection, coefficients=coefficients, encoding=name)
 
 
 @remember(most=8)

@@ -12,7 +12,7 @@ from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.option_groups import finite
 from shviewer.errors import UsageError
-from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
+from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE, RADIANCE, in_words
 from shviewer.outputs import Replacing
 from shviewer.words import one_line
 
@@ -135,7 +135,11 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     light = start.recipe.light if pictured else entry
     options.size = tuple(options.size or (pictured and pictured.size) or DEFAULT_SIZE)
     options.no_overlay = vars(options).get("no_overlay") or (pictured is not None and not pictured.overlay)
-    view = _view_from(options, start.view)
+    view, counted_bands = _view_from(options, start.view), not (options.n_bands is None and options.tolerance is None)
+    if options.encode and counted_bands:
+        raise UsageError(f"--encode {options.encode}: it takes the place of bands; leave out --bands and --tolerance")
+    encoding = "" if counted_bands or (options.quantity and not options.encode) else view.encode
+    view = replace(view, encode="")
     asked = start.recipe.n_bands if options.n_bands is None else options.n_bands
     State(Recipe(n_bands=asked), view).check(options.size)
     recipe, said = recipe_from(options, light, start.recipe if pictured else START)
@@ -147,6 +151,9 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     state = changed(
         state, message=said or view.message, basis=tuple(options.basis) if options.basis else start.view.basis
     )
+    if encoding:
+        n_bands = ENCODED_BANDS.get(encoding, state.recipe.n_bands)
+        state = changed(state, n_bands=n_bands, encode=encoding)
     state.check()
     if pictured and pictured.said:
         print(one_line(f"shviewer: note: {options.like or entry}: {pictured.said}"), file=sys.stderr)

@@ -58,6 +58,8 @@ def _check_sweep(options: argparse.Namespace) -> None:
         raise UsageError(
             "--basis: a sweep shows what each number of bands makes of the light; give --turntable, or --lobes"
         )
+    if options.encode:
+        raise UsageError(f"--encode {options.encode}: a sweep goes through bands, which an encoding takes the place of")
     if options.frames is not None:
         raise UsageError(f"--frames {options.frames}: a sweep has one for each band count; give --from and --to")
     if options.n_bands is not None:

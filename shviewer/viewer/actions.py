@@ -11,6 +11,7 @@ from shviewer.analysis.options import Choice, options_of
 from shviewer.analysis.recipe import WINDOWS, Recipe, light_name
 from shviewer.harmonics.basis import Array, degree_order, index
 from shviewer.harmonics.quantities.names import (
+    ENCODED_BANDS,
     IRRADIANCE,
     LEAST_ROUGHNESS,
     MOST_ROUGHNESS,
@@ -62,8 +63,21 @@ def next_choice(state: State, name: str) -> State:
     return changed(state, **{name: _after(_held(state, name), kind.choices)})
 
 
+def next_encoding(state: State) -> State:
+    """Show the next encoding of irradiance in place of bands; after the last come the three bands that shading needs."""
+    if state.recipe.quantity != IRRADIANCE:
+        return changed(state, message="encodings are of irradiance: I shows it")
+    if state.recipe.compare:
+        return changed(
+            state, message=f"the coefficients are those of {state.recipe.compare.name}: R shows the light's own"
+        )
+    encoding = _after(state.view.encode, ("", *ENCODED_BANDS))
+    return changed(with_bands(state, ENCODED_BANDS.get(encoding, 3)), encode=encoding)
+
+
 def next_quantity(state: State) -> State:
-    """Go from radiance to irradiance, to the glossy quantity shown last, and back."""
+    """Go from radiance to irradiance, to the glossy quantity shown last, and back; bands take the place of an encoding."""
+    state = changed(state, encode="")
     match state.recipe.quantity:
         case "radiance":
             return changed(state, quantity=IRRADIANCE)
@@ -77,6 +91,7 @@ def rougher(state: State, step: float) -> State:
     """Show a glossy quantity of more roughness, or of less; at first that shown last."""
     now = roughness_of(state.recipe.quantity)
     wanted = state.view.roughness if now is None else round(now / abs(step)) * abs(step) + step
+    state = changed(state, encode="")
     roughness = round(min(max(wanted, LEAST_ROUGHNESS), MOST_ROUGHNESS), 6)
     return changed(state, quantity=glossy(roughness), roughness=roughness)
 
@@ -106,7 +121,8 @@ def with_bands(state: State, n_bands: int) -> State:
         state = changed(state, message=state.recipe.compare.extent)
     n_bands = min(max(n_bands, 1), most)
     basis = state.view.basis if state.view.basis is not None and state.view.basis[0] < n_bands else None
-    return changed(state, n_bands=n_bands, cursor=min(state.view.cursor, n_bands - 1), basis=basis, sweep_to=None)
+    cursor = min(state.view.cursor, n_bands - 1)
+    return changed(state, n_bands=n_bands, cursor=cursor, basis=basis, sweep_to=None, encode="")
 
 
 def toggle_band(state: State, band: int) -> State:

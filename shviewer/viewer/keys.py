@@ -99,10 +99,16 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("I", "radiance, irradiance or glossy", {"I": do.next_quantity}, lambda s: in_words(s.recipe.quantity)),
         Binding("K / Shift+K", "rougher, smoother surface", _each(do.rougher, {"K": ROUGHER, "Shift+K": -ROUGHER})),
         Binding(
+            "C",
+            "irradiance as engines store it",
+            {"C": do.next_encoding},
+            lambda s: s.view.encode or "bands",
+        ),
+        Binding(
             "J",
             "bands against roughness",
-            _each(do.toggle, {"J": "against_roughness"}),
-            lambda s: "shown" if s.view.against_roughness else "hidden",
+            _each(do.toggle, {"J": "by_roughness"}),
+            lambda s: "shown" if s.view.by_roughness else "hidden",
         ),
         Binding(
             "U",

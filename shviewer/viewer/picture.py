@@ -178,7 +178,7 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
     """
     state.check()
     recipe, view = state.recipe, state.view
-    found = reconstruction_of(recipe, ahead)
+    found = reconstruction_of(recipe, ahead, view.encode)
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
     scale = _scale(state, light, projection)
     stops = exposure_stops(view, whole)

@@ -7,10 +7,12 @@ from typing import Any
 
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
+from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.view import View
+from shviewer.words import counted
 
 IN_RECIPE = frozenset(part.name for part in fields(Recipe))
 IN_VIEW = frozenset(part.name for part in fields(View))
@@ -52,6 +54,18 @@ class State:
             raise UsageError("--map with --lobes or --basis: surfaces have no map; leave one out")
         if self.view.evaluate == "direct" and n_bands > MAX_DIRECT_BANDS:
             raise UsageError(f"{n_bands} bands: at most {MAX_DIRECT_BANDS} are summed directly; map or auto take more")
+        if encoding := self.view.encode:
+            if self.recipe.quantity != IRRADIANCE:
+                raise UsageError(f"encode {encoding}: engines store it of irradiance; give --for irradiance")
+            if self.recipe.compare:
+                raise UsageError(
+                    f"encode {encoding}: coefficients that are compared are shown as they are; leave one out"
+                )
+            if n_bands != ENCODED_BANDS[encoding]:
+                bands = counted(ENCODED_BANDS[encoding], "band")
+                raise UsageError(
+                    f"encode {encoding}: it stands for {bands}, not {n_bands}; leave out the number of bands"
+                )
         if basis is not None and not abs(basis[1]) <= basis[0] < n_bands:
             raise UsageError(f"basis function {basis} of {n_bands} bands: l must be 0 to {n_bands - 1}, m -l to l")
         if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from shviewer.analysis.options import Choice, Flag, Number, Pair, check_options, option
 from shviewer.errors import UsageError
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.limits import BRIGHTEST, DIMMEST
 
 if TYPE_CHECKING:
@@ -93,11 +94,19 @@ class View:
         "--basis",
         ("L", "M"),
     )
-    against_roughness: bool = option(
+    encode: str = option(
+        "",
+        Choice(("", *ENCODED_BANDS)),
+        "show what engines store of the irradiance in few numbers, in place of bands: l1, geomerics, hallucinated, zh3, the"
+        " last two also with -shared, l2 or l2-deringed; with --for irradiance",
+        "--encode",
+        "NAME",
+    )
+    by_roughness: bool = option(
         False,
         Flag(),
         "plot the fewest bands within the tolerance against roughness, in place of error against bands",
-        "--against-roughness",
+        "--by-roughness",
         const=True,
     )
     sheet: str = ""

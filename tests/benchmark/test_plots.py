@@ -227,7 +227,7 @@ def test_the_legend_names_every_curve_and_lies_outside_the_axes(matplotlib: Any)
 
 
 @pytest.mark.usefixtures("matplotlib")
-def test_bands_against_roughness_are_drawn_also_where_a_light_needs_more_than_there_are(tmp_path: Path) -> None:
+def test_bands_by_roughness_are_drawn_also_where_a_light_needs_more_than_there_are(tmp_path: Path) -> None:
     steps = staircases([measured_light(find_light("green")), measured_light(find_light("sun-sky"))])
     assert steps["sun-sky"][0.05].counts[0] is None
     extra = {"roughness": json.loads(json.dumps(as_extra(steps)))}

@@ -30,12 +30,13 @@ from shviewer.harmonics.extremes.climbing import climb
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import fibonacci
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.harmonics.zonal import orient
 
 BANDS = 3
 """Bands of radiance that encodings are made of."""
 
-GEOMERICS_BANDS = 32
+GEOMERICS_BANDS = ENCODED_BANDS["geomerics"]
 
 SEARCHED, SEARCH_ROUNDS = 2000, 40
 """Directions, and rounds of climbing from the best of them, for the axis of `solved`."""

@@ -1,4 +1,4 @@
-"""Quantities by name: radiance, irradiance, and what a glossy surface of some roughness reflects. Loads no numpy."""
+"""Quantities and encodings by name, as options take them. Loads no numpy."""
 
 from __future__ import annotations
 
@@ -12,6 +12,18 @@ RULE = (
     f"it must be {RADIANCE}, {IRRADIANCE} or {GLOSSY}R with a roughness R of {LEAST_ROUGHNESS:g} to {MOST_ROUGHNESS:g}, "
     f"such as {GLOSSY}0.4, or of 0, which is {RADIANCE}"
 )
+
+ENCODED_BANDS = {
+    "l1": 2,
+    "geomerics": 32,
+    "hallucinated": 3,
+    "hallucinated-shared": 3,
+    "zh3": 3,
+    "zh3-shared": 3,
+    "l2": 3,
+    "l2-deringed": 3,
+}
+"""Encodings of irradiance that can be looked at (encodings.py) -> the bands of the function that each stands for."""
 
 
 def glossy(roughness: float) -> str:

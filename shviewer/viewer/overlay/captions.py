@@ -9,6 +9,7 @@ from typing import TypeAlias
 from shviewer.analysis.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.metrics import LUMINANCE
+from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import RADIANCE, in_words
 from shviewer.viewer.beside import Beside, words_of
 from shviewer.viewer.composition import Caption, Composition
@@ -164,6 +165,9 @@ def _reconstruction_words(picture: Picture, at: Composition) -> tuple[str, list[
         coefficient = f"coefficient {radiance(value, picture.figures.peak)}"
         return typeset(describe_basis(view)), [(coefficient,), ("radius: magnitude",)]
     changes = _changes(picture)
+    if view.encode:
+        encoding = ENCODINGS[view.encode]
+        return encoding.words, [(f"{encoding.floats} numbers a channel",), *changes]
     if isinstance(picture.drawn, Surfaces):
         return head, [*changes, *_radius(picture.drawn.shown[1].clipped)]
     method = picture.projection.method.partition("; ")[0] if at.maps else ""

@@ -117,7 +117,7 @@ def draw_overlay(
         answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])
     blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
     if numbers.curve is not None:
-        if state.view.against_roughness:
+        if state.view.by_roughness:
             steps = steps_of(picture)
             blocks += [steps_pieces(steps, picture, at), steps_legend(steps, picture, at)]
         else:
@@ -128,7 +128,7 @@ def draw_overlay(
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)
-            words = "bands against roughness" if state.view.against_roughness else "error against bands"
+            words = "bands against roughness" if state.view.by_roughness else "error against bands"
             blocks.append([Text("curve_head", head.left, head.baseline, words, size, INK, SEMIBOLD)])
     found = _overlay(at, blocks, bars)
     if plane is not None:
@@ -147,7 +147,7 @@ def status_layers(work: Work, composition: Composition) -> tuple[Layer, ...]:
 def foresee(picture: Picture) -> None:
     """Compute what the text of a picture needs beyond the picture, so that drawing it takes no time for the light."""
     band_series(picture)
-    if picture.state.view.against_roughness:
+    if picture.state.view.by_roughness:
         steps_of(picture)
 
 

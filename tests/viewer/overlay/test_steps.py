@@ -19,7 +19,7 @@ from shviewer.viewer.state import State, state_of
 
 
 def shown(light: str = "st_fagans_interior", **values: object) -> Picture:
-    return prepare(state_of(light, against_roughness=True, **values))
+    return prepare(state_of(light, by_roughness=True, **values))
 
 
 def test_the_sentence_under_the_steps_is_that_of_the_light_and_its_bands() -> None:
@@ -72,5 +72,5 @@ def test_the_quantity_shown_has_its_dot() -> None:
 def test_J_goes_there_and_back() -> None:
     there = press(State(), "J")
     assert isinstance(there, State)
-    assert there.view.against_roughness
+    assert there.view.by_roughness
     assert press(there, "J") == State()
