@@ -232,3 +232,14 @@ def test_the_matrices_undo_what_their_orientations_did() -> None:
         done = done[mirrored_orders(4)] if orientation.mirrored else done
         np.testing.assert_allclose(matrix @ done, coefficients, atol=1e-13)
     assert len(orientations()) == 192
+
+
+def test_a_program_with_fewer_bands_than_the_list_is_no_explanation() -> None:
+    """Six bands are compared of twelve, but the text has to read all of them."""
+    numbers = np.asarray(parse_convention("shviewer,-y+z+x").from_ours(asymmetric(12)))
+    found = explain(Listed(numbers), asymmetric(12))
+    assert found is not None
+    assert convention_text(found.convention) == "shviewer,-y+z+x"
+    six = explain(Listed(numbers[:36]), asymmetric(12))
+    assert six is not None
+    assert convention_text(six.convention) == "directxmath"

@@ -13,8 +13,10 @@ from shviewer.harmonics.basis import Array
 USUAL_AXES = {"+y+z+x": "z forward", "+z+x+y": "y polar"} | {text: name for name, text in NAMED_AXES.items()}
 """Axes that programs have; any others cost as much as two mistakes."""
 
+HALF_TURN = "-x-y+z"
+
 TURNS = {
-    "-x-y+z": "of the map turned by half a turn",
+    HALF_TURN: "of the map turned by half a turn",
     "+y-x+z": "of the map turned by a quarter, its left in the middle",
     "-y+x+z": "of the map turned by a quarter, its right in the middle",
     "+x-y+z": "of the map mirrored, left and right exchanged",

@@ -10,30 +10,29 @@ degree, the best constant is K = sum p / sum f d, and the squared error that is 
 1 - (sum f d)^2 / (sum p sum f^2 e). So each g' serves all factors, channels and constants at once. Degrees that the list
 cannot tell, A(3) = 0, must be empty in it.
 
-Among errors that are about equal the explanation decides that costs least: 1 for each thing that must have gone wrong, more
-for odd ones, and no more for a program's own convention, which explains many things at once.
+Among errors that are about equal the explanation decides that costs least (costs.py), and chance.py says what it is worth.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
-from itertools import product
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.diagnosis.chance import chance
-from shviewer.coefficients.diagnosis.orientations import TURNS, USUAL_AXES, Orientation, between, orientations, undoing
-from shviewer.coefficients.diagnosis.ways import Taken, Way, sequence_of, ways
+from shviewer.coefficients.diagnosis.costs import ANY_FACTOR, CHANNELS, NAMED_FACTOR, Combination, combinations
+from shviewer.coefficients.diagnosis.costs import costs as costs_of
+from shviewer.coefficients.diagnosis.orientations import Orientation, orientations, undoing
+from shviewer.coefficients.diagnosis.ways import Taken, Way, ways
 from shviewer.coefficients.numbers import Listed
-from shviewer.coefficients.parts.axes import Axes, all_axes
 from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, FLAT_BY_CHANNEL, channel_places
-from shviewer.coefficients.parts.quantities import IRRADIANCE, QUANTITIES, RADIANCE, is_over_pi, whole
+from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, is_over_pi, whole
 from shviewer.coefficients.parts.rows import ACN
 from shviewer.coefficients.parts.scales import SCALES
-from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
+from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors
 
@@ -61,19 +60,6 @@ CONSTANTS = {
 }
 """Words -> a factor that the numbers often have."""
 
-NAMED_FACTOR, ANY_FACTOR = 1.02, 1.4
-"""The cost of one of these, which may be part of a quantity or normalisation, and of any other."""
-
-ODD_AXES, HALF_TURN, ANOTHER_PROGRAM, PROGRAM, OPEN_READING = 2.05, 1.02, 1.1, 0.9, 1.02
-"""The cost of axes that no program has; of half a turn, which the phase is, too; of a program, where another was named and
-where none was; and of one of the two readings of a program whose phase nobody documents.
-"""
-
-CHANNEL_COSTS = np.array([0.0 if order == "rgb" else 1.0 if order == "bgr" else 2.0 for order in CHANNEL_ORDERS])
-
-Combination = tuple[str, str]
-"""A quantity and a normalisation."""
-
 
 @dataclass(frozen=True)
 class Explanation:
@@ -96,8 +82,8 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
     exact = exact[: n_bands**2]
     if not exact.any() or not found[0].table[: n_bands**2].any():
         return None
-    tried = [_Tried(way, exact, n_bands) for way in found]
-    costs = [_costs(one.taken, n_bands, named, listed.numbers.ndim == 1, listed.placed) for one in tried]
+    tried, flat = [_Tried(way, exact, n_bands) for way in found], listed.numbers.ndim == 1
+    costs = [costs_of(one.taken, count_bands(found[0].table), named, flat, listed.placed) for one in tried]
     for one, (cost, _) in zip(tried, costs, strict=True):
         one.misfits[:, np.isinf(cost)] = np.inf
     least = min(float(one.misfits.min()) for one in tried)
@@ -106,7 +92,7 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
     for one, (cost, _) in zip(tried, costs, strict=True):
         near = one.misfits <= good
         if near.any():
-            total = np.where(near, cost + CHANNEL_COSTS[:, None, None] + one.constant_costs(good), np.inf)
+            total = np.where(near, cost + CHANNELS[:, None, None] + one.constant_costs(good), np.inf)
             place = int(total.argmin())
             if total.flat[place] < most - 1e-9:
                 best, most = (one, np.unravel_index(place, total.shape)), float(total.flat[place])
@@ -119,9 +105,7 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
     convention = _convention(
         base, one.taken, orientations()[orientation], CHANNEL_ORDERS[channels], one.combinations[combination], factor
     )
-    within = sum(
-        int((CHANNEL_COSTS[:, None, None] + cost <= most + 1e-9).sum()) * (1 + len(CONSTANTS)) for cost, _ in costs
-    )
+    within = sum(int((CHANNELS[:, None, None] + cost <= most + 1e-9).sum()) * (1 + len(CONSTANTS)) for cost, _ in costs)
     return Explanation(
         convention,
         float(one.misfits[channels, orientation, combination]),
@@ -134,7 +118,7 @@ class _Tried:
 
     def __init__(self, way: Way, exact: Array, n_bands: int) -> None:
         self.taken = way.taken
-        self.combinations = _combinations(way.taken)
+        self.combinations = combinations(way.taken)
         self.factors = np.array([_factors(*combination, n_bands) for combination in self.combinations])
         starts = np.arange(n_bands) ** 2
         turned = undoing(n_bands) @ way.table[: n_bands**2]  # (192, n**2, 3)
@@ -189,72 +173,6 @@ def _factors(quantity: str, scale: str, n_bands: int) -> Array:
         scale = "orthonormal"
     return np.asarray(
         factors * SCALES[scale][0](n_bands)[np.arange(n_bands) ** 2] / (np.pi if is_over_pi(quantity) else 1.0)
-    )
-
-
-def _combinations(taken: Taken) -> list[Combination]:
-    return list(product(QUANTITIES, taken.scales))
-
-
-@lru_cache(512)
-def _costs(
-    taken: Taken, n_bands: int, named: Convention | None, flat: bool, placed: bool
-) -> tuple[Array, NDArray[np.int64]]:
-    """The cost of each orientation and combination, (192, k), without channels and constant, and the base that has it."""
-    combinations = _combinations(taken)
-    best = np.full((len(orientations()), len(combinations)), np.inf)
-    bases = np.zeros(best.shape, dtype=np.int64)
-    for number, base in enumerate(CONVENTIONS.values()):
-        if n_bands > (base.most_bands or n_bands) or taken.complex != base.complex:
-            continue
-        other_order = taken.order != base.order and not placed
-        if base is not OURS and (other_order or taken.shift != base.shift):
-            continue
-        at_base = named is not None and named.name == base.name
-        cost = 0.0 if at_base or (named is None and base is OURS) else PROGRAM if named is None else ANOTHER_PROGRAM
-        if not at_base and any(base.name in readings for readings in READINGS.values()):
-            cost = OPEN_READING if named is None else ANOTHER_PROGRAM
-        sequence = sequence_of(base.sequence, flat)
-        if base.sequence == FLAT_BY_CHANNEL and taken.sequence != sequence:
-            continue
-        cost += taken.sequence != (sequence_of(named.sequence, flat) if at_base and named else sequence)
-        cost += other_order + (taken.shift != base.shift)
-        turned = _axes_costs(base.basis_axes, base is OURS)
-        for first in range(0, len(best), len(turned)):
-            phase, mirrored, _ = orientations()[first]
-            if "polynomial" in taken.scales and (phase or (mirrored and n_bands > 2)):
-                continue  # the phase of polynomials is a half turn, and their factors are those of m and not of -m
-            if base is not OURS and (phase, mirrored) != (base.phase, base.mirrored):
-                continue
-            free = (phase != base.phase and "polynomial" not in taken.scales) + (mirrored != base.mirrored)
-            for column, (quantity, scale) in enumerate(combinations):
-                held = base.quantity or (named.quantity if at_base and named else None) or RADIANCE
-                if base is not OURS and (scale != base.scale or (base.quantity and quantity != base.quantity)):
-                    continue
-                other = whole(quantity) != whole(held)
-                changed = other + (0.6 if other else 1.0) * (is_over_pi(quantity) != is_over_pi(held))
-                total = cost + free + turned + changed + (scale != base.scale)
-                rows = slice(first, first + len(turned))
-                better = total < best[rows, column]
-                best[rows, column] = np.where(better, total, best[rows, column])
-                bases[rows, column] = np.where(better, number, bases[rows, column])
-    return best, bases
-
-
-@cache
-def _axes_costs(meant: Axes, ours: bool) -> Array:
-    """The cost of each of all axes where these were meant."""
-    return np.array(
-        [
-            0.0
-            if axes == meant
-            else HALF_TURN
-            if between(meant, axes).text == "-x-y+z"
-            else 1.0
-            if between(meant, axes).text in TURNS or (ours and axes.text in USUAL_AXES)
-            else ODD_AXES
-            for axes in all_axes()
-        ]
     )
 
 
