@@ -315,7 +315,7 @@ def test_a_file_goes_through_the_functions_that_the_journey_names(tmp_path: Path
     seen: list[str] = []
 
     def note(frame: FrameType, event: str, argument: object) -> None:
-        function = frame.f_code.co_flags & CO_OPTIMIZED  # and no body of a module or a class, which runs when it is imported
+        function = frame.f_code.co_flags & CO_OPTIMIZED  # and no body of a module or a class: those run on import
         if event == "call" and "shviewer/" in frame.f_code.co_filename and function:
             name = frame.f_code.co_filename.rpartition("shviewer/")[2]
             if name in files and name not in seen:
