@@ -39,6 +39,9 @@ STEP = 3
 NEAR, FARTHEST = 30, 84
 """Degrees along the limb between a triangle and its text: up to NEAR all words are kept."""
 
+CLEAR, OFF = 3.0, 8.0
+"""Pixels of the design between those words and a sphere, and over and under them to other text, whose lines they are not."""
+
 ORIGINAL, RECONSTRUCTION, ERROR = 0, 1, 2
 FAR = Box(-1e6, -1e6, 1e6, 1e6)
 
@@ -94,7 +97,7 @@ def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[
         pane = composition.panes[mark.pane]
         x, y, behind = pane.place(picture.light_from_world.T @ mark.direction, picture.world_from_view)
         if behind and isinstance(pane, Sphere):
-            found = _outside(mark.text, x, y, pane, composition, obstacles)
+            found = _outside(mark, x, y, pane, composition, obstacles)
         elif pane.clip.contains(x, y) and not any(other.contains(x, y) for other in obstacles):
             found = _on(mark.text, x, y, pane, composition, obstacles)
         else:
@@ -125,7 +128,7 @@ def _on(text: str, x: float, y: float, pane: Pane, composition: Composition, obs
 
 
 def _outside(
-    text: str, x: float, y: float, sphere: Sphere, composition: Composition, obstacles: Sequence[Box]
+    mark: Mark, x: float, y: float, sphere: Sphere, composition: Composition, obstacles: Sequence[Box]
 ) -> Placed | None:
     """A triangle outside the limb that points away from the sphere, and its text where there is room; None without any."""
     angle = STEP * round(degrees(atan2(sphere.y - y, x - sphere.x)) / STEP)
@@ -138,16 +141,19 @@ def _outside(
         return None
     left, top = round(middle[0]), round(middle[1])
     triangle = _layers((_triangle(angle, composition.scale),), left, top)
-    taken, size = (*obstacles, around), _type(composition)
-    cell = Box(max(room.left, sphere.clip.left), room.top, min(room.right, sphere.clip.right), room.bottom)
-    for within, words in product((NEAR, FARTHEST), ((text, ", behind"), (text,))):
+    size = _type(composition)
+    side = sphere.x - composition.captions[mark.pane].head.left
+    cell = Box(sphere.x - side, room.top, sphere.x + side, room.bottom)
+    wide, high_ = composition.px(CLEAR), composition.px(OFF)
+    for within, words in product((0, NEAR, FARTHEST), ((mark.text, ", behind"), (mark.text,))):
         pieces, long, high = _label(words, size)
         for offset, x_, y_ in _beside(sphere, angle, middle, long, high, composition):
             at = round(x_), round(y_)
             box = Box(at[0], at[1], at[0] + long, at[1] + high)
-            apart = Box(box.left - 2, box.top - 2, box.right + 2, box.bottom + 2)
+            apart = Box(box.left - wide, box.top - wide, box.right + wide, box.bottom + wide)
+            clearing = Box(apart.left, box.top - high_, apart.right, box.bottom + high_)
             clear = abs(offset) <= within and not any(pane.touches(apart) for pane in composition.panes)
-            if clear and _within(box, cell) and _free(box, taken):
+            if clear and _within(box, cell) and _free(clearing, obstacles) and _free(box, (around,)):
                 words_ = _layers(pieces, *at)
                 arc = _arc(sphere, angle, offset, composition) if offset else ()
                 return Placed(x, y, True, box, (*arc, *triangle, *words_))
@@ -178,7 +184,7 @@ def _arc(sphere: Sphere, angle: int, turn: int, composition: Composition) -> tup
     """A line along the limb from a triangle to its text, unless they nearly touch."""
     radius = sphere.radius + composition.px(AWAY)
     aside = degrees(composition.px(BASE / 2 + 2) / radius)
-    if abs(turn) < 2 * aside:
+    if radians(abs(turn) - aside) * radius < composition.px(12):
         return ()
     begin = aside if turn > 0 else -aside
     turns = np.radians(angle + np.linspace(begin, turn, 2 + abs(turn) // 3))
