@@ -280,7 +280,7 @@ def face(state: State, direction: Array) -> State:
     """Turn all spheres so that a direction in the world (3,) is in front, or move the maps so that it is in the middle."""
     if state.view.whole_sphere:
         return _centred(state, *facing(direction))
-    return changed(state, camera=facing(direction))
+    return changed(state, camera=facing(direction), pan=View.pan)
 
 
 def _centred(state: State, azimuth: float, elevation: float) -> State:
@@ -301,8 +301,41 @@ def rotate_light(state: State, right: float, up: float) -> State:
 def zoom(state: State, steps: float) -> State:
     low, high = ZOOM_RANGE
     low = 1.0 if state.view.whole_sphere else low  # a map has no more to show
-    state = changed(state, zoom=min(max(state.view.zoom * 1.1**steps, low), high))
-    return _centred(state, *state.view.map_centre)
+    wanted = min(max(state.view.zoom * 1.1**steps, low), high)
+    zoomed = changed(state, zoom=wanted, pan=_within(state.view.pan, wanted))
+    return _centred(zoomed, *state.view.map_centre)
+
+
+def zoom_about(state: State, steps: float, right: float, up: float) -> State:
+    """Zoom so that a point stays where it is: right and up from the middle of its sphere, in radii at zoom 1.
+
+    Going back, the middle comes nearer to its place again, and at zoom 1 it is there.
+    """
+    zoomed = zoom(state, steps)
+    grown = zoomed.view.zoom / state.view.zoom - 1
+    x, y = state.view.pan
+    most = zoomed.view.zoom if steps > 0 else max(zoomed.view.zoom - 1, 0.0)
+    return changed(zoomed, pan=_within((x - right * grown, y - up * grown), most))
+
+
+def zoom_map_about(state: State, steps: float, azimuth: float, elevation: float) -> State:
+    """Zoom maps so that a direction stays where it is: so many degrees from the one in their middle."""
+    zoomed = zoom(state, steps)
+    nearer = 1 - state.view.zoom / zoomed.view.zoom
+    middle = state.view.map_centre
+    return _centred(zoomed, middle[0] + azimuth * nearer, middle[1] + elevation * nearer)
+
+
+def pan(state: State, right: float, up: float) -> State:
+    """Move the spheres, in radii at zoom 1, as far as something of them is in sight."""
+    x, y = state.view.pan
+    return changed(state, pan=_within((x + right, y + up), state.view.zoom))
+
+
+def _within(place: tuple[float, float], radius: float) -> tuple[float, float]:
+    """The place, or the nearest to it that is no further than `radius` from the middle."""
+    far = math.hypot(*place)
+    return place if far <= radius else (place[0] * radius / far, place[1] * radius / far)
 
 
 def open_light(state: State, light: str | Light) -> State:

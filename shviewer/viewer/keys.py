@@ -180,8 +180,13 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         ),
         Binding("drag", "turn the spheres", {}, lambda s: describe_camera(s.view)),
         Binding("double click", "face that point", {}),
-        Binding("scroll", "zoom", {}, lambda s: f"{s.view.zoom:.2f} x"),
-        Binding("F", "face the light", {"F": partial(changed, camera=None, zoom=1.0, map_centre=View.map_centre)}),
+        Binding("scroll", "zoom, about the mouse", {}, lambda s: f"{s.view.zoom:.2f} x"),
+        Binding("middle drag", "move the spheres", {}),
+        Binding(
+            "F",
+            "face the light",
+            {"F": partial(changed, camera=None, zoom=1.0, pan=View.pan, map_centre=View.map_centre)},
+        ),
         Binding("R", "all but the light as at the start", {"R": do.reset}),
     ),
     "Program": (

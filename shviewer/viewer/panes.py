@@ -92,6 +92,10 @@ class Sphere(NamedTuple):
         right, up = found
         return np.asarray(world_from_view @ np.array([right, up, sqrt(max(0.0, 1 - right * right - up * up))]))
 
+    def moved(self, right: float, up: float) -> Sphere:
+        """The sphere so many pixels further right and up, in the same clip."""
+        return self._replace(x=self.x + right, y=self.y - up)
+
     def place(self, direction: Array, world_from_view: Array) -> Place:
         """The place of a direction in the world; on the far side, where one would see it through the sphere."""
         right, up, towards = (float(part) for part in direction @ world_from_view)

@@ -31,7 +31,7 @@ from shviewer.viewer.state import FRONT, State, changed
 from shviewer.viewer.tone import steepest
 
 LIVE = (
-    *("camera", "light_rotation", "zoom", "whole_sphere", "map_centre", "marks", "cursor", "cursor_visible"),
+    *("camera", "light_rotation", "zoom", "pan", "whole_sphere", "map_centre", "marks", "cursor", "cursor_visible"),
     *("sweep_to", "help_visible", "help_page", "message", "roughness", "layout_tried"),
 )
 """Fields of the view on which nothing depends that takes time."""

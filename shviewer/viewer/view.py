@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import hypot
 from typing import TYPE_CHECKING
 
 from shviewer.analysis.options import Choice, Flag, Number, Pair, check_options, option
@@ -24,6 +25,8 @@ SHEETS = ("", "plane")
 EVALUATIONS = ("auto", "direct", "map")
 MAX_EXPOSURE = 64.0
 ZOOM_RANGE = (0.25, 16.0)
+ROUNDING = 1 + 1e-9
+"""How far a place at a bound may be beyond it."""
 
 
 @dataclass(frozen=True)
@@ -139,6 +142,13 @@ class View:
         "--zoom",
         "Z",
     )
+    pan: tuple[float, float] = option(
+        (0.0, 0.0),
+        Pair("two numbers, right and up, such as (0.5, 0)"),
+        "move the spheres, in radii at zoom 1",
+        "--pan",
+        ("RIGHT", "UP"),
+    )
     cursor: int = 0
     cursor_visible: bool = False
     sweep_to: int | None = None
@@ -162,3 +172,6 @@ class View:
         check_options(self)
         if "off" not in (self.error, self.beside):
             raise UsageError(f"error {self.error} and beside {self.beside}: a third sphere shows one of them")
+        if hypot(*self.pan) > self.zoom * ROUNDING:
+            far = f"pan {self.pan[0]:g} {self.pan[1]:g}"
+            raise UsageError(f"{far}: at zoom {self.zoom:g} a sphere is moved by at most {self.zoom:g} radii")

@@ -120,7 +120,7 @@ def _overlay_key(picture: Picture, composition: Composition) -> object:
     """
     state = picture.state
     if not state.view.help_visible:
-        state = changed(state, camera=View.camera, light_rotation=View.light_rotation, zoom=View.zoom)
+        state = changed(state, camera=View.camera, light_rotation=View.light_rotation, zoom=View.zoom, pan=View.pan)
     known = measured(picture) if state.view.sheet == "plane" else ()
     place = composition.width, composition.height, composition.scale, composition.panes
     figures = picture.figures, picture.needs, picture.verdict, picture.error_scale

@@ -16,42 +16,25 @@ import glfw
 import moderngl
 
 from shviewer.errors import ShviewerError
-from shviewer.viewer.actions import (
-    Command,
-    face,
-    orbit,
-    rotate_light,
-    toggle_band,
-    zoom,
-)
+from shviewer.viewer.actions import Command
 from shviewer.viewer.composition import Composition, compose, frame_for
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.desktop.errands import coefficients_text
 from shviewer.viewer.desktop.glfw_window import key_name, open_window
+from shviewer.viewer.desktop.mouse import Mouse
 from shviewer.viewer.desktop.session import PATIENCE, Session
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.message import DONE, ERROR, WARNING
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.probe import direction_at
-from shviewer.viewer.panes import Sphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.command_line import command_line
-from shviewer.viewer.state import State, changed
+from shviewer.viewer.state import State
 
 IDLE_SECONDS = 0.25
 LEAVE_SECONDS = 0.03
 """The longest pause between two frames while something is at work behind the window."""
-
-CLICK_PIXELS = 4.0
-"""A press is a click if the mouse moves less than this before its release."""
-
-DOUBLE_SECONDS = 0.4
-"""Two clicks on a point are one double click if they are no further apart."""
-
-NEVER = (-math.inf, 0.0, 0.0)
-
-BUTTONS = (glfw.MOUSE_BUTTON_LEFT, glfw.MOUSE_BUTTON_RIGHT)
 
 
 def run(
@@ -113,22 +96,18 @@ class Window:
         )
         self.frames_due = 2  # the first swap may still have the old size
         self.frame_count = 0
-        self.pressed: int | None = None
-        """The button of the mouse that is held down, the first of several."""
-        self.mouse = self.pressed_at = self.dragged_to = (0.0, 0.0)
-        self.clicked = NEVER
-        """When and where the last click was."""
+        self.mouse = Mouse()
         self.done_by_key = False
         """Whether the key pressed last did something; then what it types does nothing."""
         self.has_clipboard = True
-        self.dragged = self.hovering = self.fullscreen = False
+        self.hovering = self.fullscreen = False
         self.windowed_place = (0, 0, 1280, 640)
         glfw.set_key_callback(handle, self._on_key)
         glfw.set_char_callback(handle, self._on_char)
         glfw.set_mouse_button_callback(handle, self._on_button)
         glfw.set_cursor_pos_callback(handle, self._on_cursor)
         glfw.set_cursor_enter_callback(handle, self._on_enter)
-        glfw.set_scroll_callback(handle, lambda window, dx, dy: self.change(zoom(self.session.state, dy)))
+        glfw.set_scroll_callback(handle, self._on_scroll)
         glfw.set_drop_callback(handle, self._on_drop)  # type: ignore[arg-type]  # the stub shows the C signature
         glfw.set_framebuffer_size_callback(handle, lambda *_: self.redraw())
         glfw.set_window_refresh_callback(handle, lambda *_: self.redraw())
@@ -201,7 +180,9 @@ class Window:
         if session.title != self.title:
             self.title = session.title
             glfw.set_window_title(self.handle, self.title)
-        pointer = self.mouse if self.hovering and not self.dragged and ready else None  # a probe asks the light
+        pointer = (
+            self.mouse.at if self.hovering and not self.mouse.dragged and ready else None
+        )  # a probe asks the light
         if self.canvas.draw(composition, pointer, alone=ready):
             self._due()
         glfw.swap_buffers(self.handle)
@@ -281,34 +262,16 @@ class Window:
             self.press(chr(codepoint))
 
     def _on_button(self, window: Any, button: int, action: int, modifiers: int) -> None:
-        if action == glfw.PRESS and self.pressed is None and button in BUTTONS:
-            self.pressed, self.pressed_at, self.dragged_to = button, self.mouse, self.mouse
-            self.dragged = False
-        elif action == glfw.RELEASE and button == self.pressed:
-            if button == glfw.MOUSE_BUTTON_LEFT and not self.dragged:
-                self._click(*self.pressed_at)
-            self.pressed = None
-            if self.dragged:
-                self.dragged = False
-                self.redraw()
-
-    def _click(self, x: float, y: float) -> None:
-        """Mute or unmute the band whose bar is there; a second click soon after on the same point of a sphere faces it."""
-        now, last = perf_counter(), self.clicked
-        near = max(abs(x - last[1]), abs(y - last[2])) < CLICK_PIXELS
-        self.clicked = now, x, y
-        state, composition = self.session.state, self.composition()
-        if composition is None or state.view.help_visible:
+        if action == glfw.PRESS:
+            self.mouse.press(button)
             return
-        bars = self.canvas.overlay.bars if self.canvas.overlay is not None else {}
-        for band, box in bars.items():
-            if box.contains(x, y):
-                self.change(toggle_band(changed(state, message=""), band))
-        if near and now - last[0] < DOUBLE_SECONDS:
-            self.clicked = NEVER
-            direction = direction_at(self.session.picture, composition, x, y)
-            if direction is not None:
-                self.change(face(state, direction))
+        dragged, composition = self.mouse.dragged, self.composition()
+        if self.mouse.release(button) and composition is not None:
+            bars = self.canvas.overlay.bars if self.canvas.overlay is not None else {}
+            picture = self.session.picture.seen(self.session.state)
+            self._take(self.mouse.click(picture, composition, bars, perf_counter()))
+        elif dragged and not self.mouse.dragged:
+            self.redraw()
 
     def _on_cursor(self, window: Any, x: float, y: float) -> None:
         """Remember where the mouse is, in pixels of the framebuffer, and drag.
@@ -317,28 +280,28 @@ class Window:
         """
         window_size, pixels = glfw.get_window_size(self.handle), glfw.get_framebuffer_size(self.handle)
         scale = pixels[0] / max(window_size[0], 1), pixels[1] / max(window_size[1], 1)
-        self.mouse = math.floor(x * scale[0]) + 0.5, math.floor(y * scale[1]) + 0.5  # the middle of a pixel
+        at = math.floor(x * scale[0]) + 0.5, math.floor(y * scale[1]) + 0.5  # the middle of a pixel
         composition = self.composition()
         if composition is None:
+            self.mouse.at = at
             return
-        if self.pressed is None:
-            self._hover(composition)
-            return
-        moved = max(abs(self.mouse[0] - self.pressed_at[0]), abs(self.mouse[1] - self.pressed_at[1]))
-        if not self.dragged and moved < CLICK_PIXELS:
-            return
-        self.dragged = True
-        pane = composition.panes[0]
-        radius = pane.radius if isinstance(pane, Sphere) else pane.width / math.tau
-        right, up = (self.mouse[0] - self.dragged_to[0]) / radius, (self.dragged_to[1] - self.mouse[1]) / radius
-        self.dragged_to = self.mouse
         shift = any(glfw.get_key(self.handle, key) for key in (glfw.KEY_LEFT_SHIFT, glfw.KEY_RIGHT_SHIFT))
-        turns_light = shift or self.pressed == glfw.MOUSE_BUTTON_RIGHT
-        self.change((rotate_light if turns_light else orbit)(self.session.placed, right, up))
+        self._take(self.mouse.move(at, self.session.placed, composition, shift=shift))
+        if self.mouse.held is None:
+            self._hover(composition)
+
+    def _on_scroll(self, window: Any, across: float, steps: float) -> None:
+        if (composition := self.composition()) is not None:
+            self._take(self.mouse.scroll(steps, self.session.state, composition))
+
+    def _take(self, state: State | None) -> None:
+        """Take what the mouse made of the state, if anything."""
+        if state is not None:
+            self.change(state)
 
     def _hover(self, composition: Composition) -> None:
         """Show the values under the mouse, or take them away."""
-        over = direction_at(self.session.picture, composition, *self.mouse) is not None
+        over = direction_at(self.session.picture, composition, *self.mouse.at) is not None
         over = over and not self.session.state.view.lobe_view and not self.session.state.view.help_visible
         if over or self.hovering:
             self.hovering = over
