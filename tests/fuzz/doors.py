@@ -50,8 +50,10 @@ from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import ShviewerError
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
+from shviewer.limits import DEFAULT_LIMITS
 from shviewer.outputs import OURS
 from shviewer.viewer.saving.reference import compare_with_reference
+from shviewer.viewer.saving.restoring import _read, _restored
 from shviewer.viewer.saving.stamp_reading import state_of_stamp
 
 MOST_CHARACTERS = 1000
@@ -137,7 +139,12 @@ def _reference(path: Path, data: bytes) -> Iterator[object]:
 
 
 def _stamp(path: Path, data: bytes) -> Iterator[object]:
-    state = state_of_stamp(data.decode("utf-8", "surrogateescape"))
+    """The state that a stamp tells, and that of a picture which carries it and names its light."""
+    text = data.decode("utf-8", "surrogateescape")
+    with contextlib.suppress(ShviewerError):
+        found = _restored(text, _read(text), path, DEFAULT_LIMITS, None)
+        yield from (found.said, found.size or (1, 1), found.state.view.zoom)
+    state = state_of_stamp(text)
     state.check()
     yield from (state.view.camera or 0.0, state.view.zoom, state.view.light_rotation)
 
