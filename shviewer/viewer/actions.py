@@ -283,6 +283,11 @@ def face(state: State, direction: Array) -> State:
     return changed(state, camera=facing(direction), pan=View.pan)
 
 
+def face_light(state: State) -> State:
+    """See the light from its front, as at the start."""
+    return changed(state, camera=None, zoom=View.zoom, pan=View.pan, map_centre=View.map_centre)
+
+
 def _centred(state: State, azimuth: float, elevation: float) -> State:
     """The state with that in the middle of the maps, as far as they reach."""
     most = 90 - 90 / max(state.view.zoom, 1.0)

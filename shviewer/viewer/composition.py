@@ -111,8 +111,8 @@ def compose(
 
 
 def frame_for(view: View, width: int, height: int, content_scale: float = 1.0) -> Composition:
-    """The frame of a view in a picture of this size."""
-    return compose(
+    """The frame of a view in a picture of this size, its spheres where the view has moved them."""
+    frame = compose(
         width,
         height,
         view.zoom,
@@ -121,6 +121,12 @@ def frame_for(view: View, width: int, height: int, content_scale: float = 1.0) -
         whole_sphere=view.whole_sphere,
         map_centre=view.map_centre,
     )
+    if view.pan == (0.0, 0.0):
+        return frame
+    homes = (sphere.radius / view.zoom for sphere in frame.spheres)
+    shifts = ((view.pan[0] * home, view.pan[1] * home) for home in homes)
+    moved = (sphere.moved(*shift) for sphere, shift in zip(frame.spheres, shifts, strict=True))
+    return replace(frame, spheres=tuple(moved), over=True)
 
 
 def _margin(width: float) -> float:

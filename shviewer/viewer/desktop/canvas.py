@@ -43,20 +43,31 @@ class Canvas:
         pixels = summed_pixels(composition)
         return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
 
-    def show(self, picture: Picture, composition: Composition, work: Work | None = None) -> bool:
+    def show(
+        self, picture: Picture, composition: Composition, work: Work | None = None, pointer: Point | None = None
+    ) -> bool:
         """Upload what has changed, and draw its text, with what is being done meanwhile in place of the message.
+
+        pointer: where the mouse is, for the values of the band under it.
 
         Return False while a large map is on its way: the last picture stays. GraphicsError for a map that this OpenGL
         cannot hold.
         """
         if not self.renderer.show(picture, None if self.renderer.picture is None else UPLOAD_SECONDS):
             return False
-        key = work, _overlay_key(picture, composition)
+        hovered = self.band_at(pointer)
+        key = work, hovered, _overlay_key(picture, composition)
         if key != self._overlay_key:
             opengl = self.renderer.version
-            self.overlay = draw_overlay(picture, composition, timing=True, opengl=opengl, work=work)
+            self.overlay = draw_overlay(picture, composition, timing=True, opengl=opengl, work=work, hovered=hovered)
             self._overlay_key = key
         return True
+
+    def band_at(self, pointer: Point | None) -> int | None:
+        """The band whose slot in the curve is there; None for any other place."""
+        slots = self.overlay.bars if self.overlay is not None else {}
+        at = (band for band, box in slots.items() if pointer is not None and box.contains(*pointer))
+        return next(at, None)
 
     def wait(self, work: Work, composition: Composition) -> None:
         """Draw what is being done, as long as there is no picture."""

@@ -33,6 +33,9 @@ from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.state import State
 
 IDLE_SECONDS = 0.25
+OUTSIDE = (-1.0, -1.0)
+"""The place of a mouse that has left the window."""
+
 LEAVE_SECONDS = 0.03
 """The longest pause between two frames while something is at work behind the window."""
 
@@ -97,6 +100,8 @@ class Window:
         self.frames_due = 2  # the first swap may still have the old size
         self.frame_count = 0
         self.mouse = Mouse()
+        self.band: int | None = None
+        """The band under the mouse."""
         self.done_by_key = False
         """Whether the key pressed last did something; then what it types does nothing."""
         self.has_clipboard = True
@@ -166,7 +171,7 @@ class Window:
         ready = session.prepare(self.canvas.by_map(session.state, composition), PATIENCE)
         composition = self.composition() or composition  # a state that was refused has left another one
         try:
-            uploaded = self.canvas.show(session.picture, composition, session.work)
+            uploaded = self.canvas.show(session.picture, composition, session.work, self.mouse.at)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             if self.shown is None:
                 raise
@@ -300,16 +305,17 @@ class Window:
             self.change(state)
 
     def _hover(self, composition: Composition) -> None:
-        """Show the values under the mouse, or take them away."""
+        """Show the values under the mouse, of a direction or of a band, or take them away."""
         over = direction_at(self.session.picture, composition, *self.mouse.at) is not None
         over = over and not self.session.state.view.lobe_view and not self.session.state.view.help_visible
-        if over or self.hovering:
+        band, self.band = self.band, self.canvas.band_at(self.mouse.at)
+        if over or self.hovering or band != self.band:
             self.hovering = over
             self._due()
 
     def _on_enter(self, window: Any, entered: int) -> None:
-        if not entered and self.hovering:
-            self.hovering = False
+        if not entered and (self.hovering or self.band is not None):
+            self.mouse.at, self.hovering, self.band = OUTSIDE, False, None
             self._due()
 
     def _on_drop(self, window: Any, paths: list[str]) -> None:
