@@ -246,6 +246,7 @@ def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> 
         camera=(1.0, 2.0),
         light_rotation=camera.towards(10, 10),
         zoom=2.0,
+        pan=(0.5, -0.5),
         whole_sphere=True,
         map_centre=(3.0, 4.0),
         error="signed",

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from helpers import frame_of, picture_of
+from helpers import centre, frame_of, picture_of
 
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.desktop.canvas import Canvas
@@ -51,6 +51,18 @@ def test_nothing_is_read_through_a_sheet(canvas: Canvas) -> None:
     middle = (sheet.left + sheet.right) / 2, (sheet.top + sheet.bottom) / 2
     assert frame_of(shown).spheres[0].position(*middle) is not None
     assert len(canvas.layers(frame_of(shown), middle)) == len(canvas.layers(frame_of(shown)))
+
+
+def test_the_values_of_the_band_under_the_pointer_are_in_place_of_the_legend(canvas: Canvas) -> None:
+    shown = picture_of()
+    canvas.show(shown, frame_of(shown))
+    assert canvas.overlay is not None
+    legend, slot = set(canvas.overlay.boxes), centre(canvas.overlay.bars[3])
+    assert canvas.band_at(slot) == 3
+    canvas.show(shown, frame_of(shown), pointer=slot)
+    assert "hovered" in set(canvas.overlay.boxes) - legend
+    canvas.show(shown, frame_of(shown), pointer=(3.0, 3.0))
+    assert set(canvas.overlay.boxes) == legend
 
 
 def test_turning_writes_nothing_anew_and_a_band_does(canvas: Canvas) -> None:

@@ -35,11 +35,12 @@ def test_a_key_shows_what_its_option_writes(start: Start, tmp_path: Path, key: s
 def test_d_goes_through_all_errors_and_back_to_two_spheres(start: Start) -> None:
     viewer = start()
     seen = []
-    for _ in range(4):
+    for _ in range(5):
         viewer.press("d", "frame")
         described = json.loads(viewer.saved_picture()[1])
-        seen.append((described["error"]["kind"] if described["error"] else None, len(described["spheres"])))
-    assert seen == [("signed", 3), ("absolute", 3), ("relative", 3), (None, 2)]
+        third = described["error"] or described["beside"]
+        seen.append((third["kind"] if third else None, len(described["spheres"])))
+    assert seen == [("signed", 3), ("absolute", 3), ("relative", 3), ("method", 3), (None, 2)]
 
 
 def test_tab_steps_through_the_basis_and_shift_tab_back(start: Start) -> None:
@@ -105,7 +106,7 @@ with window.open_window((800, 400)) as handle:
     said["same map"] = all(map(operator.is_, vars(shown.session.picture.drawn).values(), before))
     composition = shown.composition()
     assert shown.hovering
-    said["layers of the probe"] = len(shown.canvas.layers(composition, shown.mouse)) - len(shown.canvas.layers(composition))
+    said["layers of the probe"] = len(shown.canvas.layers(composition, shown.mouse.at)) - len(shown.canvas.layers(composition))
     shown._on_enter(handle, 0)
     assert not shown.hovering
     said["error"] = shown.canvas.renderer.context.error

