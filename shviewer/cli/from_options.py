@@ -171,6 +171,9 @@ def _view_from(options: argparse.Namespace, start: View) -> View:
         chosen["error_range"] = _error_range(options.error_range, options.error or start.error)
     if options.camera:
         chosen["camera"] = options.camera[0] % 360, _elevation(options.camera[1])
+    if options.map_centre:
+        azimuth, elevation = options.map_centre
+        chosen["map_centre"] = (azimuth + 180) % 360 - 180, _elevation(elevation)
     if options.basis:
         chosen |= {"basis": None, "lobe_view": True}
     third = [name for name in ("error", "beside") if vars(options)[name] not in (None, "off")]

@@ -132,8 +132,13 @@ class View:
     whole_sphere: bool = option(
         False, Flag(), "the whole sphere as lat-long maps in place of spheres", "--map", const=True
     )
-    map_centre: tuple[float, float] = (0.0, 0.0)
-    """Azimuth and elevation in the middle of the maps, degrees."""
+    map_centre: tuple[float, float] = option(
+        (0.0, 0.0),
+        Pair("azimuth and elevation in degrees, such as (180, 0)"),
+        "what is in the middle of the maps, degrees",
+        "--map-centre",
+        ("AZIMUTH", "ELEVATION"),
+    )
     light_rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
     zoom: float = option(
         1.0,

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
-from shviewer.analysis.options import Choice, Flag, Kind, Pair, Whole, taken, whole
+from shviewer.analysis.options import Choice, Flag, Kind, Whole, taken, whole
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -26,7 +26,6 @@ BESIDE: dict[str, Kind] = {
     "cursor_visible": Flag(),
     "help_visible": Flag(),
     "help_page": Whole(0, 99, "page {} of the help", "pages are counted from 0"),
-    "map_centre": Pair("azimuth and elevation in degrees"),
     "sheet": Choice(SHEETS),
     "sweep_to": Whole(1, MAX_BANDS, "a sweep to {} bands", f"the viewer shows 1 to {MAX_BANDS}"),
 }

@@ -11,6 +11,7 @@ import OpenEXR
 import pytest
 from helpers import picture_of
 from numpy.typing import NDArray
+from PIL import Image
 from viewer.gl.frames import lobes, map_frame
 
 from shviewer import reconstruct
@@ -134,4 +135,12 @@ def test_the_command_writes_a_map_that_is_a_light_and_refuses_another_shape(
     assert main(["screenshot", "other.exr", "green", "--map", "--size", "256", "100"]) == 2
     assert "a map is twice as wide as high; give --size 256 128" in capsys.readouterr().err
     assert main(["screenshot", "both.exr", "green", "--map", "--lobes"]) == 2
+    assert main(["screenshot", "both.png", "green", "--map", "--map-centre", "200", "95"]) == 2
+    assert "elevation 95: it must be -90 to 90 degrees" in capsys.readouterr().err
+    assert (
+        main(["screenshot", "scrolled.png", "constant", "--map", "--map-centre", "200", "0", "--size", "128", "64"])
+        == 0
+    )
+    with Image.open("scrolled.png") as image:
+        assert json.loads(image.info["shviewer"])["state"]["view"]["map_centre"] == [-160.0, 0.0]
     assert not Path("other.exr").exists()
