@@ -20,13 +20,14 @@ from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.quantities.kernels import FEWEST_BANDS, Kernel, kernel_of
-from shviewer.harmonics.quantities.names import RADIANCE
+from shviewer.harmonics.quantities.names import RADIANCE, in_words
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
 from shviewer.harmonics.zonal import ClampedLinear, Profile, gegenbauer_ratios
 from shviewer.lights.lat_long import MAP_ROWS, LatLongMap
 from shviewer.lights.light import About, Light, LightBase
 from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
+from shviewer.limits import DEFAULT_LIMITS
 
 SERIES_BANDS = 1024
 """Bands in the products of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of its norm.
@@ -37,6 +38,9 @@ At roughness 0.1 it is 7e-9.
 UP = np.array([0.0, 0.0, 1.0])
 
 TABLE_NODES, EDGE_NODES = 2049, 513
+TABLE_BYTES = 14
+"""Bytes that projecting and summing n bands take, over n^3: the table of theta_series.py and what is made of it."""
+
 SHADE_STEPS = 4096
 """Steps from 0 to pi in the table of a lobe seen by a glossy surface."""
 
@@ -274,9 +278,17 @@ class RadianceLight(LightBase):
 
 
 def convolved(light: Light, quantity: str, kind: type[ConvolvedLight]) -> Light:
-    """A radiance as that quantity; itself, if that is radiance. ValueError for an unknown one."""
+    """A radiance as that quantity; itself, if that is radiance.
+
+    ValueError for an unknown one, LightError for a narrow kernel whose bands take more memory than there may be.
+    """
     kernel = kernel_of(quantity)
-    return light if kernel.quantity == RADIANCE else kind(light, kernel, min(kernel.bands, light.most_bands))
+    if kernel.quantity == RADIANCE:
+        return light
+    bands = min(kernel.bands, light.most_bands)
+    if kind is ConvolvedMap and bands > FEWEST_BANDS:
+        DEFAULT_LIMITS.check_memory(TABLE_BYTES * bands**3, f"{light.name}: {in_words(quantity)} in {bands} bands")
+    return kind(light, kernel, bands)
 
 
 def _lobe_products(lobes: tuple[Lobe, ...], factors: Array) -> Array:
