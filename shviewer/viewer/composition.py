@@ -208,7 +208,7 @@ class _Design:
 
     def pane_width(self, rows: int, mode: Mode) -> float:
         columns = self.columns(rows)
-        beside = SIDE + 24 if mode is Mode.COLUMN else 0.0
+        beside = SIDE + 36 if mode is Mode.COLUMN else 0.0
         return (self.width - beside - 2 * self.margin - (columns - 1) * self.gap(rows)) / columns
 
     def size(self, rows: int, mode: Mode) -> float:
@@ -295,10 +295,10 @@ class _Placed:
         margin = design.margin
         line = max(1, round(scale))
         if column:
-            x = design.width - margin - SIDE - 24
+            x = design.width - margin - SIDE - 20
             hairline = Box(x, 24, x, self.picture(design.n_panes - 1).bottom + 32).scaled(scale)
             hairline = hairline._replace(right=hairline.left + line)
-            area = Box(x + 24, 24, design.width - margin, design.height)
+            area = Box(x + 20, 24, design.width - margin, design.height)
         else:
             hairline = Box(margin, self.hairline, design.width - margin, self.hairline).scaled(scale)
             hairline = hairline._replace(bottom=hairline.top + line)
@@ -371,7 +371,7 @@ class _Placed:
                 (4 if design.compact else 8) * scale,
             ),
             tuple(_clear(line.scaled(scale), sphere, 11 * scale, 8 * scale) for line in lines),
-            foot and _clear(foot.scaled(scale), sphere, 9.5 * scale, 2 * scale),
+            foot and _clear(foot.scaled(scale), sphere, 9 * scale, 1.5 * scale),
         )
 
 

@@ -77,7 +77,7 @@ COMFORTABLE = 145.0
 ROOMY = 205.0
 """From this height on the numbers are larger, or the figures stand in two rows beside a wider curve."""
 
-SIDE = 216.0
+SIDE = 200.0
 """Width of the column of numbers at the right, without the margin."""
 
 
@@ -224,6 +224,6 @@ def _column(area: Box, cell: Box) -> Numbers:
     start = answers[-1].label + 56
     pitch = min(56.0, (area.bottom - 60 - start) / 4.5)
     figures = [Cell(area.left, area.right, start + pitch * n, start + pitch * n + 20) for n in range(5)]
-    foot = Line(24, area.left - 24, area.bottom - FOOT)
+    foot = Line(24, area.left - 36, area.bottom - FOOT)
     exposure = Line(area.left, area.right, area.bottom - 44)
     return _in_cell(Numbers(tuple(answers), tuple(figures), foot=foot, exposure=exposure, figure_size=20), cell)

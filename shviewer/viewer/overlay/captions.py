@@ -69,11 +69,12 @@ def exposure_pieces(picture: Picture, at: Composition, line: Line) -> list[Piece
         return []
     pieces: list[Piece] = [_text("exposure", line.left, line.baseline, words, size, ink, at)]
     x, side = line.left + length + at.px(12), at.px(ZEBRA)
-    label = "beyond white"
-    if white and x + side + at.px(5) + width_of(label, size) <= line.right:
-        area = Box(round(x), round(line.baseline - side + 1), round(x + side), round(line.baseline + 1))
-        pieces.append(Swatch(area, "white", at.scale, "zebra"))
-        pieces.append(_text("beyond_white", area.right + at.px(5), line.baseline, label, size, ink, at))
+    for label in ("beyond white", "> white"):
+        if white and x + side + at.px(5) + width_of(label, size) <= line.right:
+            area = Box(round(x), round(line.baseline - side + 1), round(x + side), round(line.baseline + 1))
+            pieces.append(Swatch(area, "white", at.scale, "zebra"))
+            pieces.append(_text("beyond_white", area.right + at.px(5), line.baseline, label, size, ink, at))
+            break
     return pieces
 
 

@@ -251,22 +251,23 @@ def legend_pieces(series: BandSeries, state: State, at: Composition, hovered: in
         words = band_words(series, hovered)
         return [Text("hovered", line.left, line.baseline, words, size, INK)]
     main = looked_at(state.recipe.quantity)
-    entries: list[tuple[str, Ink | None, str, Ink]] = [
-        ("line", INK, main, INK),
-        ("line", GREY, "shading", GREY),
-        ("", None, "error with bands 0 to here", FAINT),
-        ("bar", BAR, "with this band alone left out", FAINT),
+    entries: list[tuple[str, Ink | None, tuple[str, str], Ink]] = [
+        ("line", INK, (main, main), INK),
+        ("line", GREY, ("shading", "shading"), GREY),
+        ("", None, ("error with bands 0 to here", "with bands 0 to here"), FAINT),
+        ("bar", BAR, ("with this band alone left out", "this band left out"), FAINT),
     ]
-    for count in (4, 3, 2):
+    for count, brief in ((4, False), (4, True), (3, False), (2, False)):
         pieces: list[Piece] = []
         x, middle = line.left, line.baseline - 0.36 * size
-        for shape, colour, words, ink in entries[:count]:
+        for shape, colour, wordings, ink in entries[:count]:
+            words = wordings[brief]
             wide, gap = (at.px(14), at.px(5)) if shape == "line" else (at.px(9), at.px(5)) if shape else (0.0, 0.0)
             if colour is not None:
                 half = at.px(0.9) if shape == "line" else at.px(4.5)
                 box = Box(round(x), round(middle - half), round(x + wide), round(middle + half))
                 pieces.append(Fill(box, colour))
-            pieces.append(Text(f"legend_{words}", round(x + wide + gap), line.baseline, words, size, ink))
+            pieces.append(Text(f"legend_{wordings[0]}", round(x + wide + gap), line.baseline, words, size, ink))
             x = pieces[-1].box.right + at.px(12 if shape == "line" else 18)
         if pieces[-1].box.right <= line.right + at.px(2):
             return pieces

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from shviewer.analysis.comparison import agrees
+from shviewer.analysis.figures import Pending
 from shviewer.viewer import message
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.numbers_area import Line
@@ -86,8 +87,10 @@ def said_of(picture: Picture, remark: str = "") -> str:
     return message.warning(refusal) if refusal else ""
 
 
-def foot_pieces(at: Composition, said: str, work: Work | None = None, *, after: float = 0.0) -> list[Piece]:
-    """The line at the foot. said: a message; after: where what stands before the keys ends."""
+def foot_pieces(
+    at: Composition, said: str, work: Work | None = None, *, after: float = 0.0, proposed: str = ""
+) -> list[Piece]:
+    """The line at the foot. said: a message; after: where what stands before the keys ends; proposed: a key that would help."""
     line = message_line(at)
     if line is None:
         return []
@@ -96,7 +99,7 @@ def foot_pieces(at: Composition, said: str, work: Work | None = None, *, after: 
     if said:
         return message_pieces(line, said, at)
     foot = at.numbers.foot
-    return [] if foot is None else _keys(foot._replace(left=max(foot.left, after)), at)
+    return [] if foot is None else _keys(foot._replace(left=max(foot.left, after)), at, proposed)
 
 
 def message_line(at: Composition) -> Line | None:
@@ -186,8 +189,16 @@ def _mark(sign: str, x: float, baseline: float, size: float, ink: Ink, at: Compo
     return [Curve(stroke, width, ink, clip, name=f"mark_{n}") for n, stroke in enumerate(strokes)]
 
 
-def _keys(line: Line, at: Composition) -> list[Piece]:
-    """As many keys as have room; help is always among them."""
+def proposed_key(picture: Picture) -> str:
+    """U, where no band count is enough for the radiance and a sun may be to blame: it can be taken apart."""
+    needs, recipe = picture.needs, picture.state.recipe
+    if isinstance(needs, Pending) or needs.radiance is not None or recipe.split_sun or recipe.compare:
+        return ""
+    return "U" if picture.light.map is not None or picture.light.lobes else ""
+
+
+def _keys(line: Line, at: Composition, proposed: str) -> list[Piece]:
+    """As many keys as have room; help is always among them, and one that is proposed stands out."""
     size = at.px(12.0)
     for count in range(len(KEYS) - 1, -1, -1):
         shown, x = (*KEYS[:count], KEYS[-1]), line.left
@@ -195,9 +206,12 @@ def _keys(line: Line, at: Composition) -> list[Piece]:
         if count == 0:
             x = line.right - width_of("H", size, MEDIUM) - at.px(5) - width_of("help", size)
         for key, words in shown:
-            pieces.append(Text(f"key_{key}", round(x), line.baseline, key, size, GREY, MEDIUM))
+            pieces.append(
+                Text(f"key_{key}", round(x), line.baseline, key, size, INK if key == proposed else GREY, MEDIUM)
+            )
             x = pieces[-1].box.right + at.px(6)
-            pieces.append(Text(f"key_{words}", round(x), line.baseline, words, size, FAINT))
+            ink = INK if key == proposed else FAINT
+            pieces.append(Text(f"key_{words}", round(x), line.baseline, words, size, ink))
             x = pieces[-1].box.right + at.px(18)
         if line.left <= pieces[0].box.left and pieces[-1].box.right <= line.right + 1:
             return pieces

@@ -21,7 +21,7 @@ from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
 from shviewer.viewer.overlay.curve import axes_of, curve_pieces, least_slots, legend_pieces
 from shviewer.viewer.overlay.drawing import Piece, Text, image_of, layer_of, named_boxes
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
-from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, said_of
+from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, proposed_key, said_of
 from shviewer.viewer.overlay.help_sheet import help_pieces
 from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
@@ -106,11 +106,11 @@ def draw_overlay(
     exposure = exposure_pieces(picture, at, numbers.exposure) if numbers.exposure else []
     if numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline:
         after = max((piece.box.right for piece in exposure), default=numbers.foot.left) + at.px(18)
-        foot = foot_pieces(at, said, work, after=after)
+        foot = foot_pieces(at, said, work, after=after, proposed=proposed_key(picture))
         if said or work is not None:  # both are on one line
             exposure = []
     else:
-        foot = foot_pieces(at, said, work)
+        foot = foot_pieces(at, said, work, proposed=proposed_key(picture))
     bars: dict[int, Box] = {}
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
     if at.compact and (said or work is not None):  # the message takes the place of the last line there is
