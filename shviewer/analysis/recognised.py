@@ -12,7 +12,7 @@ from shviewer.coefficients.diagnosis.chance import CHANCE
 from shviewer.coefficients.diagnosis.search import ALIKE, TINY, explain
 from shviewer.coefficients.diagnosis.sentences import differences
 from shviewer.coefficients.numbers import Listed
-from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.reading import CoefficientFile, interpreted
 from shviewer.coefficients.texts import convention_text
 from shviewer.errors import LightError
@@ -60,9 +60,15 @@ def recognise(listed: Listed, exact: Array) -> Recognised:
         nothing = f"no usual one fits; read as {nearest.text}, which is {brief_percent(nearest.error)} off"
         return Recognised(nearest.file, said or nothing, fits)
     base = found.text.partition(",")[0]
+    turned = replace(CONVENTIONS[base], name="", program="") == replace(OURS, name="", program="", phase=False)
+    also = ", or shviewer of the map turned by half a turn, which is the same" if turned and not changes else ""
     called = f"{', '.join([base, *changes])}," if changes else base
     fits = found.error <= FITS
-    said = f"{called} fits{_alike(found, plain)}" if fits else f"{called} is nearest, {brief_percent(found.error)} off"
+    said = (
+        f"{called} fits{also}{_alike(found, plain)}"
+        if fits
+        else f"{called} is nearest, {brief_percent(found.error)} off"
+    )
     return Recognised(found.file, f"{said}: --convention {found.text}" if changes else said, fits)
 
 

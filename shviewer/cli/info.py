@@ -183,7 +183,8 @@ def _origin(stamp: Stamp) -> list[tuple[str, str]]:
         for key, words in FIGURES.items()
         if _is_number(stamp.get(key))
     ]
-    return [("origin", ", ".join(parts)), *([("figures there", ", ".join(figures))] if figures else [])]
+    use = [("to be typed", str(stamp["use"]))] if stamp.get("use") else []
+    return [*use, ("origin", ", ".join(parts)), *([("figures there", ", ".join(figures))] if figures else [])]
 
 
 def _bound(stamp: Stamp, key: str) -> str:

@@ -208,6 +208,9 @@ CMGEN = "\n".join(
     for (l, m), row in zip(PLACES, ROWS, strict=True)
 )
 PROBE = {"uuid": "1", "type": "LightProbe", "matrix": [1, 0], "color": 16777215, "sh": ROWS.ravel().tolist()}
+CILM = np.zeros((3, 2, 3, 3))
+for (l, m), row in zip(PLACES, ROWS, strict=True):
+    CILM[:, int(m < 0), l, abs(m)] = row
 BABYLON = "shviewer,irradiance,-y+z+x"
 UNITY = "m_AmbientProbe:\n" + "\n".join(f"  - sh[{i:>2}]: {x:g}" for i, x in enumerate(ROWS.T.ravel()))
 IMPLIED = {
@@ -215,6 +218,7 @@ IMPLIED = {
     "sh.txt": (CMGEN, "filament", "its comments, irradiance and pre-scaled base, are those of Filament's cmgen"),
     "cesium.txt": (CMGEN.replace("(", "new Cartesian3("), "filament", "cmgen, without --no-mirror: taken as filament"),
     "probe.json": (json.dumps({"metadata": {}, "object": PROBE | {"intensity": 1}}), "three", "a LightProbe of three.js"),
+    "cilm.json": (json.dumps(CILM.tolist()), "shtools", "an array cilm: taken as SHTOOLS makes it"),
     "harmonics.json": (
         json.dumps({"isSphericalHarmonics3": True, "coefficients": [dict(zip("xyz", row, strict=True)) for row in ROWS]}),
         "three",
@@ -249,6 +253,8 @@ FOUND = (
     Found("Babylon.js, `JSON.stringify` of `SphericalHarmonics`", "`.json` with `l00`, `l1_1`, ...",
           "rows, sorted by these names", "babylon.json"),
     Found("SHTOOLS, `shwrite`", "`l, m, C, S`", "grey, S being that of -m, with a note", "shtools.txt"),
+    Found("SHTOOLS, `SHCoeffs.to_array`", "`cilm`, (2, n, n) or (3, 2, n, n), in `.npy`, `.npz` or `.json`",
+          "`shtools`, with a note", "cilm.json"),
     Found("shaders", "`const vec3 L00 = vec3(...)`, `L1m1`, ...", "rows, sorted by these names", "book.glsl"),
     Found("shaders", "`vec3[9]`, `float3 sh[9]`, `array<vec3<f32>, 9>`", "rows", "wgsl.txt"),
     Found("shaders", "`vec4`s, filled up with 0 or 1", "rows, the fill dropped, with a note", "std140.glsl"),
