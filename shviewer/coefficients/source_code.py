@@ -110,7 +110,7 @@ def _times(polynomial: str, constant: float) -> str:
 def _recurrence(row: _RowText, factors: Array, n_bands: int) -> list[str]:
     """Lines of the recurrence: g is G(l, m), d its difference, south^(l - m) its sign; c and s are Re and Im (x + iy)^m."""
     norms = normalisation(n_bands)
-    lines = ["    float t = dot(direction.xy, direction.xy) / (1.0 + abs(z)), south = z < 0.0 ? -1.0 : 1.0;"]
+    lines = ["    float t = (x * x + y * y) / (1.0 + abs(z)), south = z < 0.0 ? -1.0 : 1.0;"]
     lines += ["    float c = 1.0, s = 0.0, g, d, p;", "    vec3 sum = vec3(0.0);"]
     for m in range(n_bands):
         if m:
