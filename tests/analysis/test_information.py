@@ -259,7 +259,7 @@ def test_a_coefficient_file_is_described_with_its_convention_and_where_it_comes_
         "  coefficients      4 bands, 16 rows, radiance",
         "  convention        ambix,y-up (ambiX (ACN, SN3D)), as the file says",
         "no Condon-Shortley phase; index l(l+1) + m",
-        '  to be typed       channels = numpy.array(json["coefficients"])[:, 0]  # ACN',
+        "  to be typed       channels = rows[:, 0]  # ACN; red: a bus of its own for each colour",
         "  origin            green (two soft lobes (Green 2003)), jittered, samples 64, seed 0, window hann of 4 bands, ",
         "  figures there     relative L2 error ",
     ):
