@@ -36,7 +36,8 @@ BESIDE_NEEDS = {
 def chosen_of(options: argparse.Namespace, holder: type) -> dict[str, Any]:
     """The given options that belong to a dataclass, by the names of its fields."""
     given = vars(options)
-    return _given({name: given.get(name) for name in options_of(holder)})
+    chosen = _given({name: given.get(name) for name in options_of(holder)})
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in chosen.items()}
 
 
 START = Recipe()
@@ -127,6 +128,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     from shviewer.lights.find import built_in_lights
     from shviewer.viewer.actions import open_light
     from shviewer.viewer.beside import recipe_beside
+    from shviewer.viewer.message import warning
     from shviewer.viewer.state import State, changed
 
     pictured = pictured_by(options)
@@ -157,7 +159,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     state.check()
     if pictured and pictured.said:
         print(one_line(f"shviewer: note: {options.like or entry}: {pictured.said}"), file=sys.stderr)
-        state = changed(state, message=pictured.said) if all_lights else state
+        state = changed(state, message=warning(pictured.said)) if all_lights else state
     return changed(state, sweep_to=None) if all_lights else state  # a window shows the picture, and does not play on
 
 

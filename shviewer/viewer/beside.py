@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from shviewer.analysis.figures import Sums
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import Reconstruction
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.viewer.drawn import Drawn
 from shviewer.viewer.view import BESIDES
 from shviewer.words import grouped
@@ -30,6 +32,10 @@ class Beside:
     def of(cls, found: Reconstruction, drawn: Drawn) -> Beside:
         """The second reconstruction, drawn in some way."""
         return cls(found.recipe, found.projection, found.coefficients, found.sums, drawn)
+
+    def values_at(self, directions: Array) -> Array:
+        """Its radiance, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
+        return np.asarray(evaluate_basis(directions, self.recipe.n_bands) @ self.coefficients)
 
 
 def recipe_beside(recipe: Recipe, beside: str) -> Recipe:

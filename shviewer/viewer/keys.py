@@ -52,7 +52,7 @@ def _each(action: Callable[[State, T], State], values: Mapping[str, T]) -> dict[
 BINDINGS: dict[str, tuple[Binding, ...]] = {
     "Bands": (
         Binding(
-            "Up / Down, + / -",
+            "Up / Down / + / -",
             "one band more, one fewer",
             _each(do.more_bands, {"Up": 1, "+": 1, "Down": -1, "-": -1}),
             lambda s: str(s.recipe.n_bands),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from shviewer.lights.find import built_in_lights, split_light
+from shviewer.viewer.message import WARNING, Message
 from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
 
@@ -24,7 +25,8 @@ def opened(state: State, *, as_image: bool) -> State:
     if picture is None:
         return state
     shown = replace(picture.state, lights=state.lights, entry=light)
-    message = "; ".join(filter(None, (state.view.message, picture.said or picture.state.view.message)))
+    words = "; ".join(filter(None, (state.view.message, picture.said or picture.state.view.message)))
+    message = Message(words, WARNING if picture.said else "")
     reading = replace(shown.recipe.reading, isolated=True)
     return started(changed(shown, reading=reading, sweep_to=None, message=message))
 

@@ -30,6 +30,8 @@ class Probe:
     reconstruction: Array
     error: Array
     """Reconstruction minus original; where suns were split off, both without them."""
+    beside: Array | None = None
+    """The second reconstruction, if there is one."""
 
     @property
     def theta_phi_degrees(self) -> tuple[float, float]:
@@ -49,12 +51,14 @@ def probe(picture: Picture, composition: Composition, x: float, y: float) -> Pro
         return None
     direction = picture.light_from_world @ seen
     direction /= np.linalg.norm(direction)
-    rest = picture.rest_at(direction[None])[0]
+    rest, suns = picture.rest_at(direction[None])[0], picture.suns_at(direction[None])[0]
+    beside = picture.beside
     return Probe(
         direction=direction,
         original=picture.subject.whole.radiance(direction[None])[0],
-        reconstruction=rest + picture.suns_at(direction[None])[0],
+        reconstruction=rest + suns,
         error=rest - picture.light.radiance(direction[None])[0],
+        beside=None if beside is None else beside.values_at(direction[None])[0] + suns,
     )
 
 
@@ -97,7 +101,9 @@ def _table(found: Probe, composition: Composition) -> np.ndarray:
             ("original", found.original, GREY),
             ("reconstruction", found.reconstruction, GREY),
             ("error", found.error, INK),
+            ("beside", found.beside, GREY),
         )
+        if values is not None
     ]
     grey = all(len(set(numbers)) == 1 for _, numbers, _ in rows)
     labels = max(face.getlength(name) for name, _, _ in rows) + size

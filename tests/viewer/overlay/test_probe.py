@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from helpers import picture_of
+from helpers import frame_of, picture_of
 
 from shviewer.viewer.composition import compose
 from shviewer.viewer.overlay.marks import place_marks
@@ -97,3 +97,18 @@ def test_the_numbers_stay_in_the_frame_and_off_the_pixel_they_are_of(size: tuple
                 assert table.top + height <= size[1]
                 assert not (table.left <= x < table.left + width and table.top <= y < table.top + height)
                 assert len(dots) == 2
+
+
+def test_the_values_of_a_second_reconstruction_stand_below() -> None:
+    """They are those of the picture without the window."""
+    picture, plain = picture_of(window="hann", beside="no-window"), picture_of(error="signed")
+    frame = frame_of(picture)
+    pane = frame.spheres[2]
+    found, other = (probe(one, frame, pane.x + 20.5, pane.y - 10.5) for one in (picture, plain))
+    assert found is not None
+    assert other is not None
+    assert other.beside is None
+    np.testing.assert_allclose(found.beside, other.reconstruction, rtol=0, atol=1e-15)
+    assert not np.allclose(found.beside, found.reconstruction)
+    taller, smaller = (probe_layers(one, picture, frame, pane.x, pane.y)[-1].image for one in (found, other))
+    assert taller.shape[0] > smaller.shape[0]
