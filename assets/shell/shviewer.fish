@@ -29,11 +29,7 @@ complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info p
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l evaluate -x -a 'auto direct map' -d 'sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l camera -r -d 'where the camera stands, degrees; facing the light unless given'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l map -d 'the whole sphere as lat-long maps in place of spheres'
-<<<<<<< HEAD
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l map-centre -r -d 'what is in the middle of the maps, degrees'
-=======
-complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l map-centre -r -d 'what is in the middle of these maps, degrees'
->>>>>>> 79dccb4 (What is moved, mapped and beside is told by command lines and pictures, and read under the mouse)
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l zoom -r -d 'size of the spheres, 0.25 to 16 (default 1)'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l pan -r -d 'move the spheres, in radii at zoom 1'
 complete -c shviewer -n 'not __fish_seen_subcommand_from screenshot sweep info project report' -l rotate-light -r -d 'turn the light so that its +x axis points there, degrees'
@@ -81,11 +77,7 @@ complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l by-roughness
 complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l evaluate -x -a 'auto direct map' -d 'sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes'
 complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l camera -r -d 'where the camera stands, degrees; facing the light unless given'
 complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l map -d 'the whole sphere as lat-long maps in place of spheres'
-<<<<<<< HEAD
 complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l map-centre -r -d 'what is in the middle of the maps, degrees'
-=======
-complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l map-centre -r -d 'what is in the middle of these maps, degrees'
->>>>>>> 79dccb4 (What is moved, mapped and beside is told by command lines and pictures, and read under the mouse)
 complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l zoom -r -d 'size of the spheres, 0.25 to 16 (default 1)'
 complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l pan -r -d 'move the spheres, in radii at zoom 1'
 complete -c shviewer -n '__fish_seen_subcommand_from screenshot' -l rotate-light -r -d 'turn the light so that its +x axis points there, degrees'
@@ -137,11 +129,7 @@ complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l by-roughness -d '
 complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l evaluate -x -a 'auto direct map' -d 'sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes'
 complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l camera -r -d 'where the camera stands, degrees; facing the light unless given'
 complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l map -d 'the whole sphere as lat-long maps in place of spheres'
-<<<<<<< HEAD
 complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l map-centre -r -d 'what is in the middle of the maps, degrees'
-=======
-complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l map-centre -r -d 'what is in the middle of these maps, degrees'
->>>>>>> 79dccb4 (What is moved, mapped and beside is told by command lines and pictures, and read under the mouse)
 complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l zoom -r -d 'size of the spheres, 0.25 to 16 (default 1)'
 complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l pan -r -d 'move the spheres, in radii at zoom 1'
 complete -c shviewer -n '__fish_seen_subcommand_from sweep' -l rotate-light -r -d 'turn the light so that its +x axis points there, degrees'

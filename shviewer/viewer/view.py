@@ -134,13 +134,8 @@ class View:
     )
     map_centre: tuple[float, float] = option(
         (0.0, 0.0),
-<<<<<<< HEAD
         Pair("azimuth and elevation in degrees, such as (180, 0)"),
         "what is in the middle of the maps, degrees",
-=======
-        Pair("azimuth and elevation in degrees, such as (30, 10)"),
-        "what is in the middle of these maps, degrees",
->>>>>>> 79dccb4 (What is moved, mapped and beside is told by command lines and pictures, and read under the mouse)
         "--map-centre",
         ("AZIMUTH", "ELEVATION"),
     )
