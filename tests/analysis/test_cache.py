@@ -124,6 +124,18 @@ def test_large_lights_are_forgotten_sooner_but_never_the_one_in_use() -> None:
     assert lights[0] in memory
 
 
+def test_ten_large_lights_in_turn_stay_below_the_cap() -> None:
+    """Whatever each of them has grown to before the next one comes; the one in use is beside the cap."""
+    memory = Memory(most_lights=12, most_bytes=2500)
+    lights = [find_light("green") for _ in range(10)]
+    for number, light in enumerate(lights):
+        memory.results(light, "image")["texels"] = np.zeros(900, np.uint8)
+        others = [array_bytes(other, memory._known[other]) for other in memory._known if other is not light]
+        assert sum(others) <= memory.most_bytes
+        memory.results(light, "rest")["without suns"] = np.zeros(90 * number, np.uint8)
+    assert lights[-1] in memory
+
+
 def test_every_array_is_counted_once_wherever_it_is() -> None:
     array = np.zeros(100)
     light = replace(find_light("green"), name="other")
