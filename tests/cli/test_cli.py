@@ -491,7 +491,7 @@ def test_an_opengl_that_is_too_old_is_refused_with_what_was_found(run: Run, tmp_
 def test_ctrl_c_exits_130_without_a_traceback(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupt(*arguments: object) -> None:
+    def interrupt(*arguments: object, **named: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("shviewer.cli.screenshot.prepare", interrupt)
@@ -500,7 +500,7 @@ def test_ctrl_c_exits_130_without_a_traceback(
 
 
 def test_a_programming_error_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*arguments: object) -> None:
+    def fail(*arguments: object, **named: object) -> None:
         raise ZeroDivisionError
 
     monkeypatch.setattr("shviewer.cli.screenshot.prepare", fail)
