@@ -18,7 +18,7 @@ from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
-from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.harmonics.quadrature import DirectionSet, gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
@@ -133,6 +133,19 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
             known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
         if len(known) > MOST_MEASUREMENTS:
             known.popitem(last=False)
+
+
+@remember(most=4, doing="projecting")
+def turned_projection(light: Light, samples: int, seed: int, turn: tuple[float, ...], n_bands: int) -> Projection:
+    """A light projected by jittered samples that stand still while it turns. turn: the matrix, row by row, from their frame
+    to that of the light, in which the coefficients are.
+    """
+    points = jittered(samples, seed)
+    moved = DirectionSet(points.directions @ np.reshape(turn, (3, 3)).T, points.weights)
+    start = perf_counter()
+    radiance = project_samples(light.source.integrand, moved, n_bands)
+    spent = 1000 * (perf_counter() - start)
+    return Projection(light.from_source(radiance), "jittered", len(points.weights), spent, radiance)
 
 
 @remember(most=16, doing="encoding the irradiance")

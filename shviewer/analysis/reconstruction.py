@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from shviewer.analysis.figures import Figures, Sums, error_grid, figures_of, grid_rows, sums
-from shviewer.analysis.projections import BEST, Projection, encoded, project, sampling_of
+from shviewer.analysis.projections import BEST, Projection, encoded, project, sampling_of, turned_projection
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array
@@ -31,10 +31,12 @@ class Reconstruction:
         return figures_of(self.subject.light, self.projection, self.recipe.shown)
 
 
-def reconstruction_of(recipe: Recipe, ahead: int = 0, encoding: str = "") -> Reconstruction:
+def reconstruction_of(
+    recipe: Recipe, ahead: int = 0, encoding: str = "", turn: tuple[float, ...] | None = None
+) -> Reconstruction:
     """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range.
 
-    encoding: one of ENCODINGS, through which an irradiance goes.
+    encoding: one of ENCODINGS, through which an irradiance goes. turn: as in `turned_projection`.
     ahead: the number of bands that will be asked for later: an image, which keeps its coefficients, is projected only once.
     """
     recipe.check()
@@ -42,6 +44,8 @@ def reconstruction_of(recipe: Recipe, ahead: int = 0, encoding: str = "") -> Rec
     if ahead > recipe.projected_bands and found.light.about.size is not None:
         project(found.light, *BEST, ahead)
     projection = project(found.light, *sampling_of(recipe), recipe.projected_bands)
+    if turn is not None and recipe.method == "jittered":
+        projection = turned_projection(found.light, recipe.samples, recipe.seed, turn, recipe.projected_bands)
     if encoding:
         projection = encoded(found.light, projection, encoding)
     named = recipe.light if isinstance(recipe.light, str) else found.light.name

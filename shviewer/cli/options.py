@@ -123,7 +123,20 @@ def sweep_parser() -> OneLineParser:
     parser.add_argument(
         "--turntable", action="store_true", help="turn the camera once round instead, with --bands N bands"
     )
-    parser.add_argument("--frames", metavar="K", type=int, help="frames of --turntable, 2 to 720 (default 72)")
+    parser.add_argument(
+        "--turn-light",
+        action="store_true",
+        help="turn the light once round instead, projected anew in each frame by --method and --samples, and say what flickers",
+    )
+    parser.add_argument(
+        "--seeds",
+        metavar="RULE",
+        choices=("fresh", "same"),
+        help="jittered samples of --turn-light: fresh in each frame (default) or the same",
+    )
+    parser.add_argument(
+        "--frames", metavar="K", type=int, help="frames of --turntable and --turn-light, 2 to 720 (default 72)"
+    )
     parser.add_argument(
         "--seconds",
         metavar="S",

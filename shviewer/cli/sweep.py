@@ -18,6 +18,7 @@ from shviewer.viewer.animation.animation import (
     turntable,
 )
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.animation.turning import light_turn
 from shviewer.viewer.composition import frame_for
 
 
@@ -29,6 +30,10 @@ def run(options: argparse.Namespace) -> int:
     if options.turntable:
         frames = TURN_FRAMES if options.frames is None else options.frames
         animation = turntable(state, frames, TURN_SECONDS if options.seconds is None else options.seconds)
+    elif options.turn_light:
+        frames = TURN_FRAMES if options.frames is None else options.frames
+        seconds = TURN_SECONDS if options.seconds is None else options.seconds
+        animation = light_turn(state, frames, seconds, fresh=options.seeds != "same")
     else:
         first = DEFAULT_SWEEP[0] if options.first is None else options.first
         last = DEFAULT_SWEEP[1] if options.last is None else options.last
@@ -49,10 +54,15 @@ def run(options: argparse.Namespace) -> int:
 
 def _check_sweep(options: argparse.Namespace) -> None:
     """UsageError for options that contradict each other."""
-    if options.turntable:
+    if options.turntable and options.turn_light:
+        raise UsageError("--turntable and --turn-light: one of them turns; leave out the other")
+    if options.seeds and not options.turn_light:
+        raise UsageError(f"--seeds {options.seeds}: it says how --turn-light draws its samples; give that, too")
+    if options.turntable or options.turn_light:
+        turning = "--turntable" if options.turntable else "--turn-light"
         for name, value in (("--from", options.first), ("--to", options.last)):
             if value is not None:
-                raise UsageError(f"{name} {value} with --turntable: a turn has one number of bands; give --bands")
+                raise UsageError(f"{name} {value} with {turning}: a turn has one number of bands; give --bands")
         return
     if options.basis is not None:
         raise UsageError(

@@ -83,6 +83,9 @@ class Picture:
     verdict: str = ""
     """How well the compared coefficients agree with the light's own, and if they do not, what is wrong with them."""
 
+    trace: tuple[float, ...] = ()
+    """While the light turns: how far the coefficients moved in each of the last frames, over the norm of the light."""
+
     @property
     def extremes(self) -> Extremes | Pending:
         return self.figures.extremes if isinstance(self.figures, Figures) else PENDING
@@ -130,14 +133,21 @@ def still(state: State) -> State:
     return changed(state, **{name: getattr(FRONT, name) for name in LIVE})
 
 
-def prepare(state: State, *, by_map: bool = False, written: bool = True) -> Picture:
+def prepare(
+    state: State,
+    *,
+    by_map: bool = False,
+    written: bool = True,
+    turn: tuple[float, ...] | None = None,
+    trace: tuple[float, ...] = (),
+) -> Picture:
     """Make the picture of a state. LightError if the light cannot be read, UsageError for a state out of range.
 
     by_map: draw the reconstruction from a map of it, although it could be summed per pixel. written: whether its figures are
-    written over it; if not, those that no pixel depends on stay pending.
+    written over it; if not, those that no pixel depends on stay pending. turn: as in `reconstruction_of`. trace: as in Picture.
     """
     ahead = MAX_BANDS if written and state.view.sheet != "plane" else 0  # the plane tells what the bands in use took
-    picture = first_picture(state, by_map=by_map, ahead=ahead)
+    picture = replace(first_picture(state, by_map=by_map, ahead=ahead, turn=turn), trace=trace)
     if written:
         return completed(picture)
     return picture if picture.error_scale is None else with_figures(picture)
@@ -171,14 +181,16 @@ def with_figures(picture: Picture) -> Picture:
     return replace(picture, error_scale=_scale(picture.state, picture.light, picture.projection, figures.extremes))
 
 
-def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Picture:
+def first_picture(
+    state: State, *, by_map: bool = False, ahead: int = 0, turn: tuple[float, ...] | None = None
+) -> Picture:
     """The picture of a state with what can be drawn at once: what takes a search is pending. Raises what `prepare` raises.
 
-    ahead: as in `reconstruction_of`.
+    ahead, turn: as in `reconstruction_of`.
     """
     state.check()
     recipe, view = state.recipe, state.view
-    found = reconstruction_of(recipe, ahead, view.encode)
+    found = reconstruction_of(recipe, ahead, view.encode, turn)
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
     scale = _scale(state, light, projection)
     stops = exposure_stops(view, whole)

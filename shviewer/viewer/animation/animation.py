@@ -60,6 +60,8 @@ class Animation:
     portrait: State
     about: dict[str, object]
     """The kind of animation and its numbers, for the description."""
+    picture: Callable[[int], Picture] | None = None
+    """The picture of each frame, where it does not follow from its state alone."""
 
 
 def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECONDS) -> Animation:
@@ -74,9 +76,9 @@ def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECON
     while step.view.sweep_to is not None:
         step = step_sweep(step)
         states.append(step)
-    shown = _milliseconds(seconds)
+    shown = in_milliseconds(seconds)
     about = {"kind": "bands", "from": first, "to": last}
-    return _checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
+    return checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
 
 
 def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SECONDS) -> Animation:
@@ -88,10 +90,10 @@ def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SEC
     turned = "map_centre" if state.view.whole_sphere else "camera"
     azimuth, elevation = getattr(state.view, turned)
     states = [changed(state, **{turned: ((azimuth + 360 * k / frames) % 360, elevation)}) for k in range(frames)]
-    return _checked(states, [_milliseconds(seconds)] * frames, state, {"kind": "turntable"})
+    return checked(states, [in_milliseconds(seconds)] * frames, state, {"kind": "turntable"})
 
 
-def _milliseconds(seconds: float) -> int:
+def in_milliseconds(seconds: float) -> int:
     """Milliseconds of a frame, in whole hundredths of a second, as GIF keeps them. UsageError outside SECONDS_RANGE."""
     least, most = SECONDS_RANGE
     if not least <= seconds <= most:
@@ -99,11 +101,18 @@ def _milliseconds(seconds: float) -> int:
     return 10 * round(100 * seconds)
 
 
-def _checked(states: list[State], milliseconds: list[int], portrait: State, about: dict[str, object]) -> Animation:
+def checked(
+    states: list[State],
+    milliseconds: list[int],
+    portrait: State,
+    about: dict[str, object],
+    picture: Callable[[int], Picture] | None = None,
+) -> Animation:
+    """The animation. UsageError if it is too long."""
     total = sum(milliseconds) / 1000
     if total > MAX_SECONDS:
         raise UsageError(f"{len(states)} frames last {total:g} s: at most {MAX_SECONDS:g}; lower --seconds")
-    return Animation(tuple(states), tuple(milliseconds), portrait, about)
+    return Animation(tuple(states), tuple(milliseconds), portrait, about, picture)
 
 
 def save_animation(
@@ -137,9 +146,11 @@ def save_animation(
 
         def draw(number: int) -> NDArray[np.uint8]:
             tell(number)
-            return render_rgb(
-                renderer, prepare(animation.states[number], written=overlay), composition, overlay=overlay
-            )
+            if animation.picture is not None:
+                picture = animation.picture(number)
+            else:
+                picture = prepare(animation.states[number], written=overlay)
+            return render_rgb(renderer, picture, composition, overlay=overlay)
 
         text = describe(animation, portrait, composition, renderer.version, overlay=overlay)
         data = encode(draw, animation.milliseconds, text)

@@ -27,6 +27,7 @@ from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
 from shviewer.viewer.overlay.steps import steps_legend, steps_of, steps_pieces
+from shviewer.viewer.overlay.trace import trace_pieces
 from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 
@@ -125,6 +126,8 @@ def draw_overlay(
             axes = axes_of(series, at)
             bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
             blocks += [curve_pieces(series, state, at), legend_pieces(series, state, at, hovered)]
+        if picture.trace:
+            blocks[-1] = trace_pieces(picture.trace, at)
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)
