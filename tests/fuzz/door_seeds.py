@@ -27,6 +27,8 @@ from shviewer.resources import resource_folder
 from shviewer.viewer.saving.stamp import metadata
 
 _ROWS = np.round(np.random.default_rng(2).normal(size=(9, 3)), 4)
+_CILM = np.zeros((2, 3, 3))
+_CILM[0][np.tril_indices(3)], _CILM[1, 1:, 1:][np.tril_indices(2)] = _ROWS[:6, 0], _ROWS[6:, 0]
 _LINES = "\n".join(" ".join(f"{x:g}" for x in row) for row in _ROWS)
 _COMMAS = "\n".join(",".join(f"{x:g}" for x in row) for row in _ROWS)
 _VECTORS = ",\n".join(f"    vec3({', '.join(f'{x:g}' for x in row)})" for row in _ROWS)
@@ -159,6 +161,8 @@ def _arrays() -> dict[str, bytes]:
         "light/half.npy": single(_ROWS.astype(">f2")),
         "light/complex.npy": single(_ROWS + 0j),
         "light/image.npy": single(np.linspace(0, 4, 96, dtype=np.float32).reshape(4, 8, 3)),
+        "light/cilm.npy": single(_CILM),
+        "compare/cilm.npy": single(_CILM),
         "light/planar.npy": single(np.asfortranarray(_ROWS.T)),
         "light/deflated.npz": saved(coefficients=_ROWS, other=np.arange(3)),
     }

@@ -26,6 +26,7 @@ from door_seeds import seeds
 from promise import DIRECTIONS, MOST_BYTES_BEYOND_IMAGE, BrokenPromise, forget_peak, peak_bytes
 from watch import remove, unwatched, watched
 
+import shviewer.lights.suns.compact_sources  # noqa: F401 - a reader loads it late, and making its classes runs code
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.compared_files import compared_with
 from shviewer.analysis.comparison import verdict
@@ -75,7 +76,10 @@ NAMES = (
 )
 """Stems of files, which one input in eight gets."""
 
-_CONVENTIONS = ("shviewer", "shviewer", "three", "scipy", "filament", "ambix,z-up", "shviewer,4pi,irradiance")
+_CONVENTIONS = (
+    *("shviewer", "shviewer", "three", "scipy", "filament", "ambix,z-up", "shviewer,4pi,irradiance"),
+    *("3dgs,bgr,times=2", "shtools", "arkit-phase", "shviewer,by-channel,order-fuma,schmidt"),
+)
 
 
 def _number_of(data: bytes) -> int:
