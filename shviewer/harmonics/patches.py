@@ -61,8 +61,12 @@ def four_quadrants(quadrant: Array, n_texels: int) -> Array:
     if odd:
         twice = np.where(np.arange(len(quadrant)) == 0, 2, 1)
         quadrant = quadrant * twice * twice[:, None]
-    rows = np.concatenate([quadrant[::-1], quadrant[odd:]])
-    return np.concatenate([rows[:, ::-1], rows[:, odd:]], axis=1)
+    whole = np.empty((n_texels, n_texels))
+    towards, away = slice((n_texels - 1) // 2, None, -1), slice(n_texels // 2, None)
+    for rows in (towards, away):
+        for columns in (towards, away):
+            whole[rows, columns] = quadrant
+    return whole
 
 
 def quadrant_weights(

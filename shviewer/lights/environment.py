@@ -186,8 +186,7 @@ class EnvironmentLight(RadianceLight):
             upper = self.pixels[: (height + 1) // 2]
             sums = np.array([np.ones(width) @ row.astype(np.float64) for row in upper])
             return np.asarray(np.diff(sines**2)[: len(upper)] * (np.pi / width) @ sums)
-        places = np.indices(self.pixels.shape[:2]).reshape(2, -1)
-        above = (self.layout.centres(*places)[:, 2] > 0).reshape(*self.pixels.shape[:2], 1)
+        above = self.layout.upper()[..., None]
         return np.asarray(self.layout.project(self.pixels * above, 2)[2] * np.sqrt(4 * np.pi / 3))
 
     def landmarks(self) -> Array:

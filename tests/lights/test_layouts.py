@@ -19,6 +19,8 @@ from shviewer.lights.layouts.cube import (
     HORIZONTAL_CROSS,
     HORIZONTAL_STRIP,
     OPENEXR,
+    PACK,
+    TALL_PACK,
     VERTICAL_CROSS,
     VERTICAL_STRIP,
     CubeLayout,
@@ -249,6 +251,16 @@ def test_centres_are_those_of_the_definition_and_lie_in_their_texels(layout):
     shows = solid_angles(layout).ravel() > 1e-12
     found = layout.nearest(centres[shows])
     assert_array_equal(found, (rows[shows], columns[shows]))
+
+
+@named([*EVERY, CubeLayout(PACK, 6), CubeLayout(TALL_PACK, 5)])
+def test_the_upper_texels_are_those_whose_centres_are_above_the_horizon(layout):
+    rows, columns = (a.ravel() for a in np.indices(shape(layout)))
+    shown = solid_angles(layout).ravel() > 0
+    height = layout.centres(rows, columns)[:, 2]
+    decided = shown & (np.abs(height) > 1e-12)
+    upper = np.broadcast_to(layout.upper(), shape(layout)).ravel()
+    assert_array_equal(upper[decided], height[decided] > 0)
 
 
 # --- how large they are

@@ -100,6 +100,19 @@ class CubeLayout:
         shown = self.faces_by_cell[rows // self.face, columns // self.face] >= 0
         return np.where(shown, self._face_solid_angles[rows % self.face, columns % self.face], 0.0)
 
+    def upper(self) -> NDArray[np.bool_]:
+        above = np.zeros((self.arrangement.rows * self.face, self.arrangement.columns * self.face), dtype=np.bool_)
+        first = 2 * np.arange(self.face) + 1 < self.face  # the half with the smaller index
+        halves = {"+z": True, "-z": False}
+        for face in self.arrangement.faces:
+            if face.centre in halves:
+                above[self._cell(face)] = halves[face.centre]
+            elif face.down in halves:
+                above[self._cell(face)] = (first[::-1] if halves[face.down] else first)[:, None]
+            else:
+                above[self._cell(face)] = first[::-1] if halves[face.right] else first
+        return above
+
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         face, u, v = self._on_faces(directions)
         column = np.minimum((self.face * (u + 1) / 2).astype(np.int64), self.face - 1)

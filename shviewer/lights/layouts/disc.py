@@ -58,6 +58,9 @@ class DiscLayout:
         """As in rim.Disc."""
         raise NotImplementedError
 
+    def upper(self) -> NDArray[np.bool_]:
+        return (2 * np.arange(self.side) + 1 < self.side)[:, None]
+
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         down, right, _ = self._places(directions)
         return self._texel(down), self._texel(right)

@@ -38,6 +38,9 @@ class LatLongLayout:
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
         return np.asarray(self.solid_angles()[rows, 0])
 
+    def upper(self) -> NDArray[np.bool_]:
+        return (2 * np.arange(self.height) + 1 < self.height)[:, None]
+
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         theta, phi = angles_from_directions(directions)
         row = (theta * (self.height / np.pi)).astype(np.int64)

@@ -41,6 +41,9 @@ class Layout(Protocol):
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
         """Steradians of the texels (k,) alone: (k,)."""
 
+    def upper(self) -> NDArray[np.bool_]:
+        """Whether the centres of texels lie above the horizon: (height, width), or (height, 1) where a row's are alike."""
+
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         """Row and column, (k,) each, of the texel in whose area each unit direction (k, 3) lies."""
 
