@@ -182,8 +182,9 @@ def test_the_bounds_hold_for_every_layout(layout: Layout, shape: tuple[int, int]
     assert_true(light, light.coefficients(6), between_texels(light, 4))
 
 
-def test_the_bounds_hold_for_the_irradiance_of_an_image() -> None:
-    light = EnvironmentLight(room(np.random.default_rng(4), 16, 32)).irradiance()
+@pytest.mark.parametrize("quantity", ["irradiance", "glossy:0.7", "glossy:0.4"])
+def test_the_bounds_hold_for_what_surfaces_make_of_an_image(quantity: str) -> None:
+    light = EnvironmentLight(room(np.random.default_rng(4), 16, 32)).through(quantity)
     found = assert_true(light, light.coefficients(3), between_texels(light, 1))
     assert found.max_error_bound is not None
     assert found.max_error_bound < found.max_error * 1.01
@@ -212,7 +213,9 @@ def test_lobes_have_no_larger_error_anywhere(seed: int) -> None:
     grid = directions_from_angles(np.pi * (np.arange(150)[:, None] + 0.5) / 150, column_azimuths(300)).reshape(-1, 3)
     assert_true(light, shown, np.concatenate([grid, around_edges(light, 1000)]))
     if seed % 4 == 3:
-        assert_true(light.irradiance(), light.irradiance().coefficients(n_bands), grid)
+        for quantity in ("irradiance", "glossy:0.15", "glossy:0.6"):
+            seen = light.through(quantity)
+            assert_true(seen, seen.coefficients(n_bands), grid)
 
 
 def closely_bounded(name: str, n_bands: int) -> Extremes:
