@@ -16,6 +16,7 @@ order-fuma-inverse the inverse of that, which spharpy 1.0.1 has for FuMa (nm_to_
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,9 +69,12 @@ ORDERS: dict[str, tuple[Callable[[int], Order], str]] = {
 """Name -> the order for a number of bands, a ValueError where it is not defined; and the order in words."""
 
 
+@lru_cache(64)
 def row_order(name: str, n_bands: int) -> Order:
     """The index l(l+1) + m of the Y(l, m) that each row belongs to. ValueError for more bands than the order has."""
     try:
-        return ORDERS[name][0](n_bands)
+        order = ORDERS[name][0](n_bands)
+        order.setflags(write=False)
+        return order
     except ValueError as error:
         raise ValueError(f"rows in {name}, {error}") from None
