@@ -111,14 +111,15 @@ class Peak:
         return self.mib
 
 
-def _resident(root: int) -> int:
-    """Bytes of a process and its children."""
+def _resident(root: int, shared: str = "") -> int:
+    """Bytes of a process and its children. shared: what /proc says of the parent, as of a child that has just been forked."""
     try:
-        own = int(Path(f"/proc/{root}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        said = Path(f"/proc/{root}/statm").read_text()
         children = Path(f"/proc/{root}/task/{root}/children").read_text().split()
     except OSError:
         return 0
-    return own + sum(_resident(int(child)) for child in children)
+    own = 0 if said == shared else int(said.split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    return own + sum(_resident(int(child), said) for child in children)
 
 
 def process(*arguments: str) -> tuple[float, float]:
