@@ -106,7 +106,9 @@ def message_line(at: Composition) -> Line | None:
     """The line on which messages stand: the foot as far as the frame reaches, or in a compact frame the figures' place."""
     numbers = at.numbers
     if numbers.foot is not None:
-        right = at.width - at.margin if numbers.legend is None else numbers.legend.left - at.px(12)
+        right, legend = at.width - at.margin, numbers.legend
+        if legend is not None and legend.baseline == numbers.foot.baseline:
+            right = legend.left - at.px(12)
         return numbers.foot._replace(right=min(max(right, numbers.foot.right), at.width - at.margin))
     places = numbers.figures or numbers.answers
     if not places:

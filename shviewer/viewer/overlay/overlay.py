@@ -128,6 +128,8 @@ def draw_overlay(
             blocks += [curve_pieces(series, state, at), legend_pieces(series, state, at, hovered)]
         if picture.trace:
             blocks[-1] = trace_pieces(picture.trace, at)
+        if work is not None and numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline:
+            blocks[-1] = []  # how far the work is takes its place
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)

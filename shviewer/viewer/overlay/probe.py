@@ -11,6 +11,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, Ink, font
+from shviewer.viewer.overlay.numerals import MINUS
 from shviewer.viewer.picture import Picture
 from shviewer.words import theta_phi_degrees
 
@@ -94,7 +95,7 @@ def _table(found: Probe, composition: Composition) -> np.ndarray:
     face, line, pad = font(size), round(1.5 * size), round(0.8 * size)
     theta, phi = found.theta_phi_degrees
     direction = "   ".join(f"{axis} {value:z.3f}" for axis, value in zip("xyz", found.direction, strict=True))
-    heads = [f"theta {theta:.1f}   phi {phi:z.1f}", direction]
+    heads = [text.replace("-", MINUS) for text in (f"theta {theta:.1f}°   phi {phi:z.1f}°", direction)]
     rows = [
         (name, _numbers(values), ink)
         for name, values, ink in (
@@ -130,4 +131,5 @@ def _table(found: Probe, composition: Composition) -> np.ndarray:
 
 def _numbers(values: Array) -> list[str]:
     """Values as text, four digits each."""
-    return [f"{value:z.4g}" if value == 0 or 1e-3 <= abs(value) < 1e5 else f"{value:z.3e}" for value in values]
+    texts = (f"{value:z.4g}" if value == 0 or 1e-3 <= abs(value) < 1e5 else f"{value:z.3e}" for value in values)
+    return [text.replace("-", MINUS) for text in texts]
