@@ -116,7 +116,7 @@ class Projected(InNotebooks):
         convention: as --convention takes it. UsageError if it is unknown or contradictory, or for more bands than it has.
         """
         try:
-            return parse_convention(convention).from_ours(self.coefficients, self.quantity)
+            return self._in(parse_convention(convention))
         except ValueError as error:
             raise UsageError(str(error)) from error
 
@@ -154,15 +154,19 @@ class Projected(InNotebooks):
 
         UsageError if the convention has too few bands, cannot hold the quantity, or cannot be written as `kind`.
         """
-        if convention.sequence in SEQUENCES:
-            raise UsageError(
-                f"{convention.sequence} says how a list is read; what is written has a row for each l and m: leave it out"
-            )
         try:
-            numbers = convention.from_ours(self.coefficients, self.quantity)
+            numbers = self._in(convention)
             return encode(numbers, self.stamp(convention, count_bands(numbers)), convention, kind, self.name)
         except ValueError as error:
             raise UsageError(str(error)) from error
+
+    def _in(self, convention: Convention) -> NDArray[np.generic]:
+        """The rows in a convention. ValueError if it cannot have them."""
+        if convention.sequence in SEQUENCES:
+            raise ValueError(
+                f"{convention.sequence} says how a list is read; what is written has a row for each l and m: leave it out"
+            )
+        return convention.from_ours(self.coefficients, self.quantity)
 
     def stamp(self, convention: Convention, n_bands: int) -> dict[str, Value]:
         """The stamp of a file with these coefficients in a convention."""

@@ -11,7 +11,7 @@ from coefficients.peer_cases import asymmetric
 
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
-from shviewer.errors import LightError
+from shviewer.errors import LightError, UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
@@ -139,6 +139,15 @@ def test_what_cannot_be_written_is_one_line_and_no_file(
     assert says in error
     assert error.splitlines()[-1].startswith("shviewer: ")
     assert not (tmp_path / "a.json").exists()
+
+
+def test_numbers_in_python_are_rows_too() -> None:
+    import shviewer
+
+    with pytest.raises(UsageError, match="says how a list is read"):
+        shviewer.project("green", 3).numbers("three,by-channel")
+    doubled = shviewer.project("green", 3).numbers("three,bgr,times=2")
+    np.testing.assert_array_equal(doubled, 2 * np.asarray(shviewer.project("green", 3).numbers("three"))[:, ::-1])
 
 
 def test_a_flat_list_of_arkit_is_channel_by_channel_and_rows_are_rows(tmp_path: Path) -> None:
