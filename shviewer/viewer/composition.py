@@ -31,6 +31,9 @@ LOW_HEIGHT = 360
 MOST_LINES = 4
 """How many lines after a head there may be, as far as they are clear of the sphere."""
 
+NEAR = 0.93
+"""The share of the largest panes with which a tall frame has more rows."""
+
 CLEARANCE = 12.0
 """Pixels of the design between a text and a sphere."""
 
@@ -190,6 +193,9 @@ class _Design:
             others = (sizes[choice] for rest, _ in levels[number + 1 : number + 2] for choice in rest)
             if choices and (largest >= comfortable or largest >= share * max(others, default=0.0)):
                 break
+        if self.height > self.width:  # a tall frame is filled by more rows, where they hardly make the panes smaller
+            choices = [choice for choice in choices if sizes[choice] >= NEAR * largest]
+            return max(choices, key=lambda choice: (choice[0], sizes[choice]))
         return max(choices, key=lambda choice: sizes[choice])
 
     def choices(self) -> Iterator[tuple[int, Mode]]:
