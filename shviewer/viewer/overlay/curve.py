@@ -100,24 +100,30 @@ def axes_of(series: BandSeries, at: Composition) -> Axes:
 
 def curve_pieces(series: BandSeries, state: State, at: Composition) -> list[Piece]:
     """Grid, bars, lines, rings, and the dot of what is shown."""
+    return [piece for block in curve_blocks(series, state, at) for piece in block]
+
+
+def curve_blocks(series: BandSeries, state: State, at: Composition) -> list[list[Piece]]:
+    """The same in three blocks, the first at the bottom: of a band key the one between, lines and rings, stays as it is."""
     axes = axes_of(series, at)
-    pieces = _grid(axes, series, at)
+    under = _grid(axes, series, at)
     for band, worth in enumerate(series.worth):
-        pieces += _bar(axes, band, worth, series, at)
+        under += _bar(axes, band, worth, series, at)
+    lines: list[Piece] = []
     clip = Box(axes.left - at.px(8), axes.top - at.px(10), axes.right + at.px(8), axes.base)
     for errors, ink, width in ((series.shading, GREY, 1.6), (series.errors, INK, 1.8)):
         points = [(axes.x(band), axes.y(error)) for band, error in enumerate(errors) if math.isfinite(error)]
         if len(points) > 1 and min(y for _, y in points) < axes.base:
             ended = _until_below(points, axes.base + at.px(6))
-            pieces.append(Curve(ended, at.px(width), ink, clip, at.px(1.2), GROUND))
-    pieces += _numbers(axes, state, at)
+            lines.append(Curve(ended, at.px(width), ink, clip, at.px(1.2), GROUND))
     for errors, needed, ink in (
         (series.shading, series.shading_needed, GREY),
         (series.errors, series.needed, INK),
     ):
         if needed is not None and needed <= min(len(errors), axes.slots):
-            pieces += _ring(axes, needed - 1, errors[needed - 1], ink, at)
-    return [*pieces, *_dot(axes, series, state.recipe.n_bands, at)]
+            lines += _ring(axes, needed - 1, errors[needed - 1], ink, at)
+    n_bands = state.recipe.n_bands
+    return [[*under, *_numbers(axes, state, at)], lines, _dot(axes, series, n_bands, at)]
 
 
 def _grid(axes: Axes, series: BandSeries, at: Composition) -> list[Piece]:

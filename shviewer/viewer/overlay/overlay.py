@@ -18,7 +18,7 @@ from shviewer.viewer.composition import Composition
 from shviewer.viewer.overlay.band_series import band_series
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
-from shviewer.viewer.overlay.curve import axes_of, curve_pieces, least_slots, legend_pieces
+from shviewer.viewer.overlay.curve import axes_of, curve_blocks, least_slots, legend_pieces
 from shviewer.viewer.overlay.drawing import Piece, Text, image_of, layer_of, named_boxes
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
 from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, proposed_key, said_of
@@ -125,7 +125,7 @@ def draw_overlay(
             series = band_series(picture, least_slots(at))
             axes = axes_of(series, at)
             bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
-            blocks += [curve_pieces(series, state, at), legend_pieces(series, state, at, hovered)]
+            blocks += [*curve_blocks(series, state, at), legend_pieces(series, state, at, hovered)]
         if picture.trace:
             blocks[-1] = trace_pieces(picture.trace, at)
         if work is not None and numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline:
