@@ -6,7 +6,7 @@ hangs or answers rubbish becomes one LightError; the child's own errors come bac
     to the child, stdin:     {"limits": ..., "layer": ..., "kind": ..., "folder": ..., "bytes": n} newline, the file's n bytes;
                              closed when the answer is there
     from the child, stdout:  {"height": ..., "width": ..., ...} or {"error": ...} newline, the pixels as float32, or as
-                             float16 if those are all that the file has: then the child never holds them as float32
+                             float16 if those are all that the file has; few rows at a time, made of the file's planes
 
 Nothing that the child says is executed, and sizes are checked against the limits before memory is taken.
 
@@ -205,6 +205,7 @@ def answer() -> None:
             head = {"memory": True}
         except Exception as error:
             head = {"failure": f"{type(error).__name__}: {error}"}
+        del data  # before the other process takes memory for the pixels
         out.write(json.dumps(head).encode() + b"\n")
         for rows in pixels:
             out.write(rows.data.cast("B"))
@@ -222,14 +223,14 @@ def _answered(
         layout, pixels = decoded.layout, iter([decoded.pixels])
         height, width = decoded.pixels.shape[:2]
     head = {"height": height, "width": width, "encoding": decoded.encoding, "notes": decoded.notes}
-    return {**head, "layout": layout, "halves": isinstance(decoded, Planes)}, pixels
+    return {**head, "layout": layout, "halves": isinstance(decoded, Planes) and decoded.halves}, pixels
 
 
 def _decoded(data: bytes, limits: Limits, request: dict[str, Any]) -> Decoded | Planes:
-    """The radiance; as planes, if those are half floats that nothing changes."""
+    """The radiance; as planes, if nothing changes their values."""
     if request["kind"] == OPENEXR:
         planes = read_openexr(data, limits, request["layer"])
-        return planes if planes.halves else planes.decoded()
+        return planes if planes.plain else planes.decoded()
     from shviewer.lights.images.others.openimageio import decode_openimageio
 
     tempfile.tempdir = request["folder"]

@@ -57,10 +57,15 @@ class Planes:
     notes: tuple[str, ...]
 
     @property
-    def halves(self) -> bool:
-        """Whether they are the radiance as it stands, in half floats."""
+    def plain(self) -> bool:
+        """Whether they are the radiance as it stands, all in half floats or all in float32."""
         changed = self.source.luminance_chroma or self.matrix is not None or self.part.window != self.part.display
-        return not changed and all(plane.dtype == np.float16 for plane in self.planes)
+        kinds = {plane.dtype.type for plane in self.planes}
+        return not changed and kinds in ({np.float16}, {np.float32})
+
+    @property
+    def halves(self) -> bool:
+        return self.plain and self.planes[0].dtype == np.float16
 
     def rows(self) -> Iterator[_Plane]:
         """The values as they stand, a few rows at a time, (rows, width, 3)."""
