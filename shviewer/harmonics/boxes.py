@@ -52,53 +52,60 @@ def wave_sums(directions: Array, values: Array, n_bands: int) -> Array:
     mirrors = [4 * i + 2 * j + k for i, j, k in np.ndindex(values.shape[:3])]
     edges = np.searchsorted(place, np.arange(boxes + 1) * (boxes * 8))
     result = np.zeros((n_bands, 2, channels, n_bands))
+    memory = np.empty((8, boxes, DEGREES, channels, DEGREES)) if len(x) else np.empty(0)
     for row in range(boxes):
         if edges[row] == edges[row + 1]:
             continue
-        moments = np.zeros(
-            (8, boxes, DEGREES, channels, DEGREES)
-        )  # octant, box and degree along phi, ..., degree in theta
+        used = np.unique(place[edges[row] : edges[row + 1]] // 8) - row * boxes
+        moments = memory.reshape(-1)[: memory.size // boxes * len(used)].reshape(8, len(used), *memory.shape[2:])
+        moments[:] = 0
         for start in range(edges[row], edges[row + 1], STRIP_POINTS):
             stop = min(start + STRIP_POINTS, edges[row + 1])
             here = order[start:stop]
             north = chebyshev_values(2 * (theta[here] / width - row) - 1, DEGREES)
             around = chebyshev_values(2 * (phi[here] / width - box[here]) - 1, DEGREES)
-            _add_moments(moments, place[start:stop], north, around, columns[:, here], mirrors)
-        _add_waves(result, moments, row, boxes)
+            where = np.searchsorted(used, box[here]) * 8 + octant[here]
+            _add_moments(moments, where, north, around, columns[:, here], mirrors)
+        _add_waves(result, moments, row, used, boxes)
     return result
 
 
 def _add_moments(
-    moments: Array, place: NDArray[np.int64], north: Array, around: Array, columns: Array, mirrors: list[int]
+    moments: Array, where: NDArray[np.int64], north: Array, around: Array, columns: Array, mirrors: list[int]
 ) -> None:
-    """Add points of one strip, sorted by `place`, which counts boxes along phi and the octants in them."""
-    boxes = moments.shape[1]
-    starts = np.concatenate([[0], np.flatnonzero(np.diff(place)) + 1, [len(place)]])
+    """Add points of one strip, sorted by `where`: the box along phi times 8, and the octant."""
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(where)) + 1, [len(where)]])
+    memory = np.empty(DEGREES * len(columns) * min(BOX_POINTS, len(where)))
+    product = np.empty((DEGREES * len(columns), DEGREES))
+    by_mirror = product.reshape(DEGREES, len(mirrors), -1, DEGREES)
     for first, last in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True):
-        box, octant = divmod(int(place[first]) % (8 * boxes), 8)
+        box, octant = divmod(int(where[first]), 8)
         for start in range(first, last, BOX_POINTS):
             points = slice(start, min(start + BOX_POINTS, last))
-            weighted = around[:, None, points] * columns[:, points]
-            product = weighted.reshape(-1, weighted.shape[-1]) @ north[:, points].T
-            by_mirror = product.reshape(DEGREES, len(mirrors), -1, DEGREES)
+            count = points.stop - start
+            weighted = memory[: len(product) * count].reshape(DEGREES, -1, count)
+            np.multiply(around[:, None, points], columns[:, points], out=weighted)
+            np.matmul(weighted.reshape(-1, count), north[:, points].T, out=product)
             for i, mirror in enumerate(mirrors):
                 moments[octant ^ mirror, box] += by_mirror[:, i]
 
 
-def _add_waves(result: Array, moments: Array, row: int, boxes: int) -> None:
-    """Turn the moments of a strip into sums with waves, and add them to the result of `wave_sums`."""
-    n_bands = len(result)
+def _add_waves(result: Array, moments: Array, row: int, used: NDArray[np.int64], boxes: int) -> None:
+    """Turn the moments of a strip's boxes into sums with waves, and add them to the result of `wave_sums`."""
+    n_bands, values = len(result), len(used) * DEGREES
     n_even = (n_bands + 1) // 2
-    octants = moments.reshape(2, 2, 2, -1)
+    octants = moments.reshape(2, 2, 2, values, -1)
     for axis in range(3):
-        first, second = np.take(octants, 0, axis), np.take(octants, 1, axis)
-        octants = np.stack([first + second, first - second], axis)
+        first, second = np.moveaxis(octants, axis, 0)
+        difference = first - second
+        first += second
+        second[:] = difference
     series = _wave_series(n_bands, boxes)
     for parity, sine, odd_k in np.ndindex(2, 2, 2):
         if max(parity, odd_k) >= n_bands:
             continue
-        folded = octants[(parity + sine) % 2, sine, (parity + odd_k) % 2].reshape(boxes * DEGREES, -1)
-        around = series[sine, parity::2].reshape(-1, boxes * DEGREES) @ folded
+        folded = octants[(parity + sine) % 2, sine, (parity + odd_k) % 2]
+        around = series[sine, parity::2, used].swapaxes(0, 1).reshape(-1, values) @ folded
         product = around.reshape(-1, DEGREES) @ series[parity, odd_k::2, row].T
         kept = slice(n_even, None) if odd_k else slice(0, n_even)
         result[parity::2, sine, :, kept] += product.reshape(-1, result.shape[2], product.shape[-1])

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.scattered import project_values
-from shviewer.lights.layouts import mirror_ball
+from shviewer.lights.layouts import mirror_ball, rim
 from shviewer.lights.layouts.angular import AngularLayout
 from shviewer.lights.layouts.cube import (
     HORIZONTAL_CROSS,
@@ -429,6 +429,16 @@ def test_a_mirror_ball_is_the_same_whether_its_texels_are_taken_in_tiles_or_by_t
     assert not MirrorBallLayout(side).inside().any()
     edges = MirrorBallLayout(side).project(pixels, 40)
     assert np.abs(tiles - edges).max() < 1e-13 * np.abs(tiles).max()
+
+
+def test_tangents_of_two_components_do_for_those_of_three_behind(monkeypatch):
+    """Where the rim is thin all points of its lines are behind."""
+    pixels = np.random.default_rng(5).random((300, 300, 3)).astype(np.float32)
+    two = AngularLayout(300).project(pixels, 40)
+    monkeypatch.setattr(rim, "BEHIND", -2.0)
+    three = AngularLayout(300).project(pixels, 40)
+    assert not np.array_equal(two, three)
+    assert np.abs(two - three).max() < 1e-14 * np.abs(three).max()
 
 
 @pytest.mark.parametrize("side", [3, 10, 11, 100])

@@ -36,6 +36,9 @@ GROUP = 128
 LINES = 8
 """Lines whose polynomials are held at once."""
 
+BEHIND = -0.2
+"""The x of directions from which on the other two components of a tangent suffice."""
+
 AREA_POINTS = 24
 """Gauss's points on an edge that make its part of an area exact to rounding, even in an image of three texels."""
 
@@ -70,15 +73,23 @@ def project_rim(disc: Disc, pixels: NDArray[np.float32], inside: Indices, n_band
 
     inside: (half,), descending, the same for rows and columns.
     """
-    views, directions, values = quadrants(pixels), [], []
+    views, directions, tangents, values = quadrants(pixels), [], [], []
     for start in range(0, len(inside), GROUP):
         lines = slice(start, min(start + GROUP, len(inside)))
         direction, tangent, along, across = _on_lines(disc, views, inside, lines, n_bands)
-        directions += [direction, direction[[0, 2, 1]]]
         # On lines of constant X, coordinates change places, which turns the boundary round.
-        values += [_times_tangent(along, tangent), _times_tangent(across, -tangent[[0, 2, 1]])]
-    sums = project_mirrored(np.concatenate(directions, axis=1).T, np.concatenate(values, axis=2)[None], n_bands)
-    return from_boundary(sums.reshape(-1, 3, 3).swapaxes(0, 1))
+        directions += [direction, direction[[0, 2, 1]]]
+        tangents += [tangent, -tangent[[0, 2, 1]]]
+        values += [along, across]
+    direction, tangent = np.concatenate(directions, axis=1), np.concatenate(tangents, axis=1)
+    axes = slice(0, 3)
+    if direction[0].max() < BEHIND:  # r . (r x grad) = 0, so that one component can be told by the others
+        tangent[1:] -= direction[1:] * (tangent[0] / direction[0])
+        axes = slice(1, 3)
+    weighted = _times_tangent(np.concatenate(values, axis=2), tangent, axes)
+    sums = np.zeros((3, n_bands**2, 3))
+    sums[axes] = project_mirrored(direction.T, weighted[None], n_bands).reshape(n_bands**2, -1, 3).swapaxes(0, 1)
+    return from_boundary(sums)
 
 
 def _on_lines(
@@ -131,14 +142,15 @@ def _circle(angle: Array) -> tuple[Array, Array]:
     return np.cos(angle), np.sin(angle)
 
 
-def _times_tangent(values: Array, tangent: Array) -> Array:
-    """Values (2, 2, k, 3) times the components of the tangents (3, k) in each quadrant: (2, 2, k, 9)."""
-    weighted = np.empty((*values.shape[:3], 3, 3))
+def _times_tangent(values: Array, tangent: Array, axes: slice) -> Array:
+    """Values (2, 2, k, 3) times some components of the tangents (3, k) in each quadrant: (2, 2, k, 3 for each axis)."""
+    count = len(tangent[axes])
+    weighted = np.empty((*values.shape[:3], count, 3))
     for i, j in np.ndindex(2, 2):
         left, up = 1 - 2 * i, 1 - 2 * j  # a mirror turns the boundary round
-        signed = tangent.T * np.array([left * up, up, left])
-        np.multiply(signed[..., None], values[i, j][:, None], out=weighted[i, j])
-    return weighted.reshape(*values.shape[:3], 9)
+        signed = (tangent[axes].T * np.array([left * up, up, left])[axes])[..., None]
+        np.multiply(signed, values[i, j][:, None], out=weighted[i, j])
+    return weighted.reshape(*values.shape[:3], 3 * count)
 
 
 def _parameter(x: Array, rho: Array) -> Array:
