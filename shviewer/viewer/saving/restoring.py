@@ -189,7 +189,7 @@ def _coefficients(said: dict[str, Any]) -> CoefficientLight | None:
         numbers = np.array(rows, dtype=np.float64)
         if numbers.ndim != 2 or numbers.shape[1] != 3 or count_bands(numbers) > MAX_BANDS:
             raise ValueError(f"an array of {numbers.shape}")
-        return CoefficientLight(numbers, one_line(str(said.get("light")), 60))
+        return CoefficientLight(numbers, f"{one_line(str(said.get('light')), 60)} (kept coefficients)")
     except (ValueError, TypeError, ArithmeticError, LightError) as error:
         raise UsageError(f"the coefficients in its stamp are damaged ({error})") from None
 

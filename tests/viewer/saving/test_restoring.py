@@ -216,7 +216,7 @@ def test_where_the_light_is_gone_its_coefficients_are_shown(tmp_path: Path, quan
         "its place"
     )
     after = prepare(found.state)
-    assert (after.state.view.tone, after.light.name) == ("log", "sky")
+    assert (after.state.view.tone, after.light.name) == ("log", "sky (kept coefficients)")
     size = float(np.abs(before.coefficients).max())
     np.testing.assert_allclose(after.coefficients, before.coefficients, rtol=0, atol=1e-8 * size)  # nine digits
 
