@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
 from numpy.testing import assert_allclose
 from places import kernels
 
+import shviewer
 from shviewer.coefficients.parts.quantities import recovered_radiance
-from shviewer.errors import LightError
+from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
 from shviewer.harmonics.quadrature import gauss_legendre
@@ -229,3 +232,15 @@ def test_a_narrow_kernel_is_refused_where_its_bands_have_no_room(monkeypatch: py
         light.through("glossy:0.1")
     assert light.through("glossy:0.25").quantity == "glossy:0.25"
     assert find_light("green").through("glossy:0.1").quantity == "glossy:0.1"
+
+
+@pytest.mark.parametrize("kind", ["json", "csv", "npz", "h", "glsl"])
+def test_a_file_of_a_glossy_quantity_says_so_and_is_that_quantity_again(tmp_path: Path, kind: str) -> None:
+    found = shviewer.project("studio", 7, quantity="glossy:0.40")
+    found.save(tmp_path / f"rough.{kind}")
+    light = find_light(str(tmp_path / f"rough.{kind}"))
+    assert light.about.quantity == "glossy:0.4"
+    assert_allclose(light.through("glossy:0.4").coefficients(7), found.coefficients, rtol=1e-12, atol=1e-15)
+    assert_allclose(light.coefficients(7), find_light("studio").coefficients(7), rtol=0, atol=1e-10)
+    with pytest.raises(UsageError, match=r"glossy:0\.4 cannot be written as irradiance-over-pi: project"):
+        shviewer.project("studio", 3, quantity="glossy:0.4").numbers("unity")
