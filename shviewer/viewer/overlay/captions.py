@@ -12,9 +12,9 @@ from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import RADIANCE, in_words
 from shviewer.viewer.beside import Beside, words_of
+from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composition import Caption, Composition
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
-from shviewer.viewer.numbers_area import Line
 from shviewer.viewer.overlay.drawing import Piece, Swatch, Text
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, REGULAR, SEMIBOLD, Ink, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import share, typeset

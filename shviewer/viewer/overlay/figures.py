@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from shviewer.analysis.figures import PENDING, Pending
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words, roughness_of
+from shviewer.viewer.composing.numbers_area import Cell
 from shviewer.viewer.composition import Composition
-from shviewer.viewer.numbers_area import Cell
 from shviewer.viewer.overlay.drawing import Piece, Swatch, Text
 from shviewer.viewer.overlay.lettering import GREY, INK, MEDIUM, REGULAR, width_of
 from shviewer.viewer.overlay.numerals import bound_text, share, typeset, value

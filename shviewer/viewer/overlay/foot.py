@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from shviewer.analysis.comparison import agrees
 from shviewer.analysis.figures import Pending
 from shviewer.viewer import message
+from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composition import Composition
-from shviewer.viewer.numbers_area import Line
 from shviewer.viewer.overlay.drawing import Curve, Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import (
     ACCENT,

@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from shviewer.viewer.composition import Composition
-from shviewer.viewer.overlay.band_series import band_series
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
-from shviewer.viewer.overlay.curve import axes_of, curve_blocks, least_slots, legend_pieces
 from shviewer.viewer.overlay.drawing import Piece, Text, image_of, layer_of, named_boxes
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
 from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, proposed_key, said_of
 from shviewer.viewer.overlay.help_sheet import help_pieces
 from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
+from shviewer.viewer.overlay.plots.band_series import band_series
+from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots, legend_pieces
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
-from shviewer.viewer.overlay.steps import steps_legend, steps_of, steps_pieces
-from shviewer.viewer.overlay.trace import trace_pieces
+from shviewer.viewer.overlay.plots.steps import steps_legend, steps_of, steps_pieces
+from shviewer.viewer.overlay.plots.trace import trace_pieces
 from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 

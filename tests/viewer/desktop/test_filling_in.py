@@ -17,9 +17,9 @@ from shviewer.viewer.composition import compose
 from shviewer.viewer.desktop import session as sessions
 from shviewer.viewer.desktop.canvas import _overlay_key
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.overlay import band_series
 from shviewer.viewer.overlay.marks import marks_of
 from shviewer.viewer.overlay.overlay import draw_overlay
+from shviewer.viewer.overlay.plots import band_series
 from shviewer.viewer.picture import first_picture, prepare, stages
 from shviewer.viewer.state import state_of
 

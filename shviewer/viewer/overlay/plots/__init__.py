@@ -1,1 +1,1 @@
-"""Sheets with curves in place of the spheres."""
+"""What is plotted: the curve under the panes, and sheets over them."""

@@ -13,7 +13,6 @@ from shviewer.analysis.roughness import ROUGHNESS, Staircase, staircase
 from shviewer.harmonics.quantities.names import IRRADIANCE, roughness_of
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.composition import Composition
-from shviewer.viewer.overlay.curve import LABELS, RING
 from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import (
     ACCENT,
@@ -31,6 +30,7 @@ from shviewer.viewer.overlay.lettering import (
     width_of,
 )
 from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.plots.curve import LABELS, RING
 from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 
