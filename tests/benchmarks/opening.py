@@ -162,7 +162,7 @@ def window(paths: list[Path]) -> None:
 
     from shviewer.errors import GraphicsError
     from shviewer.viewer.desktop.canvas import Canvas
-    from shviewer.viewer.desktop.window import Window, open_window
+    from shviewer.viewer.desktop.window import LEAVE_SECONDS, Window, open_window
     from shviewer.viewer.picture import prepare
     from shviewer.viewer.state import changed, state_of
 
@@ -185,7 +185,7 @@ def window(paths: list[Path]) -> None:
                     meanwhile.append(frame(shown, len(meanwhile)))
                     if first == 0 and shown.shown is not None and shown.shown.light.name == path.stem:
                         first = time.perf_counter() - start
-                    time.sleep(min(meanwhile[-1] / 1000, 0.03) if shown.session.working else 0)
+                    time.sleep(min(meanwhile[-1] / 1000, LEAVE_SECONDS) if shown.session.working else 0)
                 print(
                     f"{path.name}: first picture after {first:.2f} s, all figures after {time.perf_counter() - start:.2f} s; "
                     f"{len(meanwhile)} frames, median {statistics.median(meanwhile):.0f} ms, slowest "

@@ -36,8 +36,8 @@ IDLE_SECONDS = 0.25
 OUTSIDE = (-1.0, -1.0)
 """The place of a mouse that has left the window."""
 
-LEAVE_SECONDS = 0.03
-"""The longest pause between two frames while something is at work behind the window."""
+LEAVE_SECONDS = 0.1
+"""The longest pause between two frames while something is at work behind the window, which gets no turn while OpenGL draws."""
 
 
 def run(
