@@ -200,12 +200,13 @@ def proposed_key(picture: Picture) -> str:
 
 
 def _keys(line: Line, at: Composition, proposed: str) -> list[Piece]:
-    """As many keys as have room; help is always among them, and one that is proposed stands out."""
+    """As many keys as have room; help is always among them, and one that is proposed, which stands out."""
     size = at.px(12.0)
-    for count in range(len(KEYS) - 1, -1, -1):
-        shown, x = (*KEYS[:count], KEYS[-1]), line.left
+    gone_first = [key for key in reversed(KEYS[:-1]) if key[0] != proposed]
+    for gone in range(len(gone_first) + 1):
+        shown, x = [key for key in KEYS if key not in gone_first[:gone]], line.left
         pieces: list[Piece] = []
-        if count == 0:
+        if len(shown) == 1:
             x = line.right - width_of("H", size, MEDIUM) - at.px(5) - width_of("help", size)
         for key, words in shown:
             pieces.append(

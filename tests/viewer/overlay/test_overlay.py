@@ -350,6 +350,16 @@ def test_an_error_has_a_cross() -> None:
     assert {piece.ink for piece in pieces} == {ERROR}  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize("size", [(1280, 640), (1280, 720), (2560, 1440)])
+def test_where_a_sun_is_to_blame_u_is_among_the_keys_and_stands_out(size: tuple[int, int]) -> None:
+    """Beside three panes there is no room for all keys."""
+    shown = picture_of("venice_sunset", n_bands=9, error="signed")
+    inks = {piece.name: piece.ink for piece in draw_overlay(shown, frame(shown, size)).texts}
+    assert (inks["key_U"], inks["key_D"], inks["key_H"]) == (INK, GREY, GREY)
+    found = draw_overlay(PICTURES["green"], compose(1280, 640)).texts
+    assert next(piece.ink for piece in found if piece.name == "key_U") == GREY
+
+
 def lit(at: Composition, work: Work) -> tuple[float, float]:
     """The part of the hairline in the accent, as shares of its length."""
     (bar,) = (piece.area for piece in hairline_pieces(at, work) if isinstance(piece, Fill) and piece.ink == ACCENT)
