@@ -119,7 +119,7 @@ def test_fish_offers_what_belongs_to_a_mode(tmp_path: Path) -> None:
         done = subprocess.run([fish, "-c", asked], env=environment, capture_output=True, text=True, check=True)
         return [row.split("\t")[0] for row in done.stdout.splitlines()]
 
-    assert offered("shviewer sweep a.gif --turn") == ["--turntable"]
+    assert offered("shviewer sweep a.gif --turn") == ["--turntable", "--turn-light"]
     assert offered("shviewer info --turn") == []
     assert offered("shviewer --tone a") == ["aces"]
 
