@@ -26,7 +26,7 @@ DECODES_FOR_EVER = """
 from shviewer.lights.images import isolated
 isolated._CHILD = (
     "import sys; sys.path[:] = sys.argv[1:]; import os, time; from shviewer.lights.images import isolated;"
-    "isolated.decode_openexr = lambda *_: (os.mkdir(str(os.getpid())), time.sleep(600));"
+    "isolated.read_openexr = lambda *_: (os.mkdir(str(os.getpid())), time.sleep(600));"
     "isolated.answer()"
 )
 isolated.decode_isolated(b"any bytes")
