@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -154,6 +155,7 @@ def test_report_is_a_function_although_there_is_a_package_of_that_name(monkeypat
     assert seen[1][2].budget == 3
 
 
+@pytest.mark.skipif(find_spec("mypy") is None, reason="no mypy: pip install 'shviewer[dev]'")
 def test_users_are_type_checked(tmp_path: Path) -> None:
     (tmp_path / "user.py").write_text(
         "import shviewer\n\nfound = shviewer.project('green', 5, quantity='radiance')\nfound.save('x.json', 'three')\n"

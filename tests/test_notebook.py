@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import pickle
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,13 @@ from PIL import Image
 import shviewer
 from shviewer import notebook, pictures
 from shviewer.errors import GraphicsError
+from shviewer.viewer.gl.renderer import Renderer
+
+
+@pytest.fixture(autouse=True)
+def one_context(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two live contexts in a thread silently mix."""
+    monkeypatch.setattr("shviewer.viewer.screenshot.headless_renderer", lambda: nullcontext(renderer))
 
 
 def drawn(shown: Any) -> tuple[np.ndarray[Any, Any], dict[str, Any]]:
