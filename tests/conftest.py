@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Generator, Iterator
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 from helpers import hear_signals, unavailable
@@ -16,6 +17,7 @@ from shviewer.analysis.cache import MEMORY
 from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
 from shviewer.errors import GraphicsError
 from shviewer.lights.find import find_light
+from shviewer.viewer import screenshot
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import headless_renderer
 
@@ -60,10 +62,17 @@ def session_renderer() -> Iterator[Renderer]:
         renderer = renderers.__enter__()
     except GraphicsError as error:
         unavailable(f"tests that draw cannot run: {error}")
+    made, screenshot._headless_context = screenshot._headless_context, _second_context
     try:
         yield renderer
     finally:
+        screenshot._headless_context = made
         renderers.__exit__(None, None, None)
+
+
+def _second_context() -> NoReturn:
+    """Stand in for what makes a context, so that the test is named that would spoil all others of its process."""
+    raise AssertionError("a second OpenGL context in this process: take `renderer`, or draw in a process of its own")
 
 
 @pytest.fixture

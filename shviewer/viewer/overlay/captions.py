@@ -50,7 +50,9 @@ def caption_blocks(picture: Picture, at: Composition, timing: bool) -> tuple[lis
 
 
 def exposure_pieces(picture: Picture, at: Composition, line: Line) -> list[Piece]:
-    """The exposure, and what means beyond white, in as many words as have room."""
+    """The exposure, and what means beyond white, in as many words as have room; surfaces have none."""
+    if isinstance(picture.drawn, Surfaces):
+        return []
     view, stops = picture.state.view, typeset(f"{picture.exposure_stops:+z.1f} stops")
     size = at.px(SMALL if at.compact else FOOT)
     curve = "" if view.tone == "none" else f", {view.tone} curve"

@@ -273,6 +273,13 @@ def test_a_fixed_exposure_says_so() -> None:
 # --- answers and figures
 
 
+def test_surfaces_have_no_exposure() -> None:
+    size = (1280, 640)
+    for lobes, said in ((False, True), (True, False)):
+        shown = picture_of("green", lobe_view=lobes)
+        assert ("exposure" in text_of(draw_overlay(shown, frame(shown, size)))) is said
+
+
 def test_an_answer_that_was_not_found_says_how_far_was_searched() -> None:
     assert "> 128 | bands" in text_of(draw_overlay(PICTURES["relative error"], compose(1280, 640)))
     assert "> 32 | bands" in text_of(draw_overlay(PICTURES["sampled"], compose(1280, 640)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -127,9 +128,10 @@ def test_a_map_that_needs_more_memory_than_there_may_be_is_refused_before(tmp_pa
 
 
 def test_the_command_writes_a_map_that_is_a_light_and_refuses_another_shape(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("shviewer.viewer.screenshot.headless_renderer", lambda: nullcontext(renderer))
     assert main(["screenshot", "map.exr", "green", "--bands", "5", "--map", "--size", "256", "128"]) == 0
     assert find_light("map.exr").description == "environment map, 256 x 128"
     assert main(["screenshot", "other.exr", "green", "--map", "--size", "256", "100"]) == 2
