@@ -46,7 +46,7 @@ def test_a_signal_at_any_moment_leaves_no_file_and_no_child(tmp_path: Path, mode
     chance = random.Random(mode)
     sent = moments.send(mode, chance.choice(moments.SIGNALS[:3]), 0.4 * moments.MODES[mode][0], tmp_path)
     assert not sent.found
-    assert sent.code in (0, 128 + sent.number)
+    assert sent.code in (0, 128 + sent.number, -sent.number)  # below zero: it came before the first line of ours
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
