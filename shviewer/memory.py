@@ -25,8 +25,8 @@ def available_bytes() -> int | None:
     """The bytes; None where the system does not tell."""
     left: list[int] = []
     with suppress(Exception):  # what a system tells in another way than it should limits nothing
-        if os.name == "nt":
-            left += windows(getattr(ctypes, "windll").kernel32)  # noqa: B009
+        if sys.platform == "win32":
+            left += windows(ctypes.windll.kernel32)
         elif sys.platform == "darwin":
             left += macos(ctypes.CDLL(None), os.sysconf("SC_PAGE_SIZE"))
         else:

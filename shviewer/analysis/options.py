@@ -214,20 +214,20 @@ class Pair(NamedTuple):
         """Accept any two numbers."""
 
 
-def whole(value: object, name: str) -> int:
+def whole(value: Any, name: str) -> int:
     """The value as an int. UsageError unless it is a whole number of some integer type."""
     try:
         if isinstance(value, bool):
             raise TypeError
-        return index(value)  # type: ignore[arg-type]
+        return index(value)
     except TypeError:
         raise UsageError(f"{name} {value!r}: it must be a whole number, such as 5") from None
 
 
-def is_number(value: object) -> bool:
+def is_number(value: Any) -> bool:
     """Whether a value is a finite number, of Python's or numpy's types."""
     try:
-        return not isinstance(value, str | bytes) and math.isfinite(value)  # type: ignore[arg-type]
+        return not isinstance(value, str | bytes) and math.isfinite(value)
     except (TypeError, OverflowError):
         return False
 

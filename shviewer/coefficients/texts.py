@@ -10,7 +10,7 @@ from shviewer.coefficients.parts.axes import NAMED_AXES, Axes
 from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, SEQUENCES
 from shviewer.coefficients.parts.quantities import QUANTITIES
 from shviewer.coefficients.parts.rows import ACN, ORDERS
-from shviewer.coefficients.parts.scales import SCALES
+from shviewer.coefficients.parts.scales import POLYNOMIAL_BANDS, SCALES
 from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
 from shviewer.harmonics.quantities.names import GLOSSY, quantity_of
 
@@ -71,15 +71,18 @@ def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
     if modifier.startswith(_TIMES):
         return "factor", replace(convention, factor=_factor(modifier))
     if modifier in ("phase", "no-phase"):
-        return "phase", _if_free(convention, modifier, "phase", modifier == "phase")
+        return "phase", _if_free(convention, modifier, replace(convention, phase=modifier == "phase"))
     if modifier == "m-swapped":
-        return "sign of m", _if_free(convention, modifier, "mirrored", True)
+        return "sign of m", _if_free(convention, modifier, replace(convention, mirrored=True))
     if modifier == SHIFTED:
-        return "shift", _if_free(convention, modifier, "shift", SHIFT)
+        return "shift", _if_free(convention, modifier, replace(convention, shift=SHIFT))
     if modifier in ORDERS and modifier != ACN:
-        return "order", _if_free(convention, modifier, "order", modifier)
+        return "order", _if_free(convention, modifier, replace(convention, order=modifier))
     if modifier in SCALES:
-        return "scale", _if_free(convention, modifier, "scale", modifier)
+        changed = replace(convention, scale=modifier)
+        if modifier == "polynomial":
+            changed = replace(changed, most_bands=POLYNOMIAL_BANDS, phase=False)
+        return "scale", _if_free(convention, modifier, changed)
     raise ValueError(
         f"convention modifier {modifier!r}: it must be one of {', '.join(MODIFIERS)}, times=2 or another factor, or axes such"
         " as +x+z-y"
@@ -96,17 +99,14 @@ def _factor(modifier: str) -> float:
     return factor
 
 
-def _if_free(convention: Convention, modifier: str, field: str, value: object) -> Convention:
-    """Our own convention with a field changed. ValueError for another program's, which is fixed."""
-    if convention.name != OURS.name and getattr(convention, field) != value:
+def _if_free(convention: Convention, modifier: str, changed: Convention) -> Convention:
+    """Our own convention changed. ValueError for another program's, which is fixed."""
+    if convention.name != OURS.name and changed != convention:
         raise ValueError(
             f"{modifier} contradicts {convention.name}: it would not be what that program expects; numbers that differ from its"
-            f" own so are {in_our_terms(replace(convention, **{field: value}))}"  # type: ignore[arg-type]
+            f" own so are {in_our_terms(changed)}"
         )
-    changes: dict[str, object] = {field: value}
-    if value == "polynomial":
-        changes |= {"most_bands": 3, "phase": False}
-    return replace(convention, **changes)  # type: ignore[arg-type]
+    return changed
 
 
 def in_our_terms(convention: Convention) -> str:

@@ -40,11 +40,11 @@ def _listed(*places: int) -> Callable[[int], Order]:
     return order
 
 
-def _sorted(key: Callable[[int, int], object]) -> Callable[[int], Order]:
+def _sorted(key: Callable[[int, int], tuple[int, ...]]) -> Callable[[int], Order]:
     """The order of lists of any length, sorted by a key of l and m."""
 
     def order(n_bands: int) -> Order:
-        pairs = sorted(((l, m) for l in range(n_bands) for m in range(-l, l + 1)), key=lambda pair: key(*pair))  # type: ignore[arg-type, return-value]
+        pairs = sorted(((l, m) for l in range(n_bands) for m in range(-l, l + 1)), key=lambda pair: key(*pair))
         return np.array([l * (l + 1) + m for l, m in pairs])
 
     return order
