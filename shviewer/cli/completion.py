@@ -128,11 +128,20 @@ def _fish() -> str:
         f"complete -c shviewer -n 'not __fish_seen_subcommand_from {modes}' -a '{modes} help'",
         f"complete -c shviewer -a '{' '.join(built_in_lights())}'",
     ]
+    shared: dict[_Flag, list[str]] = {}
     for mode in PARSERS:
-        seen = f"not __fish_seen_subcommand_from {modes}" if mode == "view" else f"__fish_seen_subcommand_from {mode}"
         for flag in _flags(mode):
-            names = " ".join(f"-l {name[2:]}" if name.startswith("--") else f"-s {name[1:]}" for name in flag.names)
-            value = f" -x -a '{' '.join(flag.words)}'" if flag.words else " -r" if flag.takes_value else ""
-            says = flag.help.replace("\\", "\\\\").replace("'", "\\'")
-            lines.append(f"complete -c shviewer -n '{seen}' {names}{value} -d '{says}'")
+            shared.setdefault(flag, []).append(mode)
+    for flag, having in shared.items():
+        others = " ".join(mode for mode in MODES if mode not in having)
+        seen = (
+            f"not __fish_seen_subcommand_from {others}"
+            if "view" in having
+            else f"__fish_seen_subcommand_from {' '.join(having)}"
+        )
+        names = " ".join(f"-l {name[2:]}" if name.startswith("--") else f"-s {name[1:]}" for name in flag.names)
+        value = f" -x -a '{' '.join(flag.words)}'" if flag.words else " -r" if flag.takes_value else ""
+        says = flag.help.replace("\\", "\\\\").replace("'", "\\'")
+        condition = f" -n '{seen}'" if others else ""
+        lines.append(f"complete -c shviewer{condition} {names}{value} -d '{says}'")
     return "\n".join(lines) + "\n"
