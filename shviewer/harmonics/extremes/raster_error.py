@@ -95,7 +95,7 @@ class Search:
         return self.best.largest + max(self.tolerance * self.best.largest, self.negligible)
 
     def run(self) -> Error:
-        bounds = self._ranges()
+        bounds = self._ranges(self.waves.slack[:, None]).max(axis=1)
         highest = float(bounds.max())
         boxes = [self._highest_cells(bounds)]
         if np.count_nonzero(bounds > self.enough) > BENT_CELLS:
@@ -122,23 +122,20 @@ class Search:
         self._evaluate(boxes.highest(MOST_BOXES)[0], 1)
         return boxes
 
-    def _ranges(self) -> Array:
-        """Bounds of the error in each cell of the grid, (rows + 1, columns), by the texels and the corners in it."""
+    def _ranges(self, bend: Array) -> Array:
+        """Bounds of the error in each cell, (rows + 1, 3, columns), by its texels, its corners, and a bend beyond these."""
         waves = self.waves
         low, high = self.raster.ranges(waves.rows)
         above = high - waves.corners_low
         np.maximum(above, waves.corners_high - low, out=above)
-        above += waves.slack[:, None]
-        return np.asarray(above.max(axis=1))
+        above += bend
+        return above
 
     def _bends(self) -> Array:
         """Closer bounds, which take longer: by how the reconstruction bends in each cell, and the raster in small cells."""
         waves = self.waves
-        low, high = self.raster.ranges(waves.rows)
         bends = waves.bends()
-        above = high - waves.corners_low
-        np.maximum(above, waves.corners_high - low, out=above)
-        above += bends
+        above = self._ranges(bends)
         if max(self.per_cell) <= FEW_TEXELS:
             corners = waves.corners(np.maximum, np.abs(waves.values - self.original))
             corners += bends
