@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.files import naming
-from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.basis import Array, Indices, count_bands
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
@@ -19,7 +19,7 @@ from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
-from shviewer.lights.layouts.layout import Indices, Layout
+from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.light import About, Split
 from shviewer.lights.reading import DEFAULT_READING, Reading

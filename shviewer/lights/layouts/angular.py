@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.patches import project_mirrored, quadrant_weights
 from shviewer.lights.layouts.disc import DiscLayout
 
@@ -51,10 +51,10 @@ class AngularLayout(DiscLayout):
                 quadrant += (x_weight * y_weight * np.pi**2) * np.sinc(radius)
         return np.asarray(quadrant * size * size[:, None])
 
-    def inside(self) -> NDArray[np.int64]:
+    def inside(self) -> Indices:
         return self.whole
 
-    def project_inside(self, pixels: NDArray[np.float32], inside: NDArray[np.int64], n_bands: int) -> Array:
+    def project_inside(self, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
         row = np.arange(self.side)
         count = inside[np.where(row < self.side // 2, self.half - 1 - row, row - self.side // 2)]
         spans = np.stack([self.half - count, self.side // 2 + count], axis=1)

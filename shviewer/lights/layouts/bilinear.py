@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
-from shviewer.lights.layouts.layout import Indices
+from shviewer.harmonics.basis import Array, Indices
 
 
 def between_texels(

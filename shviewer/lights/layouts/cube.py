@@ -25,10 +25,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.patches import four_quadrants, project_mirrored, quadrant_edges, quadrant_weights
 from shviewer.lights.layouts.bilinear import between_texels
-from shviewer.lights.layouts.layout import Indices
 
 _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}
 
@@ -190,7 +189,7 @@ class CubeLayout:
         return slice(row, row + self.face), slice(column, column + self.face)
 
     @cached_property
-    def faces_by_cell(self) -> NDArray[np.int64]:
+    def faces_by_cell(self) -> Indices:
         """The index of the face in each cell, (rows, columns); -1 for an empty cell."""
         cells = np.full((self.arrangement.rows, self.arrangement.columns), -1)
         for i, face in enumerate(self.arrangement.faces):
@@ -198,7 +197,7 @@ class CubeLayout:
         return cells
 
     @cached_property
-    def _corners(self) -> NDArray[np.int64]:
+    def _corners(self) -> Indices:
         """Row and column of each face's first texel, (6, 2)."""
         return np.array([(face.row * self.face, face.column * self.face) for face in self.arrangement.faces])
 

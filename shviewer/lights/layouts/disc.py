@@ -10,24 +10,24 @@ mirror ball shows left and right exchanged, like any mirror: turn it over first.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.patches import four_quadrants, quadrant_edges
 from shviewer.lights.layouts.bilinear import between_texels
-from shviewer.lights.layouts.layout import Indices
-from shviewer.lights.layouts.rim import cut_areas, project_rim, quadrants
+from shviewer.lights.layouts.rim import Disc, cut_areas, project_rim, quadrants
 
 ON_THE_RIM = 1e-14
 """Corners that are this near the rim do not cross it, on whichever side rounding puts them."""
 
 
 @dataclass(frozen=True)
-class DiscLayout:
+class DiscLayout(Disc):
     """A layout within a disc. side: texels of the square image. The subclasses say how the radius follows from theta."""
 
     side: int
@@ -42,21 +42,13 @@ class DiscLayout:
         """Columns of a lat-long image that is nowhere much coarser than this one."""
         return 2 * self.side
 
+    @abstractmethod
     def radius(self, theta: Array) -> Array:
         """The radius, in [0, 1], of directions at an angle from the direction ahead, in radians."""
-        raise NotImplementedError
 
+    @abstractmethod
     def theta(self, radius: Array) -> Array:
         """The angle of a radius: the inverse of `radius`."""
-        raise NotImplementedError
-
-    def on_line(self, y: Array, x: Array, depth: Array) -> tuple[Array, Array]:
-        """As in rim.Disc."""
-        raise NotImplementedError
-
-    def opening(self, depth: Array) -> Array:
-        """As in rim.Disc."""
-        raise NotImplementedError
 
     def upper(self) -> NDArray[np.bool_]:
         return (2 * np.arange(self.side) + 1 < self.side)[:, None]
@@ -113,9 +105,9 @@ class DiscLayout:
         quadrant[cut] = cut_areas(self, *cut)
         return quadrant
 
+    @abstractmethod
     def whole_solid_angles(self) -> Array:
         """The same for texels wholly inside the disc; anything for others."""
-        raise NotImplementedError
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
         """As in Layout. Texels whose centres are outside the disc do not count: beyond the rim comes the opposite side."""
@@ -154,13 +146,13 @@ class DiscLayout:
             coefficients[0] += areas @ view[rim].astype(np.float64)
         return coefficients
 
-    def inside(self) -> NDArray[np.int64]:
+    @abstractmethod
+    def inside(self) -> Indices:
         """Texels of each row, or column, of a quadrant that `project_inside` takes, from the centre on; (half,), descending."""
-        raise NotImplementedError
 
-    def project_inside(self, pixels: NDArray[np.float32], inside: NDArray[np.int64], n_bands: int) -> Array:
+    @abstractmethod
+    def project_inside(self, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
         """Coefficients (n**2, 3) of these texels."""
-        raise NotImplementedError
 
     # A quadrant: texels by their distance from the centre, down or up and sideways, from 0 to half.
 
@@ -175,18 +167,18 @@ class DiscLayout:
         return quadrant_edges(self.side)
 
     @cached_property
-    def whole(self) -> NDArray[np.int64]:
+    def whole(self) -> Indices:
         """The number of texels in each row of the quadrant that lie wholly inside the disc, (half,)."""
         reach = np.sqrt(np.maximum(1 - self.edges[1:] ** 2, 0.0)) + ON_THE_RIM
         return np.searchsorted(self.edges[1:], reach, side="right")
 
     @cached_property
-    def reach(self) -> NDArray[np.int64]:
+    def reach(self) -> Indices:
         """The number of texels in each row of the quadrant of which some part lies inside the disc, (half,)."""
         reach = np.sqrt(np.maximum(1 - self.edges[:-1] ** 2, 0.0)) - ON_THE_RIM
         return np.searchsorted(self.edges[:-1], reach, side="left")
 
-    def from_column(self, first: NDArray[np.int64]) -> tuple[Indices, Indices]:
+    def from_column(self, first: Indices) -> tuple[Indices, Indices]:
         """Row and column of the texels of a quadrant from column first[row] on to the rim."""
         counts = self.reach - first
         rows = np.repeat(np.arange(self.half), counts)

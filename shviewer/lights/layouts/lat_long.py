@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.projection import project_image, project_rows
 from shviewer.harmonics.quadrature import angles_from_directions, directions_from_angles, row_angles
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.layouts.layout import Indices
 
 
 @dataclass(frozen=True)

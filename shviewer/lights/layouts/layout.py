@@ -12,9 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
-
-Indices = NDArray[np.int64]
+from shviewer.harmonics.basis import Array, Indices
 
 
 class Layout(Protocol):

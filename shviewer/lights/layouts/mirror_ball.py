@@ -15,11 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.chebyshev import point_count
 from shviewer.harmonics.patches import project_mirrored, texel_weights
 from shviewer.lights.layouts.disc import DiscLayout
-from shviewer.lights.layouts.layout import Indices
 from shviewer.lights.layouts.rim import quadrants
 
 LARGEST_TILE, SMALLEST_TILE = 256, 64
@@ -47,12 +46,12 @@ class MirrorBallLayout(DiscLayout):
         size = np.diff(self.edges)
         return np.asarray(4 * size * size[:, None])
 
-    def inside(self) -> NDArray[np.int64]:
+    def inside(self) -> Indices:
         far = np.minimum(np.arange(1, -(-self.half // SMALLEST_TILE) + 1) * SMALLEST_TILE, self.half + 1)
         covered = _fits(far, far[:, None], SMALLEST_TILE, self.half)
         return np.asarray(SMALLEST_TILE * covered.sum(axis=1).repeat(SMALLEST_TILE)[: self.half])
 
-    def project_inside(self, pixels: NDArray[np.float32], inside: NDArray[np.int64], n_bands: int) -> Array:
+    def project_inside(self, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
         views, coordinates, found = quadrants(pixels), [], []
         for size, row, column in self._tiles():
             n_down, n_right = self._point_counts(row, column, size, n_bands)

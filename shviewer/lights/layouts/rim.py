@@ -11,12 +11,12 @@ A quadrant has X and Y from 0 to 1, in world directions +y and +z; the others ar
 
 from __future__ import annotations
 
-from typing import Protocol
+from abc import ABC, abstractmethod
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.boundary import from_boundary
 from shviewer.harmonics.chebyshev import (
     chebyshev_points,
@@ -27,8 +27,6 @@ from shviewer.harmonics.chebyshev import (
     points_from_series,
 )
 from shviewer.harmonics.patches import project_mirrored
-
-Indices = NDArray[np.int64]
 
 GROUP = 128
 """Neighbouring lines that share their points: the directions are smooth across lines, too."""
@@ -43,20 +41,24 @@ AREA_POINTS = 24
 """Gauss's points on an edge that make its part of an area exact to rounding, even in an image of three texels."""
 
 
-class Disc(Protocol):
+class Disc(ABC):
     """How a disc covers the sphere, and the texels of a quadrant."""
 
     @property
+    @abstractmethod
     def edges(self) -> Array:
         """From 0 to 1, (half + 1,)."""
 
     @property
-    def reach(self) -> NDArray[np.int64]:
+    @abstractmethod
+    def reach(self) -> Indices:
         """The number of texels in each row, or column, of which some part lies inside, (half,)."""
 
+    @abstractmethod
     def on_line(self, y: Array, x: Array, depth: Array) -> tuple[Array, Array]:
         """Directions and their derivatives by t, (3, ...) each, on lines of the quadrant."""
 
+    @abstractmethod
     def opening(self, depth: Array) -> Array:
         """1 + cos(theta) at a depth: 0 on the rim, without cancellation."""
 

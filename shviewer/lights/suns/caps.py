@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array
-from shviewer.lights.layouts.layout import Indices, Layout
+from shviewer.harmonics.basis import Array, Indices
+from shviewer.lights.layouts.layout import Layout
 
 TILE = 16
 MARGIN = 1.5
