@@ -148,6 +148,13 @@ def test_every_script_that_is_run_exists(path: Path) -> None:
         assert (ROOT / script).is_file(), script
 
 
+def test_the_page_on_speed_names_every_benchmark() -> None:
+    listed = page("report").partition("The benchmarks behind")[2].partition("\n\n")[0]
+    names = re.findall(r"`(?:python tests/benchmarks/)?(\w+\.py)`", listed)
+    scripts = [path.name for path in (ROOT / "tests" / "benchmarks").glob("*.py") if "__main__" in read(path)]
+    assert sorted(names) == sorted(scripts)
+
+
 def test_ci_is_set_up_with_the_command_of_the_readme() -> None:
     (start, *_) = code_blocks(read(README), "sh")
     (workflow,) = code_blocks(page("pictures"), "yaml")
