@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.patches import project_mirrored, quadrant_weights
 from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.patches import project_mirrored, quadrant_weights
 from shviewer.lights.layouts.disc import DiscLayout
 
 

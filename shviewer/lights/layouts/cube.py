@@ -25,8 +25,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.patches import four_quadrants, project_mirrored, quadrant_edges, quadrant_weights
 from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.patches import four_quadrants, project_mirrored, quadrant_edges, quadrant_weights
 from shviewer.lights.layouts.bilinear import between_texels
 
 _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}

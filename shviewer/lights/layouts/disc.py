@@ -17,8 +17,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.patches import four_quadrants, quadrant_edges
 from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.patches import four_quadrants, quadrant_edges
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.rim import Disc, cut_areas, project_rim, quadrants
 

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.chebyshev import point_count
+from shviewer.harmonics.areas.patches import project_mirrored, texel_weights
 from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.chebyshev import point_count
-from shviewer.harmonics.patches import project_mirrored, texel_weights
 from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.rim import quadrants
 

@@ -16,9 +16,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.boundary import from_boundary
-from shviewer.harmonics.chebyshev import (
+from shviewer.harmonics.areas.boundary import from_boundary
+from shviewer.harmonics.areas.chebyshev import (
     chebyshev_points,
     chebyshev_shares,
     chebyshev_values,
@@ -26,7 +25,8 @@ from shviewer.harmonics.chebyshev import (
     point_count,
     points_from_series,
 )
-from shviewer.harmonics.patches import project_mirrored
+from shviewer.harmonics.areas.patches import project_mirrored
+from shviewer.harmonics.basis import Array, Indices
 
 GROUP = 128
 """Neighbouring lines that share their points: the directions are smooth across lines, too."""

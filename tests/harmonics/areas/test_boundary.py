@@ -1,11 +1,11 @@
-"""What shviewer.harmonics.boundary promises: areas from their boundaries."""
+"""What shviewer.harmonics.areas.boundary promises: areas from their boundaries."""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from shviewer.harmonics.areas.boundary import from_boundary
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.boundary import from_boundary
 
 THETA, PHI = (0.7, 1.3), (0.2, 1.5)
 

@@ -1,11 +1,11 @@
-"""What shviewer.harmonics.boxes promises: sums over any points against many bands, as if each point met each function."""
+"""What shviewer.harmonics.areas.boxes promises: sums over any points against many bands, as if each point met each function."""
 
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
 
+from shviewer.harmonics.areas.boxes import wave_sums
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.boxes import wave_sums
 from shviewer.harmonics.theta_series import from_waves
 
 EXACT = 2e-14
@@ -27,6 +27,6 @@ def test_many_points_in_one_box_are_summed_in_parts(monkeypatch):
     directions = random_directions(3000, seed=2) * [1e-3, 1e-3, 0] + [1, 2, 3]
     values = np.random.default_rng(3).normal(size=(1, 1, 1, 3000, 3))
     whole = wave_sums(directions, values, 40)
-    monkeypatch.setattr("shviewer.harmonics.boxes.STRIP_POINTS", 700)
-    monkeypatch.setattr("shviewer.harmonics.boxes.BOX_POINTS", 64)
+    monkeypatch.setattr("shviewer.harmonics.areas.boxes.STRIP_POINTS", 700)
+    monkeypatch.setattr("shviewer.harmonics.areas.boxes.BOX_POINTS", 64)
     assert np.abs(wave_sums(directions, values, 40) - whole).max() < EXACT * np.abs(values).sum()

@@ -1,4 +1,4 @@
-"""What shviewer.harmonics.chebyshev promises."""
+"""What shviewer.harmonics.areas.chebyshev promises."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from numpy.polynomial import Chebyshev
 from numpy.testing import assert_allclose
 from scipy.special import jv
 
-from shviewer.harmonics.chebyshev import (
+from shviewer.harmonics.areas.chebyshev import (
     chebyshev_points,
     chebyshev_shares,
     chebyshev_values,

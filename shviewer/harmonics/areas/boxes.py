@@ -17,8 +17,8 @@ from math import ceil, pi
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_values, points_from_series
 from shviewer.harmonics.basis import Array, normalise
-from shviewer.harmonics.chebyshev import chebyshev_points, chebyshev_values, points_from_series
 
 PHASE = 5.0
 """The phase, in radians, of the shortest wave from the middle of a box to its edge."""

@@ -18,9 +18,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.boxes import wave_sums
+from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_values, integrate_series, points_from_series
 from shviewer.harmonics.basis import Array, check_bands, normalise
-from shviewer.harmonics.boxes import wave_sums
-from shviewer.harmonics.chebyshev import chebyshev_points, chebyshev_values, integrate_series, points_from_series
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
 
 DIRECT_BANDS = 32

@@ -1,11 +1,17 @@
-"""What shviewer.harmonics.patches promises: texels of constant value against any smooth kernel, through few points."""
+"""What shviewer.harmonics.areas.patches promises: texels of constant value against any smooth kernel, through few points."""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from shviewer.harmonics.areas.patches import (
+    DIRECT_BANDS,
+    project_mirrored,
+    quadrant_points,
+    quadrant_weights,
+    texel_weights,
+)
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.patches import DIRECT_BANDS, project_mirrored, quadrant_points, quadrant_weights, texel_weights
 
 
 @pytest.mark.parametrize("n_points", [1, 2, 3, 8, 41])
@@ -61,7 +67,7 @@ def test_columns_outside_their_span_count_as_nothing():
 def test_blocks_of_rows_change_nothing(monkeypatch):
     image = np.random.default_rng(2).random((50, 30, 3)).astype(np.float32)
     whole = quadrant_weights(image, 15)[1]
-    monkeypatch.setattr("shviewer.harmonics.patches.BLOCK_VALUES", 8 * 30 * 7)
+    monkeypatch.setattr("shviewer.harmonics.areas.patches.BLOCK_VALUES", 8 * 30 * 7)
     assert_allclose(quadrant_weights(image, 15)[1], whole, rtol=0, atol=1e-15)
 
 
