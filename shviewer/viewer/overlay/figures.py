@@ -146,6 +146,6 @@ def _swatch(name: str, picture: Picture, x: float, cell: Cell, at: Composition) 
 
 def _label(name: str, cell: Cell, labels: list[str], size: float) -> list[Piece]:
     """The longest label that has room in its column; the last in any case."""
-    room = cell.right - cell.left - 0.3 * size
+    room = cell.right - cell.left - 0.9 * size  # or it would read on in the next
     said = next((text for text in labels if width_of(text, size) <= room), labels[-1])
     return [Text(name, cell.left, cell.label, said, size, GREY)]

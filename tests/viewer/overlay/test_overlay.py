@@ -321,6 +321,13 @@ def test_a_bound_far_beyond_what_was_found_is_said(factor: float, said: bool) ->
     assert ("to −0.164" in text_of(drawn)) == said
 
 
+def test_the_words_under_a_figure_do_not_read_on_in_the_next() -> None:
+    """The longest are those of a function, whose largest error is only found."""
+    boxes = draw_overlay(picture_of(FunctionLight(lambda d: 1 + d[:, 2], "f")), compose(1280, 640)).boxes
+    for one, next_ in itertools.pairwise(("relative_l2", "max_error", "minimum", "negative_area", "energy")):
+        assert boxes[f"{next_}_label"].left - boxes[f"{one}_label"].right >= 10
+
+
 def test_swatches_are_the_legend_of_what_is_negative_and_of_nothing_else() -> None:
     drawn = draw_overlay(PICTURES["green"], compose(1280, 640))
     assert sorted(piece.kind for piece in drawn.pieces if isinstance(piece, Swatch)) == ["lines", "negative"]
