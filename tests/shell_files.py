@@ -40,8 +40,7 @@ def manual_page() -> str:
         made = parser()
         lines += [f".SH {'WINDOW' if mode == 'view' else mode.upper()}", _escaped(made.description or "")]
         for action in made._actions:
-            if action.help != argparse.SUPPRESS:
-                lines += [".TP", f".B {_escaped(_called(action))}", _escaped((action.help or "").replace("%%", "%"))]
+            lines += [".TP", f".B {_escaped(_called(action))}", _escaped((action.help or "").replace("%%", "%"))]
     codes = [re.split(" {2,}", line.strip(), maxsplit=1) for line in EXIT_CODES.splitlines()[1:]]
     lines += [".SH EXIT STATUS", *(part for code, says in codes for part in (".TP", f".B {code}", _escaped(says)))]
     return "\n".join([*lines, ".SH SEE ALSO", "shviewer help guide", ""])

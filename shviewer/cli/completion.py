@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import re
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -50,7 +49,7 @@ def _flags(mode: str) -> list[_Flag]:
         if isinstance(kind, Choice | WholeOr | Quantity):
             words = kind.choices if isinstance(kind, Choice) else kind.words
         help_line = re.sub(r"\s+", " ", (action.help or "").replace("%%", "%"))
-        if action.option_strings and action.help != argparse.SUPPRESS:
+        if action.option_strings:
             found.append(
                 _Flag(tuple(action.option_strings), action.nargs != 0, tuple(filter(None, map(str, words))), help_line)
             )

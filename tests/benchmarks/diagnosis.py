@@ -8,10 +8,11 @@ matrices of all orientations, and the ratio to reading the list and measuring it
 
 from __future__ import annotations
 
+from functools import partial
 from statistics import median
-from time import perf_counter
 
 import numpy as np
+from measure import wall_milliseconds
 
 from shviewer.analysis.comparison import error_of
 from shviewer.coefficients.diagnosis.search import explain
@@ -24,31 +25,22 @@ from shviewer.lights.find import find_light
 ROUNDS = 7
 
 
-def seconds(work: object, rounds: int) -> list[float]:
-    taken = []
-    for _ in range(rounds):
-        start = perf_counter()
-        work()  # type: ignore[operator]
-        taken.append(perf_counter() - start)
-    return taken
+def compare(listed: Listed, exact: np.ndarray) -> float:
+    read = interpreted(listed, "shviewer")
+    return error_of(exact, read.coefficients, read.quantity)
 
 
 def main() -> None:
     light = find_light("venice_sunset")
-    print("bands  ways  first search  search  comparison  ratio")
+    print("bands  ways  first search     search  comparison  ratio")
     for n_bands in (2, 3, 4, 5, 6, 9):
         exact = light.coefficients(n_bands)
         numbers = np.asarray(parse_convention("shviewer,y-up,no-phase,times=1.7").from_ours(exact))
         listed = Listed(numbers)
-        first, *searches = seconds(lambda listed=listed, exact=exact: explain(listed, exact), ROUNDS)
-
-        def compare(listed: Listed = listed, exact: np.ndarray = exact) -> float:
-            read = interpreted(listed, "shviewer")
-            return error_of(exact, read.coefficients, read.quantity)
-
-        once, search = median(seconds(compare, 20)), median(searches)
-        count = len(list(ways(listed)))
-        print(f"{n_bands:5d} {count:5d} {first:12.3f} s {search:6.3f} s {1e3 * once:8.2f} ms {search / once:6.0f}")
+        first, *searches = (wall_milliseconds(partial(explain, listed, exact)) for _ in range(ROUNDS))
+        once = median(wall_milliseconds(partial(compare, listed, exact)) for _ in range(20))
+        search, count = median(searches), len(list(ways(listed)))
+        print(f"{n_bands:5d} {count:5d} {first:11.1f} ms {search:6.1f} ms {once:8.2f} ms {search / once:6.0f}")
 
 
 if __name__ == "__main__":

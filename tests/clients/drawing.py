@@ -61,16 +61,8 @@ def write_job(folder: Path) -> None:
         (folder / f"{name}-guide.js").write_text(lines, encoding="utf-8")
         meant = {"sky.hdr": str(folder / "light.hdr"), "sky.json": str(folder / f"{name}.json")}
         assert main([*(meant.get(word, word) for word in command), "--force"]) == 0
-        module = [
-            "--bands",
-            "3",
-            "--convention",
-            program.convention,
-            "--force",
-            "-o",
-            str(folder / f"{name}-module.js"),
-        ]
-        assert main(["project", str(folder / "light.hdr"), *module]) == 0
+        asked = f"--bands 3 --convention {program.convention} --force -o".split()
+        assert main(["project", str(folder / "light.hdr"), *asked, str(folder / f"{name}-module.js")]) == 0
         constant = [[CONSTANT * program.one] * 3, *[[0.0] * 3] * 8]
         (folder / f"{name}-constant.json").write_text(json.dumps({"coefficients": constant}), encoding="utf-8")
 
