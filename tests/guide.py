@@ -23,7 +23,7 @@ from documents import PAGES
 from lights.found_images import table as found_images
 from shell_files import write_shell_files
 
-from shviewer.cli.options import EXIT_CODES, PARSERS, view_parser
+from shviewer.cli.options.modes import EXIT_CODES, PARSERS, view_parser
 from shviewer.viewer.keys import key_table
 
 MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from places import ASSETS
 
-from shviewer.cli.completion import completion
-from shviewer.cli.options import EXIT_CODES, PARSERS
+from shviewer.cli.options.completion import completion
+from shviewer.cli.options.modes import EXIT_CODES, PARSERS
 
 FOLDER = ASSETS / "shell"
 

@@ -27,9 +27,9 @@ from shviewer.analysis.subjects import load_light
 from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import Report, read_report
 from shviewer.cli import project
-from shviewer.cli.from_options import reading_from
 from shviewer.cli.main import main
-from shviewer.cli.options import info_parser
+from shviewer.cli.options.inputs import reading_from
+from shviewer.cli.options.modes import info_parser
 from shviewer.coefficients.lists.scan import plain_numbers
 from shviewer.coefficients.numbers import as_table
 from shviewer.coefficients.reading import read_coefficients

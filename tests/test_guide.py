@@ -24,9 +24,9 @@ import shviewer
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
-from shviewer.cli.from_options import state_from
 from shviewer.cli.help import guide_pages
 from shviewer.cli.main import main
+from shviewer.cli.options.states import state_from
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import MODIFIERS
 from shviewer.lights.find import built_in_lights
@@ -318,7 +318,7 @@ def test_the_page_for_contributors_names_files_and_rooms_that_there_are() -> Non
 def test_a_file_goes_through_the_functions_that_the_journey_names(tmp_path: Path) -> None:
     """The steps of the page, in their order, as a profile of the command sees them for the first time."""
     journey = page("contributing").partition("## From an .exr file")[2].partition("\n## ")[0]
-    files = [name for name in re.findall(r"`([\w/]+\.py)`", journey) if name not in ("cli/options.py",)]
+    files = [name for name in re.findall(r"`([\w/]+\.py)`", journey) if name not in ("cli/options/modes.py",)]
     seen: list[str] = []
 
     def note(frame: FrameType, event: str, argument: object) -> None:
@@ -343,8 +343,9 @@ def test_a_file_goes_through_the_functions_that_the_journey_names(tmp_path: Path
 STAGES = (
     "cli/main.py",
     "cli/project.py",
-    "cli/from_options.py",
+    "cli/options/inputs.py",
     "outputs.py",
+    "cli/options/recipes.py",
     "analysis/reconstruction.py",
     "analysis/subjects.py",
     "files.py",

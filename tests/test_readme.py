@@ -8,7 +8,7 @@ import pytest
 from documents import GUIDE, README, ROOT, code_blocks, read
 
 from shviewer.analysis.recipe import METHODS, Recipe
-from shviewer.cli.options import view_parser
+from shviewer.cli.options.modes import view_parser
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.keys import key_table
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from shviewer.cli.options import PARSERS
+from shviewer.cli.options.modes import PARSERS
 from shviewer.errors import UsageError
 from shviewer.resources import resource_folder
 

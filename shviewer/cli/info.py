@@ -17,8 +17,8 @@ from shviewer.analysis.information import (
     as_json_object,
     describe,
 )
-from shviewer.cli.from_options import reading_from
 from shviewer.cli.jobs import in_order
+from shviewer.cli.options.inputs import reading_from
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError, ShviewerError

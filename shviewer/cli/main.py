@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from importlib import import_module
 
 from shviewer.children import follow_parent
-from shviewer.cli.options import PARSERS
+from shviewer.cli.options.modes import MODES, PARSERS
 from shviewer.errors import OutputError, ShviewerError, UsageError, within_memory
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
@@ -59,9 +59,6 @@ STDOUT_FAILS = (errno.ENOSPC, errno.EIO, errno.EFBIG)
 def _silence_stdout() -> None:
     """Point stdout nowhere, so that what it still holds troubles nobody at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-MODES = tuple(mode for mode in PARSERS if mode != "view")
 
 
 def _check_first(arguments: list[str]) -> None:

@@ -16,8 +16,10 @@ from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.batch import error_in_percent, project_batch
-from shviewer.cli.from_options import lights_of, recipe_from, replacing_of, turn_from
 from shviewer.cli.notes import print_notes_on, warn_below_zero
+from shviewer.cli.options.inputs import lights_of, replacing_of
+from shviewer.cli.options.recipes import recipe_from
+from shviewer.cli.options.states import turn_from
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import Axes

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from shviewer.cli.from_options import reading_from
+from shviewer.cli.options.inputs import reading_from
 from shviewer.cli.status_line import status_line
 
 

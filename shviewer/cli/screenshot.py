@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 
-from shviewer.cli.from_options import replacing_of, state_from
 from shviewer.cli.notes import print_notes
+from shviewer.cli.options.inputs import replacing_of
+from shviewer.cli.options.states import state_from
 from shviewer.cli.status_line import speaking
 from shviewer.errors import UsageError
 from shviewer.viewer.composition import frame_for

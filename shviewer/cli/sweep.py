@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 
-from shviewer.cli.from_options import replacing_of, state_from
 from shviewer.cli.notes import print_notes
-from shviewer.cli.options import DEFAULT_SWEEP
+from shviewer.cli.options.inputs import replacing_of
+from shviewer.cli.options.modes import DEFAULT_SWEEP
+from shviewer.cli.options.states import state_from
 from shviewer.cli.status_line import status_line
 from shviewer.errors import UsageError
 from shviewer.viewer.animation.animation import (

@@ -7,7 +7,8 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from shviewer.cli.from_options import lights_of, state_from
+from shviewer.cli.options.inputs import lights_of
+from shviewer.cli.options.states import state_from
 from shviewer.errors import LightError
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
         print(key_table())
         return 0
     if options.print_completion:
-        from shviewer.cli.completion import completion
+        from shviewer.cli.options.completion import completion
 
         print(completion(options.print_completion), end="")
         return 0

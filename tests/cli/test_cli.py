@@ -18,7 +18,7 @@ import pytest
 from PIL import Image
 
 from shviewer.cli.main import main
-from shviewer.cli.options import view_parser
+from shviewer.cli.options.modes import view_parser
 from shviewer.errors import (
     GraphicsError,
     LightError,

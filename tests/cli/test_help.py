@@ -13,10 +13,10 @@ import pytest
 from documents import PAGES, read
 from shell_files import shell_files
 
-from shviewer.cli.completion import MODES, completion
 from shviewer.cli.help import guide_pages
 from shviewer.cli.main import main
-from shviewer.cli.options import PARSERS
+from shviewer.cli.options.completion import completion
+from shviewer.cli.options.modes import MODES, PARSERS
 from shviewer.lights.find import built_in_lights
 
 

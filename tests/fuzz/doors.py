@@ -39,10 +39,12 @@ from shviewer.benchmark.page.comparing import compare
 from shviewer.benchmark.page.document import read_report
 from shviewer.cli import help as help_pages
 from shviewer.cli import info
-from shviewer.cli.from_options import reading_from, recipe_from, state_from
 from shviewer.cli.info import as_text
-from shviewer.cli.main import MODES, _check_first
-from shviewer.cli.options import PARSERS
+from shviewer.cli.main import _check_first
+from shviewer.cli.options.inputs import reading_from
+from shviewer.cli.options.modes import MODES, PARSERS
+from shviewer.cli.options.recipes import recipe_from
+from shviewer.cli.options.states import state_from
 from shviewer.cli.project import wanted_convention
 from shviewer.cli.sweep import _check_sweep
 from shviewer.coefficients.programs import CONVENTIONS

@@ -14,8 +14,8 @@ from helpers import frame_of, picture_of
 from shviewer.analysis.compared_files import compared_with
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
-from shviewer.cli.from_options import state_from
-from shviewer.cli.options import screenshot_parser
+from shviewer.cli.options.modes import screenshot_parser
+from shviewer.cli.options.states import state_from
 from shviewer.coefficients.programs import OURS
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight

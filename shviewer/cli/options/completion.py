@@ -8,14 +8,12 @@ from typing import NamedTuple
 
 from shviewer.analysis.options import Choice, Quantity, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
-from shviewer.cli.options import PARSERS
+from shviewer.cli.options.modes import MODES, PARSERS
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.writing import FORMATS
 from shviewer.lights.find import built_in_lights
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.viewer.view import View
-
-MODES = tuple(mode for mode in PARSERS if mode != "view")
 
 WORDS = {
     "convention": tuple(CONVENTIONS),

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from shviewer.analysis.recipe import Recipe
-from shviewer.cli.option_groups import (
+from shviewer.cli.options.groups import (
     LIGHT_HELP,
     OneLineParser,
     add_force,
@@ -15,9 +15,8 @@ from shviewer.cli.option_groups import (
     add_table,
     add_turn,
     add_view_options,
-    finite,
-    share,
 )
+from shviewer.cli.options.values import finite, share
 from shviewer.version import __version__
 
 EXIT_CODES = """exit codes:
@@ -254,3 +253,6 @@ PARSERS = {
     "report": report_parser,
 }
 """Mode -> its parser. The mode's code is the function `run` in the file of its name."""
+
+MODES = tuple(mode for mode in PARSERS if mode != "view")
+"""The words that a command line may begin with."""

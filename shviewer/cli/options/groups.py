@@ -1,4 +1,4 @@
-"""Options that several modes of the command line have in common, and how their values are read.
+"""Options that several modes of the command line have in common.
 
 No mode is imported here, so that --help stays fast.
 """
@@ -6,15 +6,22 @@ No mode is imported here, so that --help stays fast.
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Callable, Container
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
 from shviewer.analysis.options import Bands, Number, Option, Pair, Quantity, Share, Whole, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
-from shviewer.harmonics.quantities.names import quantity_of
+from shviewer.cli.options.values import (
+    band_list,
+    count,
+    finite,
+    positive,
+    positive_count,
+    quantity,
+    tolerance,
+    whole_or_word,
+)
 from shviewer.words import one_line
 
 LIGHT_HELP = (
@@ -71,26 +78,19 @@ def add_table(parser: OneLineParser, holder: type, names: Container[str] = ()) -
             parser.add_argument(row.flag, dest=row.name, help=row.help.replace("%", "%%"), **takes)
 
 
-def _quantity(text: str) -> str:
-    """The one name of a quantity; a text that is none is refused with the other options."""
-    with suppress(ValueError):
-        return quantity_of(text)
-    return text
-
-
 def _values(row: Option) -> dict[str, Any]:
     """The arguments of `add_argument` about an option's values."""
     if row.name in TEXTS:
         return {"metavar": row.metavar}
     readers: dict[type, Callable[[str], object]] = {
         Whole: int,
-        Share: _tolerance,
-        WholeOr: _whole_or_word,
+        Share: tolerance,
+        WholeOr: whole_or_word,
         Number: finite,
-        Bands: _band_list,
-        Quantity: _quantity,
+        Bands: band_list,
+        Quantity: quantity,
     }
-    reader = _count if row.name in LARGE else readers.get(type(row.kind), str)
+    reader = count if row.name in LARGE else readers.get(type(row.kind), str)
     if isinstance(row.kind, Pair):
         return {"metavar": row.metavar, "nargs": 2, "type": int if row.kind.whole else finite}
     return {"metavar": row.metavar, "type": reader}
@@ -151,22 +151,22 @@ def add_reading_options(parser: OneLineParser, convention: str = "--convention")
     parser.add_argument(
         "--max-side",
         metavar="N",
-        type=_positive_count,
+        type=positive_count,
         help="texels along a side that an image may have (default 32768)",
     )
     parser.add_argument(
         "--max-megatexels",
         metavar="M",
-        type=_positive,
+        type=positive,
         help="texels that an image may have, in units of 1024 x 1024 (default 128)",
     )
     parser.add_argument(
-        "--max-file-mib", metavar="M", type=_positive, help="size that an image's file may have, in MiB (default 512)"
+        "--max-file-mib", metavar="M", type=positive, help="size that an image's file may have, in MiB (default 512)"
     )
     parser.add_argument(
         "--max-memory-mib",
         metavar="M",
-        type=_positive,
+        type=positive,
         help="memory that an image may take until it is drawn, in MiB (default half of what is available)",
     )
 
@@ -176,7 +176,7 @@ def add_jobs(parser: OneLineParser) -> None:
     parser.add_argument(
         "--jobs",
         metavar="N",
-        type=_positive_count,
+        type=positive_count,
         help="processes for several lights (default as many as there are cores and memory for, once it pays)",
     )
 
@@ -184,59 +184,3 @@ def add_jobs(parser: OneLineParser) -> None:
 def add_force(parser: OneLineParser) -> None:
     """What `Replacing` asks for."""
     parser.add_argument("--force", action="store_true", help="replace a file even if shviewer did not write it")
-
-
-def _band_list(text: str) -> frozenset[int]:
-    try:
-        return frozenset(int(part) for part in text.split(",") if part.strip())
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r}: bands are whole numbers separated by commas, such as 1,3"
-        ) from None
-
-
-def _count(text: str) -> int:
-    value = finite(text)  # 1e6 is a count, too
-    if value != int(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number")
-    return int(value)
-
-
-def _whole_or_word(text: str) -> int | str:
-    return int(text) if text.isdecimal() else text
-
-
-def _positive_count(text: str) -> int:
-    return int(_positive(str(_count(text))))
-
-
-def _positive(text: str) -> float:
-    value = finite(text)
-    if not value > 0:
-        raise argparse.ArgumentTypeError(f"{text!r} is not positive")
-    return value
-
-
-def finite(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
-    return value
-
-
-def _tolerance(text: str) -> float:
-    value = finite(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
-    if not 0 < value < 1:
-        hint = f"did you mean {text}%?" if 1 <= value < 100 and not text.endswith("%") else "such as 0.05 or 5%"
-        raise argparse.ArgumentTypeError(f"{text!r}: a tolerance is between 0 and 1; {hint}")
-    return value
-
-
-def share(text: str) -> float:
-    value = finite(text)
-    if not 0 <= value <= 1:
-        raise argparse.ArgumentTypeError(f"{text!r}: a share is 0 to 1")
-    return value

@@ -1,0 +1,105 @@
+"""What a command reads: its lights, the picture that its options come on top of, and how images and lists are read."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from shviewer.errors import UsageError
+from shviewer.outputs import Replacing
+
+if TYPE_CHECKING:
+    from shviewer.lights.reading import Reading
+    from shviewer.viewer.saving.restoring import Restored
+
+
+def lights_of(options: argparse.Namespace) -> list[str]:
+    """What is given as LIGHT, or what stands for it."""
+    given = vars(options)
+    return given.get("lights") or [given.get("light", "green")]
+
+
+def pictured_by(options: argparse.Namespace) -> Restored | None:
+    """What the options come on top of: the picture named by --like, or by LIGHT; None for another light. Read once."""
+    given = vars(options)
+    if "pictured" not in given:
+        options.pictured = _pictured(options) if "as_image" in given else None
+    found: Restored | None = options.pictured
+    return found
+
+
+def _pictured(options: argparse.Namespace) -> Restored | None:
+    from shviewer.lights.find import split_light
+    from shviewer.viewer.saving.restoring import restored
+
+    limits = reading_from(options).limits
+    if options.like is None:
+        path, part = split_light(lights_of(options)[0])
+        return None if part or options.as_image else restored(path, limits)
+    found = restored(options.like, limits, lights_of(options)[0])
+    if found is None:
+        raise UsageError(f"--like {options.like}: no picture that shviewer saved; name one, or leave out --like")
+    return found
+
+
+def replacing_of(options: argparse.Namespace) -> Replacing:
+    """What the command may replace. Its inputs are its lights, coefficients to compare, and a reference."""
+    from shviewer.lights.find import file_of, split_light
+
+    others = [vars(options).get(name) for name in ("compare", "reference", "like")]
+    inputs = [*(split_light(light)[0] for light in lights_of(options)), *(Path(other) for other in others if other)]
+    if pictured := pictured_by(options):
+        named = (pictured.state.recipe.light, pictured.state.recipe.compare)
+        inputs += filter(None, (file_of(light) for light in named if light is not None))
+    return Replacing(tuple(inputs), options.force)
+
+
+def reading_from(options: argparse.Namespace, start: Reading | None = None) -> Reading:
+    """The reading that the options ask for, on top of `start`. UsageError for an unknown layout or convention."""
+    from shviewer.lights.reading import DEFAULT_READING, LAYOUT_CHOICES
+
+    start = start or DEFAULT_READING
+    if options.layout is not None and options.layout not in LAYOUT_CHOICES:
+        raise UsageError(f"layout {options.layout!r}: it must be one of {', '.join(LAYOUT_CHOICES)}")
+    chosen = {
+        "side": options.max_side,
+        "texels": _binary_millions(options.max_megatexels),
+        "file_bytes": _binary_millions(options.max_file_mib),
+        "memory_bytes": _binary_millions(options.max_memory_mib),
+    }
+    if options.input_convention:
+        _check_convention(options, options.input_convention)
+    named = {"sanitize": options.sanitize, "layout": options.layout, "convention": options.input_convention or None}
+    limits = replace(start.limits, **_given(chosen))
+    return replace(start, limits=limits, **_given(named))
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _binary_millions(count: float | None) -> int | None:
+    """A count in units of 2**20 as a whole number, at most 2**63, which any machine counts to."""
+    return None if count is None else int(min(count, 2**43) * 2**20)
+
+
+def _check_convention(options: argparse.Namespace, convention: str) -> None:
+    """UsageError for a convention of bare lists that is unknown, or if no file is given that it could apply to."""
+    from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+    from shviewer.coefficients.texts import parse_convention
+    from shviewer.lights.find import split_light
+
+    try:
+        parse_convention(convention)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    given, lights = vars(options), lights_of(options)
+    if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
+        return
+    name = "--input-convention" if "convention" in given else "--convention"
+    raise UsageError(
+        f"{name} {convention}: it applies to a coefficient file, and {lights[0]} is none; name one as LIGHT"
+        + ("" if name == "--input-convention" else " or with --compare")
+    )

@@ -1,0 +1,83 @@
+"""The recipe that the options of a command line ask for."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from shviewer.analysis.options import options_of
+from shviewer.analysis.recipe import Recipe
+from shviewer.cli.options.inputs import reading_from
+from shviewer.cli.options.values import number_of
+from shviewer.errors import UsageError
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
+
+if TYPE_CHECKING:
+    from shviewer.lights.light import Light
+
+START = Recipe()
+
+
+def chosen_of(options: argparse.Namespace, holder: type) -> dict[str, Any]:
+    """The given options that belong to a dataclass, by the names of its fields."""
+    given = {name: vars(options).get(name) for name in options_of(holder)}
+    chosen = {name: value for name, value in given.items() if value is not None}
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in chosen.items()}
+
+
+def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe = START) -> tuple[Recipe, str]:
+    """The recipe that the options ask for, with LIGHT, and a message about it or "".
+
+    start: what the options come on top of. UsageError for an option out of range, before the light is read if that does
+    not depend on it. With --bands, a tolerance only says what is enough.
+    """
+    from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
+    from shviewer.lights.find import split_light
+
+    chosen = chosen_of(options, Recipe)
+    if "window" in chosen:
+        window, separator, width = chosen["window"].partition(":")
+        if separator and window in ("none", "dering"):
+            raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
+        chosen |= {"window": window, "window_width": number_of(width, "window width") if separator else None}
+    recipe = replace(start, light=light, reading=reading_from(options, start.reading), **chosen)
+    recipe.check()
+    if "suns" in chosen and not recipe.split_sun:
+        raise UsageError(f"--suns {recipe.suns}: it says what --split-sun takes; give that, too")
+    compared, said = vars(options).get("compare"), ""
+    if compared:
+        from shviewer.analysis.compared_files import compared_with
+
+        recipe, found = compared_with(recipe, compared)
+        if found:
+            print(f"shviewer: {found}", file=sys.stderr)
+    listed = isinstance(light, str) and split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES
+    if compared or (listed and start is START):
+        from shviewer.analysis.comparison import as_the_file_holds
+
+        any_bands = options.n_bands is None and options.tolerance is None
+        recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
+    fits = options.tolerance is not None and options.n_bands is None
+    return (_fitted(recipe) if fits else recipe), said
+
+
+def _fitted(recipe: Recipe) -> Recipe:
+    """The recipe with as many bands as the tolerance needs, or if none are enough, the best count; stderr says which."""
+    from shviewer.analysis.figures import estimate_from_samples, needs
+
+    found = needs(recipe)
+    counts = {RADIANCE: found.radiance, IRRADIANCE: found.irradiance, in_words(recipe.quantity): found.shown}
+    says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
+    print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
+    if found.shown is None:
+        print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
+    if recipe.method == "jittered":
+        guess = estimate_from_samples(recipe)
+        if guess.decided:
+            says = f"{guess.likely} bands" if guess.likely else "no count up to 32"
+        else:
+            says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
+        print(f"shviewer: the samples alone say {says}", file=sys.stderr)
+    return replace(recipe, n_bands=found.shown or found.best_bands)

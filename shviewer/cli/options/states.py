@@ -1,0 +1,119 @@
+"""The state that the options of a command line ask for, and its view."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from shviewer.analysis.recipe import Recipe
+from shviewer.cli.options.inputs import lights_of, pictured_by
+from shviewer.cli.options.recipes import START, chosen_of, recipe_from
+from shviewer.cli.options.values import number_of
+from shviewer.errors import UsageError
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
+from shviewer.words import one_line
+
+if TYPE_CHECKING:
+    from shviewer.viewer.state import State
+    from shviewer.viewer.view import View
+
+DEFAULT_SIZE = (1280, 640)
+
+BESIDE_NEEDS = {
+    "no-window": "there is no window to do without; give --window, too",
+    "method": "coefficients that are compared are no method's; leave out --compare",
+    "own": "the light's own coefficients are shown already; give --compare, too",
+}
+"""What must be given for a second reconstruction to differ from the first."""
+
+
+def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
+    """The state that the options ask for, on top of that of a picture. UsageError for an option out of range.
+
+    Size and overlay, which are no part of a state, are those of the picture from now on, unless the options say them.
+    """
+    from shviewer.lights.find import built_in_lights
+    from shviewer.viewer.actions import open_light
+    from shviewer.viewer.beside import recipe_beside
+    from shviewer.viewer.message import warning
+    from shviewer.viewer.state import State, changed
+
+    pictured = pictured_by(options)
+    start = pictured.state if pictured else State()
+    entry = lights_of(options)[0]
+    light = start.recipe.light if pictured else entry
+    options.size = tuple(options.size or (pictured and pictured.size) or DEFAULT_SIZE)
+    options.no_overlay = vars(options).get("no_overlay") or (pictured is not None and not pictured.overlay)
+    view, counted_bands = _view_from(options, start.view), not (options.n_bands is None and options.tolerance is None)
+    if options.encode and counted_bands:
+        raise UsageError(f"--encode {options.encode}: it takes the place of bands; leave out --bands and --tolerance")
+    encoding = "" if counted_bands or (options.quantity and not options.encode) else view.encode
+    view = replace(view, encode="")
+    asked = start.recipe.n_bands if options.n_bands is None else options.n_bands
+    State(Recipe(n_bands=asked), view).check(options.size)
+    recipe, said = recipe_from(options, light, start.recipe if pictured else START)
+    if options.beside in BESIDE_NEEDS and recipe_beside(recipe, options.beside) == recipe:
+        raise UsageError(f"--beside {options.beside}: {BESIDE_NEEDS[options.beside]}")
+    lights = tuple(built_in_lights()) if all_lights else (light,)
+    state = replace(open_light(State(recipe, view, lights), entry if all_lights else light), recipe=recipe)
+    state = replace(state, entry=entry if pictured and all_lights else None)
+    state = changed(
+        state, message=said or view.message, basis=tuple(options.basis) if options.basis else start.view.basis
+    )
+    if encoding:
+        n_bands = ENCODED_BANDS.get(encoding, state.recipe.n_bands)
+        state = changed(state, n_bands=n_bands, encode=encoding)
+    state.check()
+    if pictured and pictured.said:
+        print(one_line(f"shviewer: note: {options.like or entry}: {pictured.said}"), file=sys.stderr)
+        state = changed(state, message=warning(pictured.said)) if all_lights else state
+    return changed(state, sweep_to=None) if all_lights else state  # a window shows the picture, and does not play on
+
+
+def _view_from(options: argparse.Namespace, start: View) -> View:
+    """The view that the options ask for, but for a basis function, which is checked as soon as its bands are known."""
+    from shviewer.viewer.camera import rolled_towards
+    from shviewer.viewer.view import View
+
+    chosen: dict[str, Any] = {"basis": None} | chosen_of(options, View)
+    if options.error_range is not None:
+        chosen["error_range"] = _error_range(options.error_range, options.error or start.error)
+    if options.camera:
+        chosen["camera"] = options.camera[0] % 360, _elevation(options.camera[1])
+    if options.map_centre:
+        azimuth, elevation = options.map_centre
+        chosen["map_centre"] = (azimuth + 180) % 360 - 180, _elevation(elevation)
+    if options.basis:
+        chosen |= {"basis": None, "lobe_view": True}
+    third = [name for name in ("error", "beside") if vars(options)[name] not in (None, "off")]
+    if len(third) == 1:  # in place of what a picture showed there
+        chosen["beside" if third[0] == "error" else "error"] = "off"
+    if options.exposure_stops is not None:
+        chosen = {"exposure_offset": 0.0} | chosen
+    if angles := turn_from(options):
+        chosen["light_rotation"] = rolled_towards(*angles)
+    return replace(start, **chosen)
+
+
+def turn_from(options: argparse.Namespace) -> tuple[float, float, float] | None:
+    """Azimuth, elevation and roll, degrees, by which the options turn the light; None if they do not."""
+    if options.rotate_light is None and options.roll_light is None:
+        return None
+    azimuth, elevation = options.rotate_light or (0.0, 0.0)
+    return azimuth, _elevation(elevation), options.roll_light or 0.0
+
+
+def _elevation(degrees: float) -> float:
+    if abs(degrees) > 90:
+        raise UsageError(f"elevation {degrees:g}: it must be -90 to 90 degrees")
+    return degrees
+
+
+def _error_range(text: str, error: str) -> float:
+    """The error range: a radiance, or for the relative error a share of 1, which may be given in percent."""
+    share = text.endswith("%")
+    if share and error != "relative":
+        raise UsageError(f"error range {text}: a share is for --error relative; give a radiance, such as 0.5")
+    return number_of(text.removesuffix("%"), "error range") / (100 if share else 1)
