@@ -67,6 +67,11 @@ def test_the_same_samples_flicker_less_and_are_as_wrong(few: list[Sampled]) -> N
     fresh, same = of(few, FRESH, 961, 5), of(few, SAME, 961, 5)
     assert same.flicker < fresh.flicker / 5
     assert same.rms == pytest.approx(fresh.rms, rel=0.5)
+    wanted = REFERENCE["sampling"]["green|jittered same seed|1000"]
+    for n_bands in (5, 9, 16):  # one pattern of samples here, another there
+        one, key = of(few, SAME, 961, n_bands), str(n_bands)
+        crawl = wanted["frame_to_frame"][key] / wanted["rms"][key]
+        assert one.flicker / one.rms == pytest.approx(crawl, rel=0.4)
 
 
 def test_noise_of_the_original_is_what_the_formulas_leave_of_it() -> None:
