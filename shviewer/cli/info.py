@@ -8,15 +8,14 @@ import sys
 from functools import partial
 
 from shviewer.analysis.information import (
-    DARK_PERCENTILE,
     BandsNeeded,
     CoefficientInformation,
     Information,
     Triple,
-    Values,
     as_json_object,
     describe,
 )
+from shviewer.analysis.values import DARK_PERCENTILE, Values
 from shviewer.cli.jobs import in_order
 from shviewer.cli.options.inputs import reading_from
 from shviewer.cli.status_line import speaking
