@@ -1,7 +1,7 @@
 """Suns split off a light: each becomes a disc with a direction, a size and a radiance; the rest then needs few bands.
 
-compact_sources.py says what a sun is and which part of an image belongs to it. In a sum of lobes, the suns are the discs to
-which the same rule applies; they are taken out without a rest.
+compact_sources.py finds them, and excess.py says which part of an image belongs to them. In a sum of lobes, the suns are the
+discs to which the same rule applies; they are taken out without a rest.
 
 In an image the disc has the flux that was taken, per channel. Its axis is the direction of the flux vector of the channels'
 mean, and its half-angle a follows from the vector's length: |vector| = cos(a/2)^2 flux. So rest plus disc

@@ -8,7 +8,8 @@ import pytest
 from shviewer.errors import LightError
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.layouts.lat_long import LatLongLayout
-from shviewer.lights.suns.compact_sources import PLATEAU, CompactSources
+from shviewer.lights.suns.clipping import PLATEAU
+from shviewer.lights.suns.compact_sources import CompactSources
 
 HEIGHT, WIDTH = 256, 512
 

@@ -24,7 +24,7 @@ from shviewer.lights.light import Light
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.lights.suns.caps import Caps, chord, chord_of
-from shviewer.lights.suns.compact_sources import CAP
+from shviewer.lights.suns.excess import CAP
 from shviewer.lights.suns.rule import MOST
 from shviewer.lights.suns.sun import Sun
 from shviewer.resources import resource_folder
