@@ -74,12 +74,17 @@ webxr, arcore, arkit
 
 from __future__ import annotations
 
+from functools import partial
+
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import Axes
 from shviewer.coefficients.parts.channels import FLAT_BY_CHANNEL
 from shviewer.coefficients.parts.quantities import IRRADIANCE, OVER_PI, RADIANCE, RADIANCE_OVER_PI
 
 OURS = Convention()
+
+_of_nine_rows = partial(Convention, most_bands=3, fewest_bands=3)
+"""The convention of a program that takes three bands, no more and no fewer."""
 
 _PROGRAMS = (
     OURS,
@@ -93,49 +98,41 @@ _PROGRAMS = (
         most_bands=3,
         layout="float3 sh[n*n]",
     ),
-    Convention(
+    _of_nine_rows(
         "three",
         "three.js, SphericalHarmonics3.fromArray",
         phase=False,
         axes=Axes("+x+z-y"),
         quantity=RADIANCE,
-        most_bands=3,
-        fewest_bands=3,
         layout="27 numbers, row by row",
     ),
-    Convention(
+    _of_nine_rows(
         "unity",
         "Unity, SphericalHarmonicsL2",
         phase=False,
         axes=Axes("+x+z+y"),
         scale="polynomial",
         quantity=OVER_PI,
-        most_bands=3,
-        fewest_bands=3,
         layout="sh[channel, row]",
     ),
-    Convention(
+    _of_nine_rows(
         "unreal",
         "Unreal Engine, TSHVectorRGB",
         axes=Axes("-y-x+z"),
         quantity=RADIANCE,
-        most_bands=3,
-        fewest_bands=3,
         layout="R.V[row], G.V[row], B.V[row]",
     ),
     Convention("ambix", "ambiX (ACN, SN3D)", phase=False, scale="sn3d", layout="one channel per row"),
     Convention("sphericart", "sphericart, SphericalHarmonics", phase=False),
     Convention("scipy", "SciPy, special.sph_harm_y", complex=True),
-    Convention(
+    _of_nine_rows(
         "babylon",
         "Babylon.js, SphericalHarmonics.FromArray",
         axes=Axes("-y+z+x"),
         quantity=OVER_PI,
-        most_bands=3,
-        fewest_bands=3,
         layout="9 rows of red, green, blue",
     ),
-    Convention(
+    _of_nine_rows(
         "playcanvas",
         "PlayCanvas, StandardMaterial.ambientSH",
         phase=False,
@@ -143,38 +140,30 @@ _PROGRAMS = (
         scale="polynomial",
         quantity=OVER_PI,
         order="order-playcanvas",
-        most_bands=3,
-        fewest_bands=3,
         layout="27 numbers, row by row",
     ),
-    Convention(
+    _of_nine_rows(
         "cesium",
         "CesiumJS, ImageBasedLighting.sphericalHarmonicCoefficients",
         phase=False,
         axes=Axes("+x+z-y"),
         scale="polynomial",
         quantity=OVER_PI,
-        most_bands=3,
-        fewest_bands=3,
         layout="9 Cartesian3",
     ),
-    Convention(
+    _of_nine_rows(
         "gltf",
         "glTF, EXT_lights_image_based as Babylon.js reads it",
         axes=Axes("-y+z+x"),
         quantity=IRRADIANCE,
-        most_bands=3,
-        fewest_bands=3,
         layout="irradianceCoefficients, 9 rows of red, green, blue",
     ),
-    Convention(
+    _of_nine_rows(
         "godot",
         "Godot, probes of LightmapGIData",
         phase=False,
         axes=Axes("+y+z+x"),
         quantity=RADIANCE_OVER_PI,
-        most_bands=3,
-        fewest_bands=3,
         layout="9 colours a probe",
     ),
     Convention(
@@ -217,14 +206,12 @@ _PROGRAMS = (
     ),
     Convention("mitsuba", "Mitsuba 3, sh_eval", axes=Axes("+y+z+x"), most_bands=10, layout="(order+1)^2 numbers"),
     *(
-        Convention(
+        _of_nine_rows(
             f"{name}-{'phase' if phase else 'no-phase'}",
             f"{program}, read {'with' if phase else 'without'} the Condon-Shortley phase",
             phase=phase,
             axes=Axes("+x+z-y"),
             quantity=RADIANCE,
-            most_bands=3,
-            fewest_bands=3,
             layout=layout,
             sequence=FLAT_BY_CHANNEL if name == "arkit" else "",
         )

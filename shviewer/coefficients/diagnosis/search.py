@@ -89,17 +89,16 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
     least = min(float(one.misfits.min()) for one in tried)
     good = max(ALIKE * least, TINY)
     best, most = None, np.inf
-    for one, (cost, _) in zip(tried, costs, strict=True):
+    for one, (cost, bases) in zip(tried, costs, strict=True):
         near = one.misfits <= good
         if near.any():
             total = np.where(near, cost + CHANNELS[:, None, None] + one.constant_costs(good), np.inf)
             place = int(total.argmin())
             if total.flat[place] < most - 1e-9:
-                best, most = (one, np.unravel_index(place, total.shape)), float(total.flat[place])
+                best, most = (one, bases, np.unravel_index(place, total.shape)), float(total.flat[place])
     if best is None:
         return None
-    one, (channels, orientation, combination) = best
-    bases = next(bases for other, (_, bases) in zip(tried, costs, strict=True) if other is one)
+    one, bases, (channels, orientation, combination) = best
     base = CONVENTIONS[list(CONVENTIONS)[bases[orientation, combination]]]
     factor = one.constant(channels, orientation, combination, good)
     convention = _convention(
@@ -167,8 +166,6 @@ class _Tried:
 def _factors(quantity: str, scale: str, n_bands: int) -> Array:
     """What multiplies our coefficients of the radiance, per degree."""
     factors = irradiance_factors(n_bands) if whole(quantity) == IRRADIANCE else np.ones(n_bands)
-    if whole(quantity) == IRRADIANCE:
-        factors = np.where((np.arange(n_bands) > 1) & (np.arange(n_bands) % 2 == 1), 0.0, factors)
     if scale in ("polynomial", "fuma"):  # undone before anything was turned
         scale = "orthonormal"
     return np.asarray(
