@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -30,11 +31,11 @@ def green() -> MeasuredLight:
 
 @pytest.fixture(scope="module")
 def few(green: MeasuredLight) -> list[Sampled]:
-    return [one for way in WAYS for count in (100, 1000) for one in sampled(green, way, count, 0)]
+    return [one for way in WAYS for number in (100, 1000) for one in sampled(green, way, number, 0)]
 
 
-def of(found: list[Sampled], way: str, count: int, n_bands: int) -> Sampled:
-    return next(one for one in found if (one.way, one.samples, one.n_bands) == (way, count, n_bands))
+def of(found: list[Sampled], way: str, samples: int, n_bands: int) -> Sampled:
+    return next(one for one in found if (one.way, one.samples, one.n_bands) == (way, samples, n_bands))
 
 
 def test_a_light_that_is_projected_exactly_does_not_flicker_when_it_turns(green: MeasuredLight) -> None:
@@ -45,9 +46,9 @@ def test_a_light_that_is_projected_exactly_does_not_flicker_when_it_turns(green:
 
 
 def test_independent_samples_have_the_error_of_the_formula(few: list[Sampled]) -> None:
-    for count in (100, 1000):
+    for samples in (100, 1000):
         for n_bands in BANDS[2:]:  # 64 frames of n^2 numbers each
-            one = of(few, INDEPENDENT, count, n_bands)
+            one = of(few, INDEPENDENT, samples, n_bands)
             assert one.rms == pytest.approx(one.formula, rel=0.12)
             assert one.flicker == pytest.approx(np.sqrt(2) * one.rms, rel=0.1)  # fresh ones know nothing of each other
 
@@ -61,6 +62,12 @@ def test_sampled_lights_flicker_as_others_have_simulated(few: list[Sampled]) -> 
             assert one.rms == pytest.approx(wanted["rms"][str(n_bands)], rel=0.2)
             assert one.flicker == pytest.approx(wanted["frame_to_frame"][str(n_bands)], rel=0.2)
             assert one.formula == pytest.approx(wanted["theory_independent"][str(n_bands)], rel=1e-3)
+
+
+def test_a_frame_takes_milliseconds_of_the_clock(green: MeasuredLight, monkeypatch: pytest.MonkeyPatch) -> None:
+    ticks = count(step=0.25)
+    monkeypatch.setattr(moving, "perf_counter", lambda: next(ticks))
+    assert {one.milliseconds for one in sampled(green, SAME, 100, 0)} == {250.0}
 
 
 def test_the_same_samples_flicker_less_and_are_as_wrong(few: list[Sampled]) -> None:
@@ -111,9 +118,12 @@ def test_the_answer_names_the_figures_of_the_run_and_stands_without_samples(few:
     said = answer(few, stated)
     assert said.startswith("Half true.")
     assert f"green in 16 bands by {100 * of(few, FRESH, 100, 16).flicker:.3g} % of its norm" in said
+    assert f"and by {100 * of(few, FRESH, 961, 16).flicker:.3g} % with 961" in said
     assert "Irradiance is calm because it is a blur" in answer([], stated)
     page = as_markdown({"green": 2e-15, "room": None}, few, stated)
     assert "- green, projected in closed form, and turned back: it changes by 2e-15 of its norm." in page
+    rows = [row for row in page.splitlines() if row.startswith("| green")]
+    assert len(rows) == 3 * len(WAYS) * 2  # of 3, 5 and 16 bands, from 100 and from 961 points
     assert max(map(len, page.splitlines())) <= 128
     assert MOVING in further_plots({"moving": moving.as_extra({}, few, stated)})
     assert further_plots({"moving": moving.as_extra({}, [], [Stated("x", 1, 0.1, 0.1)])}) == {}
