@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Sequence
 from dataclasses import replace
 
+from shviewer.analysis.recipe import light_name
+from shviewer.errors import ShviewerError
 from shviewer.lights.find import built_in_lights, split_light
-from shviewer.viewer.message import WARNING, Message
+from shviewer.lights.light import Light
+from shviewer.viewer.actions import show_light
+from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
 
@@ -31,6 +37,41 @@ def opened(state: State, *, as_image: bool) -> State:
     return started(changed(shown, reading=reading, sweep_to=None, message=message))
 
 
-def skipped(names: list[str], reason: str) -> str:
+class Opening:
+    """The lights to go through from one that was chosen, until one of them can be opened."""
+
+    def __init__(self, *, as_image: bool) -> None:
+        self._as_image = as_image
+        self._others: list[str | Light] = []
+        self._passed: list[str] = []
+        """The names of those that could not be opened."""
+
+    def first(self, state: State, others: Sequence[str | Light]) -> State:
+        """The state of the light that was chosen, as `opened`, with those to go on to where it cannot be opened."""
+        self._others, self._passed = list(others), []
+        return opened(state, as_image=self._as_image)
+
+    def next(self, tried: State, error: ShviewerError, shown: State) -> State | None:
+        """Go over a light that cannot be opened: the state `shown` with the next one that can be; None if there is none."""
+        while self._others:
+            place, light = tried.place, self._others.pop(0)
+            bad = tried.lights[place] if place is not None else tried.recipe.light
+            self._passed.append(light_name(bad))
+            print(f"shviewer: {error}; skipped", file=sys.stderr, flush=True)
+            left = tuple(one for one in tried.lights if one != bad)
+            message = Message(_skipped(self._passed, str(error)), ERROR)
+            tried = changed(show_light(shown, light), lights=left, message=message)
+            try:
+                return opened(tried, as_image=self._as_image)
+            except ShviewerError as another:
+                error = another
+        return None
+
+    def end(self) -> None:
+        """Go on to none any more."""
+        self._others = []
+
+
+def _skipped(names: list[str], reason: str) -> str:
     """The message about lights that could not be opened and are gone over."""
     return f"skipped {reason}" if len(names) == 1 else f"skipped {', '.join(names)}; the last: {reason}"

@@ -1,41 +1,39 @@
 """The session: between a key and a frame, one state and its picture, kept together whatever fails. Knows no window.
 
-What takes time is a task behind the window. Until it has a picture, the last one stays, seen from where the camera is now.
-Figures that are searched for come after the picture. The newest wish wins: a task whose picture nobody wants any more is ended.
+What takes time is made behind the window. Until there is a picture, the last one stays, seen from where the camera is now.
+Figures that are searched for come after the picture.
 """
 
 from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from time import perf_counter
 from typing import ParamSpec
 
-from shviewer.analysis.figures import Pending
 from shviewer.analysis.recipe import light_name
-from shviewer.analysis.subjects import keep_light, read_again, version_read
+from shviewer.analysis.subjects import keep_light, version_read
 from shviewer.errors import ShviewerError, within_memory
 from shviewer.lights.light import Light
 from shviewer.lights.several import several
-from shviewer.viewer.actions import Command, face, open_light, show_light, step_sweep, with_bands
+from shviewer.viewer.actions import Command, open_light, step_sweep
 from shviewer.viewer.animation.metronome import Metronome
 from shviewer.viewer.composition import Composition
+from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.errands import save_coefficients, save_picture
+from shviewer.viewer.desktop.making import Making
 from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
-from shviewer.viewer.desktop.opening import MOST_DROPPED, opened, skipped
-from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.desktop.opening import MOST_DROPPED, Opening
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
 from shviewer.viewer.message import DONE, ERROR, SECONDS, WARNING, Message, passes
 from shviewer.viewer.overlay.foot import Work
-from shviewer.viewer.overlay.marks import marks_of
-from shviewer.viewer.overlay.overlay import foresee
-from shviewer.viewer.picture import Picture, prepare, stages, still
+from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.state import State, changed, started
 from shviewer.words import one_line
 
@@ -49,9 +47,6 @@ PATIENCE = 0.05
 
 STATUS_SECONDS = 0.1
 """Seconds between two looks at how far a task is."""
-
-QUIET = 0.3
-"""Seconds after which a task is spoken of."""
 
 
 class Session:
@@ -79,27 +74,16 @@ class Session:
         self.picture: Picture = replace(first, state=self.state)
         self.by_map = False
         self.verbose = verbose
-        self.as_image = as_image
         self.metronome = Metronome()
         self._watch = Watch() if watch else None
         self._looked_at = perf_counter()
         self._reading: Event | None = None
         """The wish to read the light's file again, set once it has been read; None if there is no such wish."""
-        self._others: list[str | Light] = []
-        """The lights to go on to where the one that was chosen cannot be opened."""
-        self._passed: list[str] = []
-        """The names of those that could not."""
+        self._opening = Opening(as_image=as_image)
         self._refused: str | Light | None = None
         """The light that could not be read just now: the next key may say how to read it."""
         self._marks_faced = 0
-        self._wake = wake
-        self._task: Task[tuple[Picture, bool]] | None = None
-        self._ended: Task[tuple[Picture, bool]] | None = None
-        """The task before it, which may still be at its last step."""
-        self._wish: object = None
-        """What the task makes: the still part of a state, and how it is drawn and read."""
-        self._taken: Picture | None = None
-        """The last picture that was taken from the task."""
+        self._making = Making(wake)
         self._enough: State | None = None
         """The still part of the state whose figures are not wanted any more: the search was stopped, or failed."""
         self._later: list[Callable[[], None]] = []
@@ -156,7 +140,7 @@ class Session:
     @property
     def working(self) -> bool:
         """Whether a picture is being made, or its figures."""
-        return self._task is not None
+        return self._making.working
 
     @property
     def _shown(self) -> bool:
@@ -165,22 +149,22 @@ class Session:
 
     @property
     def status(self) -> str:
-        """What the task at work does, once it has taken a while; "" while nothing is at work."""
-        task = self._task
-        return task.status if task is not None and task.seconds > QUIET else ""
+        """What is done behind the window, once it has taken a while; "" while nothing is at work."""
+        return self._making.status
 
     @property
     def work(self) -> Work | None:
         """The same with how far it is, for the hairline; None while nothing is at work."""
-        return self._task.work if self._task is not None and self.status else None
+        return self._making.work
 
     def stop(self) -> None:
         """End the task, and stay with the picture there is."""
-        if self._task is not None:
-            what = self._task.status.rstrip("0123456789 %")
-            self._end_task()
+        if self.working:
+            what = self._making.doing
+            self._making.end()
             self._later.clear()
-            self._reading, self._others = None, []
+            self._reading = None
+            self._opening.end()
             keep_light(self.picture.state.recipe, self.picture.subject.whole)
             self.state = changed(self.picture.state, message=f"stopped {what}".rstrip(), sweep_to=None)
             self._enough = still(self.picture.state)
@@ -203,29 +187,17 @@ class Session:
 
     def _open(self, state: State, others: Sequence[str | Light]) -> None:
         """Show the light that the state was given, or where it cannot be opened the next of the others."""
-        self._others, self._passed = list(others), []
         try:
-            self.state = opened(state, as_image=self.as_image)
+            self.state = self._opening.first(state, others)
         except ShviewerError as error:
             if not self._pass_over(state, error):
                 self.say(str(error), ERROR)
 
     def _pass_over(self, tried: State, error: ShviewerError) -> bool:
         """Go on from a light that cannot be opened to the next of those that were asked for; return whether there is one."""
-        while self._others:
-            place, light = tried.place, self._others.pop(0)
-            bad = tried.lights[place] if place is not None else tried.recipe.light
-            self._passed.append(light_name(bad))
-            print(f"shviewer: {error}; skipped", file=sys.stderr, flush=True)
-            left = tuple(one for one in tried.lights if one != bad)
-            message = Message(skipped(self._passed, str(error)), ERROR)
-            tried = changed(show_light(self.picture.state, light), lights=left, message=message)
-            try:
-                self.state = opened(tried, as_image=self.as_image)
-                return True
-            except ShviewerError as another:
-                error = another
-        return False
+        state = self._opening.next(tried, error, self.picture.state)
+        self.state = state or self.state
+        return state is not None
 
     def say(self, text: str, kind: str = "") -> None:
         """Show a message of a kind, on one line."""
@@ -239,21 +211,18 @@ class Session:
             self._message, self._message_at = self.state.view.message, now
         elif self._message and passes(self._message) and now - self._message_at >= SECONDS:
             self.state = changed(self.state, message="")
-        if self._task is None and self.metronome.beats(self.state.view.sweep_to is not None, now):
+        if not self.working and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
         if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
             self._looked_at = now
             recipe = self.state.recipe
             if isinstance(recipe.light, str) and self._watch.changed(recipe.light, version_read(recipe)):
                 self.do(Command.RELOAD)
-        task = self._task
-        latest = task.latest if task is not None else None
-        news = task is not None and (task.finished or (latest is not None and latest[0] is not self._taken))
-        return news or self.state is not last or self._reading is not reading or self._said != said
+        return self._making.news or self.state is not last or self._reading is not reading or self._said != said
 
     def wait(self, now: float, most: float) -> float:
         """The seconds until the next tick is due, at most `most`."""
-        return min(most, STATUS_SECONDS) if self._task is not None else self.metronome.wait(now, most)
+        return min(most, STATUS_SECONDS) if self.working else self.metronome.wait(now, most)
 
     def prepare(self, by_map: bool = False, patience: float | None = None) -> bool:
         """Make the picture of the state; return whether it is complete. For a state that cannot be shown, keep the last one.
@@ -271,28 +240,21 @@ class Session:
     def _make(self, by_map: bool, patience: float | None) -> bool:
         """Make the picture; return whether it has all figures that are wanted."""
         last, state, reading = self.picture, self.state, self._reading
-        wish = still(state), reading
-        enough = last.complete or wish[0] == self._enough
-        if wish == (still(last.state), None) and by_map == self.by_map and enough:
-            self._end_task()
+        if self._shown and by_map == self.by_map and (last.complete or still(state) == self._enough):
+            self._making.end()
             self.picture = last if last.state == state else last.seen(state)
             return True
-        if self._task is None or wish != self._wish:
-            self._end_task()
-            self._wish = wish
-            self._taken = None
-            self._task = Task(lambda: _pictures_of(state, by_map, reading), self._ended, self._wake)
-        if not self._task.wait(None if patience is None else patience - self._task.seconds):
-            latest = self._task.latest
-            if latest is not None and latest[0] is not self._taken:
+        self._making.want(state, by_map, reading)
+        if not self._making.wait(patience):
+            if (latest := self._making.latest()) is not None:
                 self._take(*latest)
             elif last.state.view != state.view:
                 self.picture = last.seen(state)
             return False
-        task, self._task, self._reading = self._task, None, None
+        self._reading = None
         try:
             with within_memory(light_name(state.recipe.light)):
-                picture, made_by_map = task.result()
+                picture, made_by_map = self._making.result()
         except ShviewerError as error:
             if self._pass_over(state, error):
                 return self._make(by_map, patience)
@@ -302,12 +264,13 @@ class Session:
             traceback.print_exception(error)
             self.keep(ShviewerError("internal error, see the terminal"))
             return True
-        self._others, self._refused = [], None
+        self._refused = None
+        self._opening.end()
         self._take(picture, made_by_map, again=reading is not None)
         return made_by_map == by_map or self._make(by_map, patience)
 
     def _take(self, made: Picture, by_map: bool, again: bool | None = None) -> None:
-        """Show a picture that the task made for the state. again: whether its light was read again."""
+        """Show a picture that was made for the state. again: whether its light was read again."""
         last, state, picture = self.picture, self.state, made.seen(self.state)
         if picture.light is not last.light:
             again = self._reading is not None if again is None else again
@@ -317,13 +280,7 @@ class Session:
                 message = Message(message, WARNING if picture.light.notes else "")
                 self.state = changed(state, message=message)
                 picture = replace(picture, state=self.state)
-        self.picture, self.by_map, self._taken = picture, by_map, made
-
-    def _end_task(self) -> None:
-        """Want the task's result no more; the next one begins when it has ended."""
-        if self._task is not None:
-            self._task.stop()
-            self._ended, self._task = self._task, None
+        self.picture, self.by_map = picture, by_map
 
     def when_ready(self, command: Callable[[], None]) -> None:
         """Carry a command out that needs the picture with all figures: now, or when they are there."""
@@ -371,38 +328,11 @@ class Session:
         return f"reloaded {notes or light.name}"
 
     def _fit(self) -> None:
-        """Use as many bands as the tolerance needs; where none are enough, say what is the best there is."""
-        found = self.picture.needs
-        if isinstance(found, Pending):  # never, once the picture is complete
-            return
-        if found.shown is None:
-            best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"
-            message = f"no band count is within {100 * found.tolerance:g} %: {best}"
-            self.state = changed(with_bands(self.state, found.best_bands), message=message)
-        else:
-            self.state = with_bands(self.state, found.shown)
+        self.state = fit(self.state, self.picture)
 
     def _face_mark(self) -> None:
-        """Turn the spheres so that the next mark is in front."""
-        marks = marks_of(self.picture)
-        if not marks:
-            message = "nothing is marked: X marks what is negative, D shows the error and marks where it is largest"
-            self.state = changed(self.state, message=message)
-            return
-        direction = self.picture.light_from_world.T @ marks[self._marks_faced % len(marks)].direction
-        self._marks_faced += 1
-        self.state = face(self.state, direction)
+        self.state, self._marks_faced = face_mark(self.state, self.picture, self._marks_faced)
 
     def _log(self, text: str) -> None:
         if self.verbose:
             print(text, file=sys.stderr, flush=True)
-
-
-def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[tuple[Picture, bool]]:
-    """The pictures of a state as `stages` has them, with everything ready that their text needs; each with `by_map`."""
-    if reading is not None and not reading.is_set():
-        read_again(state.recipe)
-        reading.set()  # a later wish need not read it once more
-    for picture in stages(state, by_map=by_map):
-        foresee(picture)
-        yield picture, by_map

@@ -13,8 +13,7 @@ from viewer.desktop.desktop import output_of
 from shviewer.lights.function import FunctionLight
 from shviewer.progress import Stopped, listening, tell
 from shviewer.viewer.actions import Command
-from shviewer.viewer.desktop import errands
-from shviewer.viewer.desktop import session as sessions
+from shviewer.viewer.desktop import errands, making
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.state import changed, state_of
@@ -86,10 +85,10 @@ def test_the_newest_wish_wins_and_what_it_makes_stale_never_shows(gate: Gate) ->
 
 def test_a_key_that_takes_nothing_away_from_the_task_does_not_begin_it_again(gate: Gate) -> None:
     session = waiting(gate)
-    task = session._task
+    task = session._making._task
     session.press("X")
     assert not session.prepare(patience=NOW)
-    assert session._task is task
+    assert session._making._task is task
 
 
 def test_escape_stops_the_work_before_it_closes_anything(gate: Gate) -> None:
@@ -153,11 +152,11 @@ def test_a_sweep_waits_for_its_pictures(gate: Gate) -> None:
 
 
 def test_work_is_spoken_of_only_once_it_has_taken_a_while(gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sessions, "QUIET", 1e9)
+    monkeypatch.setattr(making, "QUIET", 1e9)
     session = waiting(gate)
     assert session.status == ""
     assert not session.tick(1.0)
-    monkeypatch.setattr(sessions, "QUIET", 0.0)
+    monkeypatch.setattr(making, "QUIET", 0.0)
     assert session.status == "projecting"
     assert session.tick(2.0)
     assert not session.tick(3.0)

@@ -1,0 +1,100 @@
+"""What is made behind the window: the pictures of one state, each better than the one before, until another is wished for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from threading import Event
+
+from shviewer.analysis.subjects import read_again
+from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.overlay.foot import Work
+from shviewer.viewer.overlay.overlay import foresee
+from shviewer.viewer.picture import Picture, stages, still
+from shviewer.viewer.state import State
+
+QUIET = 0.3
+"""Seconds after which a task is spoken of."""
+
+Made = tuple[Picture, bool]
+"""A picture, and whether it was made by map."""
+
+
+class Making:
+    """The task at work. The newest wish wins: a task whose pictures nobody wants any more is ended before the next begins."""
+
+    def __init__(self, wake: Callable[[], None] | None) -> None:
+        """wake: called from another thread when a picture has been made, and at the end."""
+        self._wake = wake
+        self._task: Task[Made] | None = None
+        self._ended: Task[Made] | None = None
+        """The task before it, which may still be at its last step."""
+        self._wish: object = None
+        """What the task makes: the still part of a state, and how it is read."""
+        self._taken: Made | None = None
+        """What was last taken from the task."""
+
+    @property
+    def working(self) -> bool:
+        return self._task is not None
+
+    @property
+    def doing(self) -> str:
+        """What the task does, in words without figures."""
+        return self._task.status.rstrip("0123456789 %") if self._task is not None else ""
+
+    @property
+    def status(self) -> str:
+        """What the task does, once it has taken a while; "" while nothing is at work."""
+        task = self._task
+        return task.status if task is not None and task.seconds > QUIET else ""
+
+    @property
+    def work(self) -> Work | None:
+        """The same with how far it is, for the hairline; None while nothing is at work."""
+        return self._task.work if self._task is not None and self.status else None
+
+    @property
+    def news(self) -> bool:
+        """Whether there is something to take."""
+        return self._task is not None and (self._task.finished or self._task.latest is not self._taken)
+
+    def want(self, state: State, by_map: bool, reading: Event | None) -> None:
+        """Begin with the pictures of a state, unless they are at work already. reading: set once its light was read again."""
+        wish = still(state), reading
+        if self._task is None or wish != self._wish:
+            self.end()
+            self._wish, self._taken = wish, None
+            self._task = Task(lambda: _pictures_of(state, by_map, reading), self._ended, self._wake)
+
+    def wait(self, patience: float | None) -> bool:
+        """Wait until all is made, so many seconds since it was wished for (None: as long as it takes); return whether it is."""
+        assert self._task is not None
+        return self._task.wait(None if patience is None else patience - self._task.seconds)
+
+    def latest(self) -> Made | None:
+        """What was made since the last time that this was asked."""
+        assert self._task is not None
+        last, self._taken = self._taken, self._task.latest
+        return None if self._taken is last else self._taken
+
+    def result(self) -> Made:
+        """What was made last, when all is made. Raises what the task raised."""
+        task, self._task = self._task, None
+        assert task is not None
+        return task.result()
+
+    def end(self) -> None:
+        """Want the pictures no more."""
+        if self._task is not None:
+            self._task.stop()
+            self._ended, self._task = self._task, None
+
+
+def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[Made]:
+    """The pictures of a state as `stages` has them, with everything ready that their text needs; each with `by_map`."""
+    if reading is not None and not reading.is_set():
+        read_again(state.recipe)
+        reading.set()  # a later wish need not read it once more
+    for picture in stages(state, by_map=by_map):
+        foresee(picture)
+        yield picture, by_map
