@@ -16,7 +16,7 @@ from shviewer.api import LightLike, find_light, recipe_of, with_options
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.viewer import screenshot as offscreen
-from shviewer.viewer.composition import frame_for
+from shviewer.viewer.composing.composition import frame_for
 from shviewer.viewer.picture import first_picture, prepare
 from shviewer.viewer.saving.picture_files import png_bytes
 from shviewer.viewer.saving.stamp import metadata

@@ -12,8 +12,8 @@ from typing import NoReturn, TypeVar
 import pytest
 
 from shviewer.lights.light import Light
-from shviewer.viewer.composition import Composition, frame_for
-from shviewer.viewer.panes import Box
+from shviewer.viewer.composing.composition import Composition, frame_for
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import state_of
 

@@ -22,7 +22,7 @@ from shviewer.benchmark.timing import Timing, Work, summarise, time_interleaved
 from shviewer.children import leash
 from shviewer.ending import temporary_folder
 from shviewer.errors import GraphicsError
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer

@@ -25,7 +25,7 @@ from shviewer.harmonics.basis import Array, evaluate_basis, normalise
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import camera
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture, prepare

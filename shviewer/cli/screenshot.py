@@ -10,7 +10,7 @@ from shviewer.cli.options.inputs import replacing_of
 from shviewer.cli.options.states import state_from
 from shviewer.cli.status_line import speaking
 from shviewer.errors import UsageError
-from shviewer.viewer.composition import frame_for
+from shviewer.viewer.composing.composition import frame_for
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.saving.sphere_maps import write_sphere_map

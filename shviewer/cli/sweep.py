@@ -20,7 +20,7 @@ from shviewer.viewer.animation.animation import (
 )
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
 from shviewer.viewer.animation.turning import light_turn
-from shviewer.viewer.composition import frame_for
+from shviewer.viewer.composing.composition import frame_for
 
 
 def run(options: argparse.Namespace) -> int:

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"{name:<20}{find_light(name).description}")
         return 0
     from shviewer.outputs import file_stem
-    from shviewer.viewer.composition import frame_for
+    from shviewer.viewer.composing.composition import frame_for
     from shviewer.viewer.desktop import window
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
     from shviewer.viewer.desktop.last_size import keep_size, last_size

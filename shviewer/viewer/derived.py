@@ -21,7 +21,8 @@ from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 from shviewer.limits import DIMMEST
 from shviewer.viewer import camera
-from shviewer.viewer.error_scale import NOISE, ErrorScale, automatic_range, error_values
+from shviewer.viewer.colour.error_scale import NOISE, ErrorScale, automatic_range, error_values
+from shviewer.viewer.colour.tone import exposed_for
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
     Surface,
@@ -32,7 +33,6 @@ from shviewer.viewer.surface import (
     surface,
     unit_radius,
 )
-from shviewer.viewer.tone import exposed_for
 from shviewer.viewer.view import TONES, View
 
 WHITE_PERCENTILE = 0.99

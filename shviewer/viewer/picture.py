@@ -24,11 +24,11 @@ from shviewer.lights.suns.sun import points_of_suns
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer import camera
 from shviewer.viewer.beside import Beside, recipe_beside
+from shviewer.viewer.colour.error_scale import ErrorScale
+from shviewer.viewer.colour.tone import steepest
 from shviewer.viewer.derived import Peak, camera_of, error_scale, exposure_stops, peak, reconstruction_map, surfaces
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
-from shviewer.viewer.error_scale import ErrorScale
 from shviewer.viewer.state import FRONT, State, changed
-from shviewer.viewer.tone import steepest
 
 LIVE = (
     *("camera", "light_rotation", "zoom", "pan", "whole_sphere", "map_centre", "marks", "cursor", "cursor_visible"),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.renderer import GL_VERSIONS, Renderer
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.marks import mark_layers

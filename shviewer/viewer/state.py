@@ -10,7 +10,7 @@ from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_DIRECT_BANDS
-from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
+from shviewer.viewer.composing.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.view import View
 from shviewer.words import counted
 

@@ -27,7 +27,7 @@ from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
 from shviewer.analysis.figures import reconstruct
 from shviewer.viewer.actions import rotate_light
-from shviewer.viewer.composition import compose, frame_for
+from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.marks import mark_layers
@@ -113,7 +113,7 @@ def event_costs() -> None:
 
 OF_A_COMMIT = """
 import json, sys, time
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import headless_renderer, offscreen
 from shviewer.viewer.state import state_of

@@ -21,7 +21,7 @@ from viewer.gl.silhouettes import coverage, outline
 
 from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.viewer.camera import world_from_view
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.gl.shader_source import load_shader
 from shviewer.viewer.gl.surface_mesh import surface_mesh
 from shviewer.viewer.gl.surface_renderer import OVERSAMPLING, TILE, SurfaceRenderer

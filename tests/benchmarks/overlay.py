@@ -22,7 +22,7 @@ from measure import machine
 
 KEYS = """
 import json, sys, time
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import state_of

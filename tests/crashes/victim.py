@@ -39,7 +39,7 @@ from shviewer.ending import end_by_signals
 from shviewer.errors import ShviewerError
 from shviewer.viewer import screenshot
 from shviewer.viewer.animation import animation
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop import errands, session
 from shviewer.viewer.saving.picture_files import write_png
 from shviewer.viewer.state import state_of

@@ -13,8 +13,8 @@ from shviewer.cli.main import main
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.viewer.actions import next_third
 from shviewer.viewer.beside import besides_of, recipe_beside
+from shviewer.viewer.composing.panes import Sphere
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.panes import Sphere
 from shviewer.viewer.screenshot import render_linear, render_rgb
 from shviewer.viewer.state import State, state_of
 

@@ -13,7 +13,7 @@ from scipy.special import eval_legendre
 
 import shviewer
 from shviewer.cli.main import main
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.surface_mesh import MAX_TRIANGLES, surface_mesh

@@ -15,7 +15,7 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.lights.find import find_light
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare

@@ -14,7 +14,7 @@ from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobes import LobeLight
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.drawn import MAP_COLUMNS, DirectSum, SplineMap, map_size
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import prepare

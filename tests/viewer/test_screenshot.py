@@ -32,7 +32,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.lights.find import find_light
 from shviewer.outputs import write_atomically
 from shviewer.version import __version__
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.gl import shader_source
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.saving.picture_files import write_numbered, write_png

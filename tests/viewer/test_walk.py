@@ -19,7 +19,7 @@ from shviewer.limits import MAX_BANDS
 from shviewer.viewer import actions, derived, drawn
 from shviewer.viewer import picture as picture_module
 from shviewer.viewer.actions import Command, orbit, rotate_light, step_sweep, toggle_band, with_bands, zoom
-from shviewer.viewer.composition import Composition, frame_for
+from shviewer.viewer.composing.composition import Composition, frame_for
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
 from shviewer.viewer.gl.renderer import Renderer

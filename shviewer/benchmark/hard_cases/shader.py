@@ -57,9 +57,9 @@ def error_of(view: View, renderer: Renderer) -> float:
 
     Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn.
     """
-    from shviewer.viewer.composition import compose
+    from shviewer.viewer.composing.composition import compose
+    from shviewer.viewer.composing.panes import Box, Sphere
     from shviewer.viewer.drawn import DirectSum
-    from shviewer.viewer.panes import Box, Sphere
     from shviewer.viewer.picture import prepare
     from shviewer.viewer.screenshot import render_linear
     from shviewer.viewer.state import state_of

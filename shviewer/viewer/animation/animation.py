@@ -21,7 +21,7 @@ from shviewer.outputs import ANYTHING, Replacing, check_place, write_atomically
 from shviewer.viewer.actions import step_sweep, with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import headless_renderer, render_rgb

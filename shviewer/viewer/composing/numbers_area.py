@@ -10,7 +10,7 @@ from enum import Enum
 from math import ceil
 from typing import NamedTuple
 
-from shviewer.viewer.panes import Box
+from shviewer.viewer.composing.panes import Box
 
 
 class Line(NamedTuple):

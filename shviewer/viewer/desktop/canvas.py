@@ -8,7 +8,7 @@ from time import perf_counter
 import moderngl
 
 from shviewer.errors import ShviewerError
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.evaluation import Evaluation
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.renderer import Renderer

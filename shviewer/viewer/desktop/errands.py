@@ -8,7 +8,7 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.coefficients.programs import OURS
 from shviewer.outputs import file_stem, write_atomically
 from shviewer.viewer import camera
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_numbered, write_png

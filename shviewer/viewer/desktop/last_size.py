@@ -10,7 +10,7 @@ from pathlib import Path
 
 from shviewer.errors import OutputError
 from shviewer.outputs import write_atomically
-from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
+from shviewer.viewer.composing.composition import MAX_SIDE, MIN_SIDE
 
 Size = tuple[int, int]
 

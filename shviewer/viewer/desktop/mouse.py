@@ -9,9 +9,9 @@ import math
 from collections.abc import Mapping
 
 from shviewer.viewer.actions import face, orbit, pan, rotate_light, toggle_band, zoom, zoom_about, zoom_map_about
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box, Sphere
 from shviewer.viewer.overlay.probe import direction_at
-from shviewer.viewer.panes import Box, Sphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State, changed
 

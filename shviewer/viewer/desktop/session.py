@@ -22,7 +22,7 @@ from shviewer.lights.light import Light
 from shviewer.lights.several import several
 from shviewer.viewer.actions import Command, open_light, step_sweep
 from shviewer.viewer.animation.metronome import Metronome
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.errands import save_coefficients, save_picture
 from shviewer.viewer.desktop.making import Making

@@ -17,7 +17,7 @@ import moderngl
 
 from shviewer.errors import ShviewerError
 from shviewer.viewer.actions import Command
-from shviewer.viewer.composition import Composition, compose, frame_for
+from shviewer.viewer.composing.composition import Composition, compose, frame_for
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.desktop.errands import coefficients_text
 from shviewer.viewer.desktop.glfw_window import key_name, open_window

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobe import Lobe
-from shviewer.viewer import colour_maps
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.colour import colour_maps
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Pane, Sphere
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
 from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.gl.shared import (
@@ -28,7 +29,6 @@ from shviewer.viewer.gl.shared import (
 from shviewer.viewer.gl.surface_renderer import SurfaceRenderer
 from shviewer.viewer.gl.textures import ArrayTexture
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.panes import Pane, Sphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.view import ERRORS
 

@@ -16,7 +16,7 @@ from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import MAX_LOBES
 from shviewer.lights.suns.rule import MOST as MAX_SUNS
 from shviewer.limits import MAX_DIRECT_BANDS
-from shviewer.viewer.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE
+from shviewer.viewer.colour.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE
 from shviewer.viewer.view import ERRORS, TONES
 
 CHOICES: dict[str, tuple[str, ...]] = {

@@ -11,9 +11,9 @@ from math import ceil, floor, log2
 import moderngl
 
 from shviewer.harmonics.basis import Array
+from shviewer.viewer.composing.panes import Sphere
 from shviewer.viewer.gl.programs import SAMPLERS, Program
 from shviewer.viewer.gl.surface_mesh import surface_mesh
-from shviewer.viewer.panes import Sphere
 from shviewer.viewer.surface import Surface
 
 OVERSAMPLING = 3

@@ -12,13 +12,13 @@ from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import RADIANCE, in_words
 from shviewer.viewer.beside import Beside, words_of
+from shviewer.viewer.composing.composition import Caption, Composition
 from shviewer.viewer.composing.numbers_area import Line
-from shviewer.viewer.composition import Caption, Composition
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
 from shviewer.viewer.overlay.drawing import Piece, Swatch, Text
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, REGULAR, SEMIBOLD, Ink, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import share, typeset
-from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_basis, describe_muted, describe_window
 from shviewer.words import counted, grouped, grouped_number, radiance, theta_phi_degrees

@@ -7,14 +7,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from shviewer.viewer import colour_maps
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.colour import colour_maps
+from shviewer.viewer.colour.error_scale import ErrorScale
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box, WholeSphere
 from shviewer.viewer.drawn import Surfaces
-from shviewer.viewer.error_scale import ErrorScale
 from shviewer.viewer.overlay.drawing import Curve, Fill, Piece, Strip, Text
 from shviewer.viewer.overlay.lettering import FAINT, GREY, Ink, width_of
 from shviewer.viewer.overlay.numerals import typeset
-from shviewer.viewer.panes import Box, WholeSphere
 from shviewer.viewer.picture import Picture
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)

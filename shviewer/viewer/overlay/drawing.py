@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import CASING, FINE, REGULAR, Ink, mask, width_of
-from shviewer.viewer.panes import Box
 
 Point = tuple[float, float]
 

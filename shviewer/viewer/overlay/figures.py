@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from shviewer.analysis.figures import PENDING, Pending
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words, roughness_of
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Cell
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.drawing import Piece, Swatch, Text
 from shviewer.viewer.overlay.lettering import GREY, INK, MEDIUM, REGULAR, width_of
 from shviewer.viewer.overlay.numerals import bound_text, share, typeset, value
-from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 
 UNIT = 0.61

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.keys import BINDINGS, Binding
 from shviewer.viewer.overlay.drawing import Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import (
@@ -17,7 +18,6 @@ from shviewer.viewer.overlay.lettering import (
     width_of,
 )
 from shviewer.viewer.overlay.numerals import typeset
-from shviewer.viewer.panes import Box
 from shviewer.viewer.state import State
 
 COLUMN, KEY_COLUMN, ROW, GAP = 240.0, 78.0, 20.0, 18.0

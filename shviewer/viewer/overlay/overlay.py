@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
 from shviewer.viewer.overlay.drawing import Piece, Text, image_of, layer_of, named_boxes
@@ -28,7 +29,6 @@ from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slo
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
 from shviewer.viewer.overlay.plots.steps import steps_legend, steps_of, steps_pieces
 from shviewer.viewer.overlay.plots.trace import trace_pieces
-from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 
 NOT_TIMED = "time against error: nothing was projected that could be timed; M changes the method"

@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from shviewer.harmonics.basis import Array
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, Ink, font
 from shviewer.viewer.overlay.numerals import MINUS

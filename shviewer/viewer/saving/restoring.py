@@ -23,7 +23,7 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import built_in_lights, is_code, split_light
 from shviewer.lights.reading import Reading
 from shviewer.limits import DEFAULT_LIMITS, MAX_BANDS, Limits
-from shviewer.viewer.composition import MAX_SIDE, MIN_SIDE
+from shviewer.viewer.composing.composition import MAX_SIDE, MIN_SIDE
 from shviewer.viewer.saving.file_marks import has_mark
 from shviewer.viewer.saving.stamp import LIMITS
 from shviewer.viewer.saving.stamp_reading import state_of_stamp

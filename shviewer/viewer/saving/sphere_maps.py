@@ -17,7 +17,7 @@ from shviewer.harmonics.quadrature import column_azimuths, directions_from_angle
 from shviewer.harmonics.rotation import rotate
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
-from shviewer.viewer.panes import Sphere, WholeSphere
+from shviewer.viewer.composing.panes import Sphere, WholeSphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_exr
 from shviewer.viewer.saving.stamp import metadata

@@ -22,9 +22,9 @@ from shviewer.lights.light import Light
 from shviewer.lights.suns.sun import Sun
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.version import __version__
-from shviewer.viewer.colour_maps import map_of
+from shviewer.viewer.colour.colour_maps import map_of
+from shviewer.viewer.composing.panes import Sphere, WholeSphere
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
-from shviewer.viewer.panes import Sphere, WholeSphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.file_marks import mark_of
 from shviewer.viewer.state import State

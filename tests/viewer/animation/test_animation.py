@@ -11,7 +11,7 @@ from shviewer.errors import OutputError, UsageError
 from shviewer.outputs import check_place
 from shviewer.viewer.actions import step_sweep
 from shviewer.viewer.animation.animation import HOLD, MAX_PIXELS, band_sweep, save_animation, turntable
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.state import changed, state_of
 

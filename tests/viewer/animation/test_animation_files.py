@@ -23,7 +23,7 @@ from shviewer.errors import GraphicsError, OutputError
 from shviewer.version import __version__
 from shviewer.viewer.animation import animation
 from shviewer.viewer.animation.animation import HOLD, Animation, band_sweep, save_animation, turntable
-from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.composing.composition import Composition, compose
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import render_rgb

@@ -17,7 +17,7 @@ from shviewer.lights.find import find_light
 from shviewer.viewer import camera
 from shviewer.viewer.animation.animation import Animation
 from shviewer.viewer.animation.turning import light_turn
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.drawing import Curve
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture

@@ -13,7 +13,7 @@ from shviewer.errors import LightError
 from shviewer.progress import tell
 from shviewer.viewer import picture as pictures
 from shviewer.viewer.actions import Command
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop import making
 from shviewer.viewer.desktop.canvas import _overlay_key
 from shviewer.viewer.desktop.session import Session

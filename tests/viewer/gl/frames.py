@@ -11,9 +11,9 @@ from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box, Sphere, whole_sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap
-from shviewer.viewer.panes import Box, Sphere, whole_sphere
 from shviewer.viewer.picture import Picture
 
 SIDE = 128

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from shviewer.harmonics.basis import Array
-from shviewer.viewer.panes import Sphere
+from shviewer.viewer.composing.panes import Sphere
 
 ANGLES, DEPTHS = 2048, 240
 

@@ -15,16 +15,16 @@ from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobe import Lobe
-from shviewer.viewer.colour_maps import linear, map_of, table
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.colour.colour_maps import linear, map_of, table
+from shviewer.viewer.colour.error_scale import error_values
+from shviewer.viewer.colour.tone import toned
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box, Sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap
-from shviewer.viewer.error_scale import error_values
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.panes import Box, Sphere
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import render_linear, render_rgb
 from shviewer.viewer.state import state_of
-from shviewer.viewer.tone import toned
 from shviewer.viewer.view import TONES
 
 ORIGINAL, RECONSTRUCTION, ERROR = range(3)

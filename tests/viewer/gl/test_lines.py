@@ -17,13 +17,13 @@ from shviewer.harmonics.zonal import Constant
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
-from shviewer.viewer.colour_maps import linear as from_srgb
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.colour.colour_maps import linear as from_srgb
+from shviewer.viewer.colour.tone import toned
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Sphere
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.panes import Sphere
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.screenshot import render_linear, render_rgb
-from shviewer.viewer.tone import toned
 from shviewer.viewer.view import TONES
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])

@@ -35,7 +35,8 @@ from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import MAX_LOBES, LobeLight
 from shviewer.lights.suns.rule import MOST as MAX_SUNS
 from shviewer.viewer.camera import towards
-from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.composing.composition import Composition, compose
+from shviewer.viewer.composing.panes import Box, Sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.shared import (
@@ -49,7 +50,6 @@ from shviewer.viewer.gl.shared import (
     pack_coefficients,
     pack_lobes,
 )
-from shviewer.viewer.panes import Box, Sphere
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.screenshot import render_linear, render_rgb
 from shviewer.viewer.state import changed, state_of

@@ -16,12 +16,12 @@ from viewer.gl.silhouettes import coverage, outline
 from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.viewer.camera import matrix, towards, world_from_view
+from shviewer.viewer.composing.panes import Box, Sphere
 from shviewer.viewer.gl import surface_renderer
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.shared import BACKGROUND
 from shviewer.viewer.gl.surface_mesh import surface_mesh
 from shviewer.viewer.gl.surface_renderer import MOST_SURFACES, OVERSAMPLING, TILE, SurfaceRenderer
-from shviewer.viewer.panes import Box, Sphere
 from shviewer.viewer.surface import (
     Surface,
     basis_surface,

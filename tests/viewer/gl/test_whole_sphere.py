@@ -14,7 +14,7 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobe import Lobe
 from shviewer.viewer.camera import towards
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.screenshot import render_linear, render_rgb

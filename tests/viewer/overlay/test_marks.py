@@ -9,11 +9,11 @@ from helpers import frame_of, picture_of
 from shviewer.harmonics.basis import Array
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Sphere
 from shviewer.viewer.overlay.marks import mark_layers, marks_of, place_marks
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.probe import probe
-from shviewer.viewer.panes import Sphere
 from shviewer.viewer.picture import Picture
 
 TOWARDS_MINIMUM = (230.0, -30.0)

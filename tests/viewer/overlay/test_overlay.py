@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer import message
-from shviewer.viewer.composition import Composition, compose, frame_for
+from shviewer.viewer.composing.composition import Composition, compose, frame_for
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.drawing import Disc, Fill, Swatch
 from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces
 from shviewer.viewer.overlay.lettering import ACCENT, ERROR, FAINT, GREY, GROUND, INK, WARNING, Ink
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
-from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 from shviewer.words import percent, radiance
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from helpers import frame_of, picture_of
 
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.marks import place_marks
 from shviewer.viewer.overlay.probe import probe, probe_layers
 

@@ -10,7 +10,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.figures import looked_at
 from shviewer.viewer.overlay.lettering import (
@@ -30,7 +31,6 @@ from shviewer.viewer.overlay.lettering import (
 )
 from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.plots.band_series import BandSeries
-from shviewer.viewer.panes import Box
 from shviewer.viewer.state import State
 from shviewer.words import brief_percent, round_percent
 

@@ -7,8 +7,8 @@ from functools import lru_cache
 
 from PIL import Image, ImageDraw
 
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.lettering import INK, Ink
-from shviewer.viewer.panes import Box
 
 LOOKS: dict[str, tuple[str, Ink]] = {
     "best": ("diamond", INK),

@@ -15,12 +15,12 @@ from PIL import Image
 
 from shviewer.analysis.projections import BEST, Measurement, measurements, way_of
 from shviewer.harmonics.metrics import pareto_front
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, INK, RULE
 from shviewer.viewer.overlay.plots.log_axis import Axis, padded_axis
 from shviewer.viewer.overlay.plots.markers import LOOKS, Place
 from shviewer.viewer.overlay.plots.sheet import Entry, Sheet, Size, place
-from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 from shviewer.words import counted, grouped_number, percent, round_percent, short_count
 

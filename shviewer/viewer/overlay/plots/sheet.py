@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box, Pane
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, RULE, Ink, font
 from shviewer.viewer.overlay.plots.log_axis import Axis
 from shviewer.viewer.overlay.plots.markers import Place, curve_mask, marker_mask
-from shviewer.viewer.panes import Box, Pane
 from shviewer.words import round_percent
 
 GROUND: Ink = (14, 14, 16, 236)

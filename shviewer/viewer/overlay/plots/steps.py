@@ -12,7 +12,8 @@ from shviewer.analysis.figures import Pending
 from shviewer.analysis.roughness import ROUGHNESS, Staircase, staircase
 from shviewer.harmonics.quantities.names import IRRADIANCE, roughness_of
 from shviewer.limits import MAX_BANDS
-from shviewer.viewer.composition import Composition
+from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import (
     ACCENT,
@@ -31,7 +32,6 @@ from shviewer.viewer.overlay.lettering import (
 )
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.plots.curve import LABELS, RING
-from shviewer.viewer.panes import Box
 from shviewer.viewer.picture import Picture
 
 COUNTS = (1, 2, 3, 5, 9, 16, 32, 64, MAX_BANDS)

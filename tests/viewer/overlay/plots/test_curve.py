@@ -11,7 +11,7 @@ from helpers import picture_of
 from shviewer.analysis.figures import errors_of, load_light
 from shviewer.analysis.projections import BEST
 from shviewer.analysis.recipe import Recipe
-from shviewer.viewer.composition import Composition, compose
+from shviewer.viewer.composing.composition import Composition, compose
 from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.lettering import ACCENT, BAR, GREY, GROUND, INK, UNUSED
 from shviewer.viewer.overlay.plots.band_series import BandSeries, band_series, band_slots

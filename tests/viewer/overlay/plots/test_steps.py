@@ -9,7 +9,7 @@ import pytest
 
 from shviewer.analysis.figures import PENDING
 from shviewer.analysis.roughness import ROUGHNESS, staircase
-from shviewer.viewer.composition import compose
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.drawing import Curve, Fill
 from shviewer.viewer.overlay.overlay import draw_overlay

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from shviewer.viewer.colour_maps import DIVERGING, SEQUENTIAL, linear, map_of, table
+from shviewer.viewer.colour.colour_maps import DIVERGING, SEQUENTIAL, linear, map_of, table
 from shviewer.viewer.view import ERRORS
 
 matplotlib = pytest.importorskip("matplotlib")

@@ -8,7 +8,7 @@ from harmonics.independent import random_directions
 
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.viewer.camera import world_from_view
-from shviewer.viewer.panes import Box, Pane, Sphere, WholeSphere, whole_sphere
+from shviewer.viewer.composing.panes import Box, Pane, Sphere, WholeSphere, whole_sphere
 
 SEEN_FROM = world_from_view(25.0, -40.0)
 SPHERE = Sphere(120.3, 90.8, 80.0, Box(0, 0, 240, 180))

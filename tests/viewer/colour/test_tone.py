@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from harmonics.independent import random_directions
 
+from shviewer.viewer.colour.tone import exposed_for, steepest, toned
 from shviewer.viewer.derived import WHITE_LEVEL
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import state_of
-from shviewer.viewer.tone import exposed_for, steepest, toned
 from shviewer.viewer.view import TONES
 
 

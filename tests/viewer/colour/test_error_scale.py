@@ -7,8 +7,8 @@ import pytest
 from harmonics.independent import random_directions
 from helpers import picture_of
 
-from shviewer.viewer.composition import compose
-from shviewer.viewer.error_scale import automatic_range, error_values
+from shviewer.viewer.colour.error_scale import automatic_range, error_values
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.colour_bar import colour_bar_pieces, round_ticks, tick_text
 from shviewer.viewer.overlay.drawing import layer_of, named_boxes
 

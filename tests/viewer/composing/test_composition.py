@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from shviewer.viewer.composition import Composition, compose
-from shviewer.viewer.panes import Box, Sphere
+from shviewer.viewer.composing.composition import Composition, compose
+from shviewer.viewer.composing.panes import Box, Sphere
 
 SIZES = [
     *[(400, 300), (500, 300), (640, 320), (640, 480), (700, 400), (700, 600), (800, 480), (899, 479), (900, 300)],

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from shviewer.viewer import panes
+from shviewer.viewer.composing import panes
 from shviewer.viewer.composing.design import Design, margin_of
 from shviewer.viewer.composing.numbers_area import HEIGHTS, SIDE, Line, Mode, Numbers, numbers_area
-from shviewer.viewer.panes import Box, Pane, Sphere, WholeSphere
+from shviewer.viewer.composing.panes import Box, Pane, Sphere, WholeSphere
 
 if TYPE_CHECKING:
     from shviewer.viewer.view import View

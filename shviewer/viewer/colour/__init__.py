@@ -1,0 +1,1 @@
+"""From radiance and errors to the colours of a picture."""
