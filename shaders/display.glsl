@@ -5,7 +5,7 @@ const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);    // Rec. 709
 
 uniform float exposure;         // 2^stops
 
-// The tone curves of shviewer/viewer/colour/tone.py, of exposed radiance >= 0. What is far beyond white stays finite when squared.
+// The tone curves of viewer/colour/tone.py, of exposed radiance >= 0. What is far beyond white stays finite when squared.
 vec3 toned(vec3 x) {
     x = min(x, BRIGHTEST_EXPOSED);
 #if TONE == TONE_REINHARD

@@ -1,4 +1,4 @@
-// From a difference to a colour: the error of shviewer/viewer/colour/error_scale.py, of the channel where it is largest.
+// From a difference to a colour: the error of viewer/colour/error_scale.py, of the channel where it is largest.
 
 uniform sampler2D colour_map;   // one row, linear RGB
 uniform int error_kind;         // one of ERROR_...

@@ -14,6 +14,7 @@ from shviewer.harmonics.quantities.names import in_words
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import actions as do
 from shviewer.viewer.actions import Command
+from shviewer.viewer.placing import face_light
 from shviewer.viewer.state import (
     State,
     changed,
@@ -23,7 +24,6 @@ from shviewer.viewer.state import (
     describe_muted,
     describe_sanitizing,
 )
-from shviewer.viewer.view import View
 
 ROUGHER = 0.05
 """A step of roughness."""
@@ -182,11 +182,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("double click", "face that point", {}),
         Binding("scroll", "zoom, about the mouse", {}, lambda s: f"{s.view.zoom:.2f} x"),
         Binding("middle drag", "move the spheres", {}),
-        Binding(
-            "F",
-            "face the light",
-            {"F": partial(changed, camera=None, zoom=1.0, pan=View.pan, map_centre=View.map_centre)},
-        ),
+        Binding("F", "face the light", {"F": face_light}),
         Binding("R", "all but the light as at the start", {"R": do.reset}),
     ),
     "Program": (

@@ -26,7 +26,6 @@ from commits import ROOT, lay_out
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
 from shviewer.analysis.figures import reconstruct
-from shviewer.viewer.actions import rotate_light
 from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
@@ -34,6 +33,7 @@ from shviewer.viewer.overlay.marks import mark_layers
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.placing import rotate_light
 from shviewer.viewer.screenshot import headless_renderer, offscreen, render_linear
 from shviewer.viewer.state import State, state_of
 

@@ -8,10 +8,10 @@ from harmonics.independent import sphere_rule
 from helpers import picture_of
 
 from shviewer.lights.function import FunctionLight
-from shviewer.viewer.actions import rotate_light
 from shviewer.viewer.camera import light_from_world, towards
 from shviewer.viewer.derived import camera_of
 from shviewer.viewer.picture import prepare
+from shviewer.viewer.placing import rotate_light
 from shviewer.viewer.state import changed
 from shviewer.viewer.view import View
 

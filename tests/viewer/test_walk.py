@@ -18,7 +18,7 @@ from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer import actions, derived, drawn
 from shviewer.viewer import picture as picture_module
-from shviewer.viewer.actions import Command, orbit, rotate_light, step_sweep, toggle_band, with_bands, zoom
+from shviewer.viewer.actions import Command, step_sweep, toggle_band, with_bands
 from shviewer.viewer.composing.composition import Composition, frame_for
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
@@ -26,6 +26,7 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import ACTIONS
 from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.placing import orbit, rotate_light, zoom
 from shviewer.viewer.saving.picture_files import write_exr
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.saving.stamp_reading import state_of_stamp

@@ -9,12 +9,12 @@ import pytest
 from helpers import frame_of, picture_of
 
 from shviewer.errors import UsageError
-from shviewer.viewer.actions import face, orbit, rotate_light, zoom
 from shviewer.viewer.animation.animation import turntable
 from shviewer.viewer.composing.panes import WholeSphere
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.probe import direction_at, probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.placing import face, orbit, rotate_light, zoom
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.state import State, changed, state_of

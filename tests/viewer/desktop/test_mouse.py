@@ -7,12 +7,12 @@ import pytest
 from helpers import frame_of, picture_of
 
 from shviewer.errors import UsageError
-from shviewer.viewer.actions import pan, zoom, zoom_about
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.desktop.mouse import LEFT, MIDDLE, RIGHT, Mouse
 from shviewer.viewer.keys import press
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.placing import pan, zoom, zoom_about
 from shviewer.viewer.state import State, changed, state_of
 
 

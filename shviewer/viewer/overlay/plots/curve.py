@@ -98,13 +98,11 @@ def axes_of(series: BandSeries, at: Composition) -> Axes:
     return Axes(box.left + labels, box.right, box.top, box.bottom, series.slots, high, low)
 
 
-def curve_pieces(series: BandSeries, state: State, at: Composition) -> list[Piece]:
-    """Grid, bars, lines, rings, and the dot of what is shown."""
-    return [piece for block in curve_blocks(series, state, at) for piece in block]
-
-
 def curve_blocks(series: BandSeries, state: State, at: Composition) -> list[list[Piece]]:
-    """The same in three blocks, the first at the bottom: of a band key the one between, lines and rings, stays as it is."""
+    """Grid, bars, lines, rings, and the dot of what is shown.
+
+    In three blocks, the first at the bottom: of a band key the one between, lines and rings, stays as it is.
+    """
     axes = axes_of(series, at)
     under = _grid(axes, series, at)
     for band, worth in enumerate(series.worth):

@@ -15,7 +15,7 @@ from shviewer.viewer.composing.composition import Composition, compose
 from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.lettering import ACCENT, BAR, GREY, GROUND, INK, UNUSED
 from shviewer.viewer.overlay.plots.band_series import BandSeries, band_series, band_slots
-from shviewer.viewer.overlay.plots.curve import Axes, axes_of, band_words, curve_pieces, least_slots
+from shviewer.viewer.overlay.plots.curve import Axes, axes_of, band_words, curve_blocks, least_slots
 from shviewer.viewer.picture import Picture, prepare
 
 AT = compose(1280, 640)
@@ -23,7 +23,7 @@ AT = compose(1280, 640)
 
 def drawn(shown: Picture, at: Composition = AT) -> tuple[BandSeries, Axes, list[Piece]]:
     series = band_series(shown, least_slots(at))
-    return series, axes_of(series, at), curve_pieces(series, shown.state, at)
+    return series, axes_of(series, at), [piece for block in curve_blocks(series, shown.state, at) for piece in block]
 
 
 def bars(pieces: list[Piece], axes: Axes, band: int) -> list[Fill]:
