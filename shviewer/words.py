@@ -63,11 +63,6 @@ def percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
     return f"{value:.{decimals}f} %"
 
 
-def whole_percent(share: float) -> str:
-    """A share of 1 in whole percent, as written over a bar; "<1" for one below half a percent that is not zero."""
-    return f"{100 * share:.0f}" if share >= 0.005 or share == 0 else "<1"
-
-
 def radiance(value: float, peak: float) -> str:
     """A radiance in three digits, with a power of ten where that is shorter; "0" below a millionth of the light's peak."""
     if abs(value) <= 1e-6 * peak:

@@ -146,11 +146,6 @@ def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: 
     return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 
 
-def reconstruct(light: Light, projection: Projection, what: Shown) -> tuple[Array, Figures]:
-    """The coefficients shown of a projection, (n_bands**2, 3), and all their figures."""
-    return sums(light, projection, what)[0], figures_of(light, projection, what)
-
-
 @remember(most=64)
 def sums(light: Light, projection: Projection, what: Shown) -> tuple[Array, Sums]:
     """The coefficients shown of a projection, (n_bands**2, 3), and the figures that need no search."""

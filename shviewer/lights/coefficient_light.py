@@ -11,10 +11,8 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.parts.quantities import RADIANCE, recovered_radiance, whole
+from shviewer.coefficients.parts.quantities import RADIANCE, recovered_radiance
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
@@ -59,13 +57,6 @@ class CoefficientLight(FiniteSum, RadianceLight):
     def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
         """The light of a file that has been read, which holds the coefficients of the light or of its irradiance."""
         return cls(_radiance(file.coefficients, file.quantity), name, file)
-
-    @classmethod
-    def of_numbers(
-        cls, numbers: NDArray[np.generic], convention: Convention, name: str = "coefficients"
-    ) -> CoefficientLight:
-        """The light of a program's own numbers (n**2, 3). ValueError for more bands than the program has."""
-        return cls(_radiance(convention.to_ours(numbers), whole(convention.quantity or RADIANCE)), name)
 
     @property
     def n_bands(self) -> int:

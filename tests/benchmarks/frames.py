@@ -25,7 +25,7 @@ import numpy as np
 from commits import ROOT, lay_out
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
-from shviewer.analysis.figures import reconstruct
+from shviewer.analysis.figures import figures_of, irradiance_error, sums
 from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
@@ -85,7 +85,8 @@ def event_costs() -> None:
         state = state_of(n_bands=n_bands)
 
         def press(state: State = state) -> Picture:
-            reconstruct.cache_clear()
+            for figures in (sums, irradiance_error, figures_of):
+                figures.cache_clear()
             return prepare(state)
 
         picture = press()

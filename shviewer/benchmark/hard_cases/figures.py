@@ -9,7 +9,7 @@ from math import log10, pi, sqrt
 
 import numpy as np
 
-from shviewer.analysis.figures import Figures, reconstruct
+from shviewer.analysis.figures import Figures, figures_of
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Shown
 from shviewer.benchmark.hard_cases.evaluation import generic
@@ -39,7 +39,7 @@ def two_bands(a: float, b: float, axis: tuple[float, float, float]) -> Coefficie
 
 def shown_as(light: Light, n_bands: int, muted: tuple[int, ...] = ()) -> Figures:
     """The figures of a light shown with its first bands, some of them muted."""
-    return reconstruct(light, project(light, *BEST, 32), Shown(n_bands, muted))[1]
+    return figures_of(light, project(light, *BEST, 32), Shown(n_bands, muted))
 
 
 def error_figures() -> float:
