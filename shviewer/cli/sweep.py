@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from shviewer.cli.notes import print_notes
-from shviewer.cli.options.inputs import replacing_of
+from shviewer.cli.options.inputs import check_ending, replacing_of
 from shviewer.cli.options.modes import DEFAULT_SWEEP
 from shviewer.cli.options.states import state_from
 from shviewer.cli.status_line import status_line
@@ -25,8 +25,7 @@ from shviewer.viewer.composing.composition import frame_for
 
 def run(options: argparse.Namespace) -> int:
     _check_sweep(options)
-    if options.out.suffix.lower() not in ENCODERS:
-        raise UsageError(f"{options.out}: OUT must end in {' or '.join(ENCODERS)}")
+    check_ending(options, "sweep", ENCODERS)
     state = state_from(options, all_lights=False)
     if options.turntable:
         frames = TURN_FRAMES if options.frames is None else options.frames

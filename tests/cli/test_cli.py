@@ -182,7 +182,8 @@ def test_a_bad_argument_is_one_line_with_its_value_and_the_rule(
     ("arguments", "words"),
     [
         (["screenshot", "a.jpg"], ["a.jpg", ".png or .exr"]),
-        (["screenshot", "a"], ["a: OUT must end in"]),
+        (["screenshot", "a"], ["a: OUT must end in .png or .exr"]),
+        (["screenshot", "green", "a.png"], ["OUT comes first: shviewer screenshot a.png green"]),
         (["screenshot", "a.exr", "--reference", "b.png"], ["a.exr", "PNG"]),
         (["screenshot", "a.png", "--threshold", "2"], ["'2'", "0 to 1"]),
         (["screenshot"], ["OUT"]),
@@ -201,6 +202,7 @@ def test_a_bad_screenshot_argument_exits_2(
     [
         (["a.mp4"], 2, ["a.mp4", ".gif or .webp"]),
         (["a"], 2, ["a: OUT must end in .gif or .webp"]),
+        (["sky.hdr", "a.webp"], 2, ["OUT comes first: shviewer sweep a.webp sky.hdr"]),
         ([], 2, ["OUT"]),
         (["a.gif", "--from", "5", "--to", "4"], 2, ["--from 5 --to 4", "at most --to"]),
         (["a.gif", "--basis", "2", "0"], 2, ["--basis", "--turntable, or --lobes"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,15 @@ def lights_of(options: argparse.Namespace) -> list[str]:
     """What is given as LIGHT, or what stands for it."""
     given = vars(options)
     return given.get("lights") or [given.get("light", "green")]
+
+
+def check_ending(options: argparse.Namespace, mode: str, endings: Collection[str]) -> None:
+    """UsageError if OUT is no file of a kind that the command writes. It says so when OUT and LIGHT changed places."""
+    if options.out.suffix.lower() in endings:
+        return
+    swapped = Path(options.light).suffix.lower() in endings
+    advice = f"; OUT comes first: shviewer {mode} {options.light} {options.out}" if swapped else ""
+    raise UsageError(f"{options.out}: OUT must end in {' or '.join(endings)}{advice}")
 
 
 def pictured_by(options: argparse.Namespace) -> Restored | None:
