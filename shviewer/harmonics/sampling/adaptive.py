@@ -9,12 +9,11 @@ cells have no sign in common, unless edges run along the rows: how much they agr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import Radiance, directions_from_angles
 from shviewer.harmonics.sampling.cells import (
     NODES,
@@ -25,10 +24,10 @@ from shviewer.harmonics.sampling.cells import (
     locate,
     project,
     sectors,
-    shares,
     to_nodes,
 )
-from shviewer.harmonics.sampling.look import N_STRIPS, STRIP_ROWS, strides
+from shviewer.harmonics.sampling.look import N_STRIPS
+from shviewer.harmonics.sampling.points import Samples, missed_by_roots
 
 SHARE = 0.04
 """The error of a cell that a straight step crosses, over its area and the highest terms of its polynomial: 0.038."""
@@ -119,7 +118,7 @@ class _Work:
         self.evaluations, self.peak, self.widest_left = 0, 0.0, 0.0
         self.brightest, self.places = np.full(n_roots, -1.0), np.zeros((n_roots, 3))
         self.missed_by_roots = np.zeros(n_roots)
-        self.samples = _Samples(*locate(seen[0]), seen[1])
+        self.samples = Samples(*locate(seen[0]), seen[1])
         self.before = np.zeros((0, 6))
         """The integrals of f and f^2 over the cells that were divided last."""
         self.errors = np.zeros((0, 6))
@@ -216,74 +215,3 @@ class _Work:
         which, some = np.arange(len(first)), cells[first]
         self.brightest[some.root] = top[first]
         self.places[some.root] = directions_from_angles(some.theta(at)[which, row], some.phi(at)[which, column])
-
-
-def missed_by_roots(values: Array, texels: NDArray[np.float32]) -> Array:
-    """How far the polynomials through the values (roots, POINTS, POINTS, 3) miss the look, at most: (roots, 3)."""
-    missed, first = np.empty((len(values), 3)), 0
-    down = shares(np.arange(STRIP_ROWS + 1) / STRIP_ROWS, POINTS)
-    for strip, (stride, count) in enumerate(zip(strides(), sectors(), strict=True)):
-        across = shares(_places_across(int(stride)), POINTS)
-        here = values[first : first + count]
-        there = across @ (down @ here.reshape(count, POINTS, -1)).reshape(count, STRIP_ROWS + 1, POINTS, 3)
-        missed[first : first + count] = np.abs(there - _seen(texels, strip, int(stride))).max(axis=(1, 2))
-        first += count
-    return missed
-
-
-def _places_across(stride: int) -> Array:
-    """Where in a root the columns of the look are, (STRIP_ROWS,), in [0, 1]."""
-    return (np.arange(STRIP_ROWS) + 0.5 / stride) / STRIP_ROWS
-
-
-def _seen(texels: NDArray[np.float32], strip: int, stride: int) -> Array:
-    """The points of the look in the roots of a strip, both ends included: (roots, STRIP_ROWS + 1, STRIP_ROWS, 3)."""
-    rows = texels[STRIP_ROWS * strip : STRIP_ROWS * (strip + 1) + 1, ::stride]
-    return rows.reshape(STRIP_ROWS + 1, -1, STRIP_ROWS, 3).transpose(1, 0, 2, 3).astype(np.float64)
-
-
-class _Samples(NamedTuple):
-    """Points of the look: the number of the cell, place along u and theta in it, 0 to 1, (k,) each; values (k, 3)."""
-
-    cell: Indices
-    across: Array
-    down: Array
-    values: Array
-
-    def with_look(self, roots: Cells, split: NDArray[np.bool_], texels: NDArray[np.float32]) -> _Samples:
-        """These and the points of the look in roots that are divided, split (n,)."""
-        found, per_strip = [self], strides()
-        for strip in np.unique(roots.strip[split]):
-            stride = int(per_strip[strip])
-            here = np.flatnonzero((roots.strip == strip) & split)
-            values = _seen(texels, int(strip), stride)[roots.sector[here]]
-            number, down, across = np.broadcast_arrays(
-                here[:, None, None],
-                np.arange(STRIP_ROWS + 1)[:, None] / STRIP_ROWS,
-                _places_across(stride),
-            )
-            found.append(_Samples(number.ravel(), across.ravel(), down.ravel(), values.reshape(-1, 3)))
-        return _Samples(*map(np.concatenate, zip(*found, strict=True)))
-
-    def divided(self, split: NDArray[np.bool_]) -> _Samples:
-        """Those in the quarters of the cells that are divided, split (n,)."""
-        kept = split[self.cell]
-        number = (np.cumsum(split) - 1)[self.cell[kept]]
-        right, lower = self.across[kept] >= 0.5, self.down[kept] >= 0.5
-        return _Samples(
-            4 * number + 2 * lower + right,
-            2 * self.across[kept] - right,
-            2 * self.down[kept] - lower,
-            self.values[kept],
-        )
-
-    def missed(self, values: Array) -> Array:
-        """How far the polynomials through the values (n, POINTS, POINTS, 3) of cells miss the samples, at most: (n, 3)."""
-        found = np.zeros((len(values), 3))
-        for start in range(0, len(self.cell), 4096):
-            part = slice(start, start + 4096)
-            cell = self.cell[part]
-            rows = np.einsum("ki,kijc->kjc", shares(self.down[part], POINTS), values[cell])
-            there = np.einsum("kj,kjc->kc", shares(self.across[part], POINTS), rows)
-            np.maximum.at(found, cell, np.abs(there - self.values[part]))
-        return found

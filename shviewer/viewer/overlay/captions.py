@@ -16,9 +16,9 @@ from shviewer.viewer.composing.composition import Caption, Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
-from shviewer.viewer.overlay.drawing import Piece, Swatch, Text
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, REGULAR, SEMIBOLD, Ink, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_basis, describe_muted, describe_window
 from shviewer.words import counted, grouped, grouped_number, radiance, theta_phi_degrees

@@ -12,9 +12,9 @@ from shviewer.viewer.colour.error_scale import ErrorScale
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, WholeSphere
 from shviewer.viewer.drawn import Surfaces
-from shviewer.viewer.overlay.drawing import Curve, Fill, Piece, Strip, Text
 from shviewer.viewer.overlay.lettering import FAINT, GREY, Ink, width_of
 from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Strip, Text
 from shviewer.viewer.picture import Picture
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)

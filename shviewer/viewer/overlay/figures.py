@@ -7,9 +7,9 @@ from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words, 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Cell
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.drawing import Piece, Swatch, Text
 from shviewer.viewer.overlay.lettering import GREY, INK, MEDIUM, REGULAR, width_of
 from shviewer.viewer.overlay.numerals import bound_text, share, typeset, value
+from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
 from shviewer.viewer.picture import Picture
 
 UNIT = 0.61

@@ -10,7 +10,6 @@ from shviewer.viewer import message
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.drawing import Curve, Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import (
     ACCENT,
     ERROR,
@@ -25,6 +24,7 @@ from shviewer.viewer.overlay.lettering import (
     width_of,
 )
 from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Text
 from shviewer.viewer.picture import Picture
 
 KEYS = (("↑ ↓", "bands"), ("0–9", "mute"), ("D", "error"), ("G", "whole sphere"), ("U", "sun apart"), ("H", "help"))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.keys import BINDINGS, Binding
-from shviewer.viewer.overlay.drawing import Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import (
     FAINT,
     GREY,
@@ -18,6 +17,7 @@ from shviewer.viewer.overlay.lettering import (
     width_of,
 )
 from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.state import State
 
 COLUMN, KEY_COLUMN, ROW, GAP = 240.0, 78.0, 20.0, 18.0

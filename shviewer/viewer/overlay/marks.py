@@ -18,10 +18,11 @@ from shviewer.analysis.figures import Pending
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Pane, Sphere
-from shviewer.viewer.overlay.drawing import Curve, Piece, Text, layer_of
+from shviewer.viewer.overlay.drawing import layer_of
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import GREY, INK, MEDIUM
 from shviewer.viewer.overlay.numerals import share, value
+from shviewer.viewer.overlay.pieces import Curve, Piece, Text
 from shviewer.viewer.picture import Picture
 
 RING, COMPACT_RING, THICKNESS, CASING_WIDTH = 6.5, 5.2, 1.5, 1.4

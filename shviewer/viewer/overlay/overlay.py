@@ -18,12 +18,13 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
-from shviewer.viewer.overlay.drawing import Piece, Text, image_of, layer_of, named_boxes
+from shviewer.viewer.overlay.drawing import image_of, layer_of
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
 from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, proposed_key, said_of
 from shviewer.viewer.overlay.help_sheet import help_pieces
 from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
+from shviewer.viewer.overlay.pieces import Piece, Text, named_boxes
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots, legend_pieces
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured

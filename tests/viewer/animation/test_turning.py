@@ -18,8 +18,8 @@ from shviewer.viewer import camera
 from shviewer.viewer.animation.animation import Animation
 from shviewer.viewer.animation.turning import light_turn
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.overlay.drawing import Curve
 from shviewer.viewer.overlay.overlay import draw_overlay
+from shviewer.viewer.overlay.pieces import Curve
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import state_of
 

@@ -10,7 +10,8 @@ from helpers import picture_of
 from shviewer.viewer.colour.error_scale import automatic_range, error_values
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.colour_bar import colour_bar_pieces, round_ticks, tick_text
-from shviewer.viewer.overlay.drawing import layer_of, named_boxes
+from shviewer.viewer.overlay.drawing import layer_of
+from shviewer.viewer.overlay.pieces import named_boxes
 
 ORIGINAL = np.array([[1.0, 2.0, 0.5], [0.0, 0.0, 4.0]])
 RECONSTRUCTION = np.array([[1.1, 1.5, 0.5], [0.3, -0.1, 4.2]])

@@ -8,7 +8,7 @@ from fontTools.ttLib import TTFont  # of matplotlib, which the tests need anyway
 from places import ROOT
 
 from shviewer.viewer.overlay import glyphs, lettering
-from shviewer.viewer.overlay.drawing import Text, layer_of
+from shviewer.viewer.overlay.drawing import layer_of
 from shviewer.viewer.overlay.glyphs import Face, coverage, has, system_face
 from shviewer.viewer.overlay.lettering import (
     FINE,
@@ -22,6 +22,7 @@ from shviewer.viewer.overlay.lettering import (
     width_of,
 )
 from shviewer.viewer.overlay.numerals import bound_text, share, typeset
+from shviewer.viewer.overlay.pieces import Text
 
 FONTS = ROOT / "assets" / "fonts"
 WEIGHTS = (REGULAR, MEDIUM, SEMIBOLD)

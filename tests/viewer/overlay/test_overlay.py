@@ -15,10 +15,10 @@ from shviewer.lights.function import FunctionLight
 from shviewer.viewer import message
 from shviewer.viewer.composing.composition import Composition, compose, frame_for
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.drawing import Disc, Fill, Swatch
 from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces
 from shviewer.viewer.overlay.lettering import ACCENT, ERROR, FAINT, GREY, GROUND, INK, WARNING, Ink
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
+from shviewer.viewer.overlay.pieces import Disc, Fill, Swatch
 from shviewer.viewer.picture import Picture
 from shviewer.words import percent, radiance
 

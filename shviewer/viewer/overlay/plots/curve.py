@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.figures import looked_at
 from shviewer.viewer.overlay.lettering import (
     ACCENT,
@@ -30,6 +29,7 @@ from shviewer.viewer.overlay.lettering import (
     width_of,
 )
 from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.plots.band_series import BandSeries
 from shviewer.viewer.state import State
 from shviewer.words import brief_percent, round_percent

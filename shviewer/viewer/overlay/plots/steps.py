@@ -14,7 +14,6 @@ from shviewer.harmonics.quantities.names import IRRADIANCE, roughness_of
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import (
     ACCENT,
     BAR,
@@ -31,6 +30,7 @@ from shviewer.viewer.overlay.lettering import (
     width_of,
 )
 from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.plots.curve import LABELS, RING
 from shviewer.viewer.picture import Picture
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.drawing import Curve, Fill, Piece, Text
 from shviewer.viewer.overlay.lettering import ACCENT, GROUND, INK, RULE, shortened_to
 from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Text
 from shviewer.words import counted
 
 WIDTH, HEIGHT = 160.0, 14.0

@@ -12,8 +12,8 @@ from shviewer.analysis.figures import errors_of, load_light
 from shviewer.analysis.projections import BEST
 from shviewer.analysis.recipe import Recipe
 from shviewer.viewer.composing.composition import Composition, compose
-from shviewer.viewer.overlay.drawing import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.lettering import ACCENT, BAR, GREY, GROUND, INK, UNUSED
+from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.plots.band_series import BandSeries, band_series, band_slots
 from shviewer.viewer.overlay.plots.curve import Axes, axes_of, band_words, curve_blocks, least_slots
 from shviewer.viewer.picture import Picture, prepare

@@ -11,8 +11,8 @@ from shviewer.analysis.figures import PENDING
 from shviewer.analysis.roughness import ROUGHNESS, staircase
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.keys import press
-from shviewer.viewer.overlay.drawing import Curve, Fill
 from shviewer.viewer.overlay.overlay import draw_overlay
+from shviewer.viewer.overlay.pieces import Curve, Fill
 from shviewer.viewer.overlay.plots.steps import steps_pieces
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import State, state_of
