@@ -20,7 +20,6 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import band_power, smallest_band_count
-from shviewer.harmonics.quantities.glossy import Glossy
 from shviewer.harmonics.quantities.kernels import kernel_of
 from shviewer.harmonics.quantities.names import RADIANCE, glossy
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -103,8 +102,7 @@ def _errors(power: Array, added: Array, beyond: float, points: float, roughness:
     """One row. beyond: the power of the bands that are not in `power`. points: the power in band 0 of all lobes, times 4 pi."""
     kernel = kernel_of(glossy(roughness))
     squares = kernel.factors(len(power)) ** 2
-    rest = Glossy(roughness).energy - float((2 * np.arange(len(power)) + 1) @ squares) / (4 * np.pi)  # that of a point
-    tail = min(kernel.beyond(len(power)) ** 2 * beyond, max(rest, 0.0) * points)
+    tail = min(kernel.beyond(len(power)) ** 2 * beyond, kernel.norm_beyond(len(power)) ** 2 * points)
     left = np.append(np.cumsum((squares * power)[:0:-1])[::-1], 0.0) + tail
     total = squares[0] * power[0] + left[0]
     wrong = left[: len(added)] + np.cumsum(squares[: len(added)] * added)

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_basis
+from shviewer.harmonics.extremes.bands import band_heights
 from shviewer.harmonics.extremes.climbing import valleys
 from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.filters import per_coefficient
@@ -101,6 +102,7 @@ def _searched(coefficients: Array, tolerance: float) -> tuple[Array, Array, Arra
     rows = GRID_ROWS * max(synthesis.n_bands, 4)
     theta, phi = row_angles(rows), column_azimuths(2 * rows)
     values = synthesis.on_rows(theta, len(phi))
+    heights = band_heights(coefficients)
     bounds, lowest, directions = np.empty(3), np.empty(3), np.empty((3, 3))
     for channel in range(3):
         same = next(c for c in range(channel + 1) if np.array_equal(coefficients[:, c], coefficients[:, channel]))
@@ -109,7 +111,7 @@ def _searched(coefficients: Array, tolerance: float) -> tuple[Array, Array, Arra
             continue
         own = np.ascontiguousarray(values[:, [channel]])
         row, column = divmod(int(own.argmin()), len(phi))
-        found = Waves(own, synthesis.n_bands).lowest(float(own.min()), tolerance, EFFORT)
+        found = Waves(own, heights[:, [channel]]).lowest(float(own.min()), tolerance, EFFORT)
         bounds[channel], lowest[channel] = found.bound, found.lowest
         angles = (found.theta, found.phi) if found.lowest < own.min() else (theta[row], phi[column])
         directions[channel] = directions_from_angles(*map(np.asarray, angles))

@@ -8,15 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, normalise
-from shviewer.harmonics.quadrature import angles_from_directions
+from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths
 from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
-from shviewer.harmonics.theta_series import azimuth_functions, theta_series
+from shviewer.harmonics.theta_series import azimuth_functions, to_waves
 
 BLOCK_VALUES = 2**14
 """How many directions times bands are evaluated at a time, so that they stay in the cache."""
 
 STEP = 768
 """The number of values of a row in one product of a map."""
+
+WAVE_BANDS = 24
+"""With more bands, rows of twice as many columns are a Fourier transform; with fewer, a product is as fast."""
 
 FEWEST_BANDS = 8
 """The fewest bands of a product; with fewer, it would have less than four rows and be slower."""
@@ -38,16 +41,14 @@ class Synthesis:
     def __init__(self, coefficients: Array) -> None:
         self.coefficients = coefficients
         self.n_bands = n_bands = count_bands(coefficients)
-        by_order = theta_series(n_bands).transpose(0, 2, 1) @ _to_orders(coefficients).reshape(n_bands, n_bands, 6)
+        by_order = to_waves(_to_orders(coefficients).reshape(n_bands, n_bands, 6))
         self._series = [
             np.ascontiguousarray(by_order[parity::2].transpose(1, 2, 0)).reshape(n_bands, -1) for parity in (0, 1)
         ]  # for even and for odd m: k, ({cos, sin}, channel, m)
 
     def on_rows(self, theta: Array, n_columns: int) -> Array:
         """Evaluate on rows at `theta` (rows,) with the columns of a lat-long image: (rows, 3, n_columns)."""
-        flat = self._along_theta(theta).reshape(-1, 2 * self.n_bands)
-        azimuth = azimuth_functions(self.n_bands, n_columns).reshape(2 * self.n_bands, n_columns)
-        return np.asarray(flat @ azimuth).reshape(len(theta), 3, n_columns)
+        return self._along_phi(self._along_theta(theta), n_columns)
 
     def in_directions(self, directions: Array) -> Array:
         """Evaluate in directions (k, 3) of any length but 0: (k, 3)."""
@@ -154,6 +155,17 @@ class Synthesis:
             product = (functions @ self._series[parity]).reshape(len(theta), 2, 3, -1)
             along_theta[..., parity::2] = product.transpose(0, 2, 1, 3)
         return along_theta
+
+    def _along_phi(self, along_theta: Array, n_columns: int) -> Array:
+        """Values at the columns of a lat-long image, (rows, 3, n_columns), of what `_along_theta` gives."""
+        if self.n_bands <= WAVE_BANDS or n_columns < 2 * self.n_bands:
+            flat = along_theta.reshape(-1, 2 * self.n_bands)
+            azimuth = azimuth_functions(self.n_bands, n_columns).reshape(2 * self.n_bands, n_columns)
+            return np.asarray(flat @ azimuth).reshape(len(along_theta), 3, n_columns)
+        first = np.arange(self.n_bands) * column_azimuths(n_columns)[0]  # columns go the other way round
+        waves = along_theta[:, :, 0] + 1j * along_theta[:, :, 1]
+        waves *= np.exp(-1j * first) / np.where(first > 0, 2, 1)
+        return np.fft.irfft(waves, n_columns, norm="forward")
 
 
 def _to_orders(coefficients: Array) -> Array:

@@ -14,23 +14,16 @@ from functools import cached_property
 import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
-from shviewer.harmonics.extremes.bands import Bands, band_heights
+from shviewer.harmonics.extremes.bands import Bands
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.quantities.kernels import FEWEST_BANDS, Kernel, kernel_of
-from shviewer.harmonics.quantities.names import RADIANCE, in_words
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
 from shviewer.lights.lat_long import MAP_ROWS, LatLongMap
 from shviewer.lights.light import About, Light, LightBase
-from shviewer.limits import DEFAULT_LIMITS
 
 UP = np.array([0.0, 0.0, 1.0])
-
-TABLE_BYTES = 14
-"""Bytes that projecting and summing n bands take, over n^3: the table of theta_series.py and what is made of it."""
-
-ROUNDED = 4 * float(np.finfo(np.float32).eps)
-"""How far a map of float32 is off, over the sum of the heights of its bands."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,13 +117,12 @@ class ConvolvedMap(ConvolvedLight):
 
     @cached_property
     def form(self) -> Bands | None:
-        """Its bands, and how far the map is from them between its points, by their second derivatives."""
+        """Its bands, and a bound of further ones by the norms of what kernel and source hold there (Cauchy and Schwarz)."""
         if self.source.form is None:
             return None
-        coefficients = self.coefficients(self.bands)
-        heights = band_heights(coefficients)
-        step, l = np.pi / (self.map_rows - 1), np.arange(self.bands)
-        return Bands(coefficients, float((step * l) ** 2 / 4 @ heights + ROUNDED * heights.sum()))
+        kept = self.source.coefficients(self.bands)
+        beyond = (self.source.products().diagonal() - (kept**2).sum(axis=0)).max()
+        return Bands(self.from_source(kept), self.kernel.norm_beyond(self.bands) * float(np.sqrt(max(beyond, 0.0))))
 
     @cached_property
     def map(self) -> LatLongMap:
@@ -192,14 +184,6 @@ class RadianceLight(LightBase):
 
 
 def convolved(light: Light, quantity: str, kind: type[ConvolvedLight]) -> Light:
-    """A radiance as that quantity; itself, if that is radiance.
-
-    ValueError for an unknown one, LightError for a narrow kernel whose bands take more memory than there may be.
-    """
+    """A radiance as that quantity; itself, if that is radiance. ValueError for an unknown one."""
     kernel = kernel_of(quantity)
-    if kernel.quantity == RADIANCE:
-        return light
-    bands = min(kernel.bands, light.most_bands)
-    if kind is ConvolvedMap and bands > FEWEST_BANDS:
-        DEFAULT_LIMITS.check_memory(TABLE_BYTES * bands**3, f"{light.name}: {in_words(quantity)} in {bands} bands")
-    return kind(light, kernel, bands)
+    return light if kernel.quantity == RADIANCE else kind(light, kernel, min(kernel.bands, light.most_bands))

@@ -17,6 +17,7 @@ from shviewer.analysis.figures import grid_rows
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.deringing import dering
 from shviewer.harmonics.extremes import raster_error, waves, zonal_sum
+from shviewer.harmonics.extremes.bands import band_heights
 from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.extremes.waves import Waves
@@ -190,6 +191,35 @@ def test_the_bounds_hold_for_what_surfaces_make_of_an_image(quantity: str) -> No
     assert found.max_error_bound < found.max_error * 1.01
 
 
+def test_the_largest_error_of_a_mirror_like_surface_is_close_to_its_bound() -> None:
+    """The light is the sum of its 343 bands, here on rows and columns that the search does not use."""
+    texels = np.full((16, 32, 3), 0.1, np.float32)
+    texels[4, 9] = 40, 30, 20
+    light = EnvironmentLight(texels).through("glossy:0.15")
+    shown = light.coefficients(9)
+    found = extremes(light, shown)
+    difference = light.coefficients(343)
+    difference[: len(shown)] -= shown
+    largest = np.abs(Synthesis(difference).on_rows(np.linspace(0.85, 0.9, 60), 1900)).max()  # about the bright texel
+    assert found.max_error_bound is not None
+    assert largest * (1 - THOUSANDTH) <= found.max_error <= found.max_error_bound <= found.max_error * 1.003
+
+
+def test_no_derivative_passes_what_the_bands_allow() -> None:
+    """All bands of a narrow lobe are highest at its tip: there l (l+1) / 2 of each band is its second derivative."""
+    n_bands, rows = 24, 240
+    l = np.arange(n_bands)
+    coefficients = np.zeros((n_bands**2, 3))
+    coefficients[l * (l + 1)] = (np.sqrt(2 * l + 1) * np.exp(-l / 3))[:, None] * [1, -1, 0]
+    grid = Waves(
+        Synthesis(coefficients).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows), band_heights(coefficients)
+    )
+    second = np.abs(np.diff(grid.values, 2, axis=0)).max(axis=(0, 2))
+    assert (second <= grid.moved(2) * (1 + 1e-12)).all()
+    assert (second[:2] >= 0.45 * grid.moved(2)[:2]).all()
+    assert (grid.moved(2)[:2] < 0.2 * grid.amplitude[:2] * grid.reach**2).all()  # where the highest bands are weak
+
+
 @pytest.mark.parametrize("seed", range(16))
 def test_lobes_have_no_larger_error_anywhere(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -260,7 +290,7 @@ def test_a_sum_of_bands_stays_above_its_bound_by_another_basis(n_bands: int) -> 
     coefficients = rng.normal(size=(n_bands**2, 3)) / (1 + np.arange(n_bands**2))[:, None] ** 0.25
     rows = 4 * n_bands + 8
     values = Synthesis(coefficients).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows)
-    grid = Waves(values, n_bands)
+    grid = Waves(values, band_heights(coefficients))
     found = grid.lowest(float(values.min()), 1e-4 * float(np.ptp(values)))
     lowest = float((scipy_basis(random_directions(2000), n_bands) @ coefficients).min())
     assert found.bound <= lowest + 1e-12

@@ -1,5 +1,7 @@
 """What shviewer.harmonics.projection promises: the coefficients of rules and of images, and the way back."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from harmonics.independent import HARD_CASES, random_directions, scipy_basis
@@ -7,13 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.special import sph_harm_y
 
 from shviewer.harmonics import projection
+from shviewer.harmonics import theta_series as theta_series_module
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_image, project_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.harmonics.theta_series import theta_series
+from shviewer.harmonics.theta_series import from_waves, theta_series
 
 GREEN_EXACT = np.array([float(value) for value in HARD_CASES["lights"]["green"]["coefficients_n4"]])
 
@@ -224,9 +228,64 @@ def test_synthesis_needs_the_coefficients_of_whole_bands(count):
         Synthesis(np.zeros((count, 3)))
 
 
-def test_more_bands_than_the_table_holds_are_refused():
+def test_more_bands_than_are_separated_are_refused():
     with pytest.raises(ValueError, match="513 bands: there must be 1 to 512"):
-        theta_series(513)
+        project_image(np.zeros((2, 4, 3)), 513)
+    with pytest.raises(ValueError, match="129 bands: there must be 1 to 128"):
+        theta_series(129)
+
+
+@pytest.mark.parametrize("n_bands", [1, 2, 9, 40])
+def test_waves_become_bands_and_back_without_a_table_as_with_it(n_bands, monkeypatch):
+    rng = np.random.default_rng(n_bands)
+    sums, coefficients = rng.standard_normal((n_bands, 2, 3, n_bands)), random_coefficients(n_bands)
+    with_table = from_waves(sums), Synthesis(coefficients).at(np.array([0.3, 2.0]), np.array([-1.0, 3.0]))
+    monkeypatch.setattr(theta_series_module, "TABLE_BANDS", 0)
+    assert_allclose(from_waves(sums), with_table[0], rtol=0, atol=3e-15 * n_bands)
+    again = Synthesis(coefficients).at(np.array([0.3, 2.0]), np.array([-1.0, 3.0]))
+    assert_allclose(again, with_table[1], rtol=0, atol=3e-15 * n_bands)
+
+
+def test_512_bands_of_an_image_are_the_integrals_over_its_texels():
+    """Of one texel about the middle of a row, over which Gauss points integrate the independent functions."""
+    image = np.zeros((8, 16, 3))
+    image[2, 5] = 1, 2, 3
+    found = project_image(image, 512)
+    nodes, weights = np.polynomial.legendre.leggauss(80)  # 512 * pi/8 = 201 radians across
+    theta, phi = np.pi * (2.5 + nodes / 2) / 8, np.pi * (1 - (11 + nodes) / 16)
+    for l, m in ((511, 0), (500, 13), (511, -300), (407, 407), (20, -3)):
+        shape = sph_harm_y(l, abs(m), theta, 0).real
+        along = {True: np.cos, False: np.sin}[m >= 0](abs(m) * phi)
+        factor = np.sqrt(2) if m else 1.0
+        wanted = factor * (weights * np.sin(theta) @ shape) * (weights @ along) * (np.pi / 16) ** 2
+        assert_allclose(found[l * l + l + m], wanted * np.array([1, 2, 3]), rtol=0, atol=2e-15)
+
+
+def test_512_bands_are_summed_as_the_basis_says():
+    coefficients = random_coefficients(512)
+    d = random_directions(3, 1)
+    found = Synthesis(coefficients).in_directions(d)
+    assert_allclose(found, evaluate_basis(d, 512) @ coefficients, rtol=0, atol=1e-14 * 512**2)
+
+
+def test_the_narrowest_kernel_takes_no_table_of_all_its_bands():
+    """n^3 numbers of 512 bands are 1 GiB; what there is of n^2 is 2 MiB each."""
+    tracemalloc.start()
+    synthesis = Synthesis(project_image(np.ones((8, 16, 3)), 512))
+    synthesis.pole_to_pole(33, 64)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 200 * 2**20
+
+
+@pytest.mark.parametrize(("n_bands", "columns"), [(25, 50), (40, 97), (25, 49)])
+def test_rows_of_many_bands_are_the_sum_in_their_directions(n_bands, columns):
+    synthesis = Synthesis(random_coefficients(n_bands))
+    theta = np.array([0.0, 0.4, 1.6, np.pi])
+    found = synthesis.on_rows(theta, columns)
+    directions = directions_from_angles(theta[:, None], column_azimuths(columns)).reshape(-1, 3)
+    wanted = synthesis.in_directions(directions).reshape(4, columns, 3).swapaxes(1, 2)
+    assert_allclose(found, wanted, rtol=0, atol=1e-12 * n_bands)
 
 
 def test_the_exact_projection_of_greens_light_has_his_signs_and_order():

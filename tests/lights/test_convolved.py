@@ -12,7 +12,7 @@ from places import kernels
 
 import shviewer
 from shviewer.coefficients.parts.quantities import recovered_radiance
-from shviewer.errors import LightError, UsageError
+from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
 from shviewer.harmonics.quadrature import gauss_legendre
@@ -221,17 +221,6 @@ def test_radiance_comes_back_from_glossy_coefficients_where_they_hold_it() -> No
         kept = np.repeat([l not in lost for l in range(8)], 2 * np.arange(8) + 1)
         assert_allclose(found[kept], wanted[kept], rtol=0, atol=1e-7)  # of factors known to 1e-13 down to 1e-6
     assert kernel_of("glossy:0.9").factors(8).min() > -0.03
-
-
-def test_a_narrow_kernel_is_refused_where_its_bands_have_no_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("shviewer.memory.available_bytes", lambda: 2**30)
-    light = EnvironmentLight(LatLongMap(np.ones((8, 16, 3), np.float32)))
-    with pytest.raises(
-        LightError, match=r"roughness 0\.1 in 512 bands takes up to 1792 MiB of memory; the limit is 512 MiB"
-    ):
-        light.through("glossy:0.1")
-    assert light.through("glossy:0.25").quantity == "glossy:0.25"
-    assert find_light("green").through("glossy:0.1").quantity == "glossy:0.1"
 
 
 @pytest.mark.parametrize("kind", ["json", "csv", "npz", "h", "glsl"])

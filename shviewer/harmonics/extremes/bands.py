@@ -11,7 +11,7 @@ from shviewer.harmonics.basis import Array, count_bands
 
 @dataclass(frozen=True, eq=False)
 class Bands:
-    """coefficients: (n**2, 3). room: how far the light that is drawn may be from their sum."""
+    """coefficients: (n**2, 3). room: a bound of what the light holds beyond them, in any channel."""
 
     coefficients: Array
     room: float = 0.0
@@ -25,13 +25,13 @@ class Bands:
         difference = np.zeros((kept**2, 3))
         difference[: len(shown)] = shown
         difference[: len(self.coefficients)] -= self.coefficients
-        tails = np.append(np.cumsum(band_heights(difference)[::-1])[::-1], 0.0)
+        tails = np.append(np.cumsum(band_heights(difference).max(axis=1)[::-1])[::-1], 0.0)
         kept = max(1, int(np.argmax(tails <= most)))
         return difference[: kept**2], self.room + float(tails[kept])
 
 
 def band_heights(coefficients: Array) -> Array:
-    """A bound of each band's values in any channel, (n,), of coefficients (n**2, 3)."""
+    """A bound of each band's values, (n, channels), of coefficients (n**2, channels)."""
     l = np.arange(count_bands(coefficients))
-    norms = np.sqrt(np.add.reduceat(coefficients**2, l**2, axis=0)).max(axis=1)
-    return np.asarray(np.sqrt((2 * l + 1) / (4 * np.pi)) * norms)
+    norms = np.sqrt(np.add.reduceat(coefficients**2, l**2, axis=0))
+    return np.asarray(np.sqrt((2 * l + 1) / (4 * np.pi))[:, None] * norms)

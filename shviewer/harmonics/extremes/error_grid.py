@@ -10,8 +10,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.extremes.bands import Bands
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes.bands import Bands, band_heights
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, Objective, climb
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.extremes.raster_error import Search
@@ -32,6 +32,9 @@ MOST_OPEN = 1500
 
 BLOCKS = 6
 """The blocks of the grid from whose highest cells the largest error is climbed to."""
+
+SPARSE_BANDS = 128
+"""A difference of more bands, whose heights fall off, is looked at in two rows a band, others in four."""
 
 NEGLIGIBLE = 1e-7
 """The share of the largest radiance that is no longer told apart."""
@@ -124,10 +127,10 @@ class ErrorGrid:
         seen = self._see(shown)
         if isinstance(self.form, Lobes):
             error = self._error_of_lobes(seen, self.form, *self.form.factors(shown))
+        elif isinstance(self.form, Raster):
+            error = self._error_of_raster(seen, self.form)
         else:
-            error = self._error_of_raster(seen, self.form) if isinstance(self.form, Raster) else self._climbed(seen)
-            if isinstance(self.form, Bands):
-                error = self._error_of_bands(seen, self.form, error)
+            error = self._climbed(seen) if self.form is None else self._error_of_bands(seen, self.form)
         lows = self._lows(seen)
         return Extremes(
             max_error=error.value,
@@ -144,7 +147,7 @@ class ErrorGrid:
     def _see(self, shown: Array) -> _Seen:
         synthesis = Synthesis(shown)
         values = synthesis.on_rows(self.theta, len(self.phi))
-        return _Seen(shown, synthesis, values, Waves(values, synthesis.n_bands))
+        return _Seen(shown, synthesis, values, Waves(values, band_heights(shown)))
 
     def _lows(self, seen: _Seen) -> Lows:
         if isinstance(self.form, Lobes):
@@ -220,17 +223,26 @@ class ErrorGrid:
             return found
         return found.or_larger(self._climbed(seen))._replace(bound=error.bound)
 
-    def _error_of_bands(self, seen: _Seen, bands: Bands, found: _Found) -> _Found:
-        difference, left_out = bands.less(seen.shown, TOLERANCE / 4 * found.value)
-        n_bands = count_bands(difference)
-        n_rows = max(len(self.theta), 4 * n_bands)
-        values = Synthesis(difference).on_rows(row_angles(n_rows), 2 * n_rows)
+    def _error_of_bands(self, seen: _Seen, bands: Bands) -> _Found:
+        least = float(np.abs(seen.values - self.original).max())
+        difference, left_out = bands.less(seen.shown, TOLERANCE / 4 * least)
+        synthesis, heights = Synthesis(difference), band_heights(difference)
+        n_rows = max(len(self.theta), (4 if len(heights) <= SPARSE_BANDS else 2) * len(heights))
+        values = synthesis.on_rows(row_angles(n_rows), 2 * n_rows)
+        ends = [int(values.argmin()), int(values.argmax())]
+        row, _, column = np.unravel_index(max(ends, key=lambda at: abs(values.flat[at])), values.shape)
+        start = directions_from_angles(row_angles(n_rows)[[row]], column_azimuths(2 * n_rows)[[column]])
+
+        def error(directions: Array) -> Array:
+            return np.asarray(np.abs(synthesis.in_directions(directions)).max(axis=1))
+
+        found = self._best(error, start)
         tolerance = max(TOLERANCE * found.value, NEGLIGIBLE * self.peak)
-        sides = [Waves(signed, n_bands).lowest(-found.value, tolerance) for signed in (values, -values)]
+        sides = [Waves(signed, heights).lowest(-found.value, tolerance) for signed in (values, -values)]
         deepest = min(sides, key=lambda side: side.lowest)
         if -deepest.lowest > found.value + tolerance / 2:
             start = directions_from_angles(np.array([deepest.theta]), np.array([deepest.phi]))
-            found = found.or_larger(self._best(partial(self._error, seen), start))
+            found = found.or_larger(self._best(error, start))
         return found._replace(bound=left_out - min(side.bound for side in sides))
 
     def _error(self, seen: _Seen, directions: Array) -> Array:

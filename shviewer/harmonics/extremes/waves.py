@@ -1,9 +1,10 @@
 """A band-limited function between the points of a grid: how low and how high it can go there.
 
 On every great circle through the poles, and along every circle of latitude, a function of n bands is a trigonometric
-polynomial of degree N = n - 1. If it stays within A of a constant, its k-th derivatives stay within N^k A (Bernstein), so that
-    in cells of h radians a side, their corners bound it up to (N h)^2 A / 4;
-    in them, the polynomial through the s x s points around is off by at most (1 + L) w (N h)^s A / s!,
+polynomial of degree N = n - 1. If it stays within A of a constant, its k-th derivatives stay within N^k A (Bernstein), and if
+its band l stays within H(l), within the sum of l^k H(l). With D(k) the lesser of the two times h^k,
+    in cells of h radians a side, their corners bound it up to D(2) / 4;
+    in them, the polynomial through the s x s points around is off by at most (1 + L) w D(s) / s!,
 with w the largest product of distances to s points one apart, and L the largest sum of the magnitudes of the weights of an
 interpolation. The polynomial lies above the least of its Bernstein coefficients, and closer above it in parts of the cell.
 A itself follows from the grid: M points about a circle see all of it but 1 - cos(pi N / M) [Ehlich-Zeller].
@@ -45,19 +46,28 @@ class Bounded(NamedTuple):
 
 
 class Waves:
-    """A function of `n_bands` bands by its values (rows, channels, columns) on a lat-long grid of 2 rows columns."""
+    """A function of bands by its values (rows, channels, columns) on a lat-long grid of 2 rows columns.
 
-    def __init__(self, values: Array, n_bands: int) -> None:
+    heights: what each of its bands stays within in any channel, (n_bands,), or (n_bands, channels).
+    """
+
+    def __init__(self, values: Array, heights: Array) -> None:
         self.values = values
         self.rows, self.columns = len(values), values.shape[2]
         self.step = float(np.pi / self.rows)
-        self.reach = (n_bands - 1) * self.step
+        self.reach = (len(heights) - 1) * self.step
         """N h."""
+        self.heights = heights
         self.high, self.low = values.max(axis=(0, 2)), values.min(axis=(0, 2))
         self.amplitude = (self.high - self.low) / 2 / np.cos(self.reach / 2) ** 2
         """A of each channel, (channels,)."""
-        self.slack = self.amplitude * self.reach**2 / 4
+        self.slack = self.moved(2) / 4
         """How far it may pass the corners of a cell, (channels,)."""
+
+    def moved(self, order: int) -> Array:
+        """D(order): h^order times the largest derivative of that order along a side of the cells, (channels,)."""
+        by_band = (np.arange(len(self.heights)) * self.step) ** order @ self.heights
+        return np.asarray(np.minimum(self.amplitude * self.reach**order, by_band))
 
     @cached_property
     def corners_low(self) -> Array:
@@ -98,18 +108,19 @@ class Waves:
 
         effort: how many times the usual number of cells are looked at, if need be.
         """
-        low = self.corners_low - self.slack[:, None]
-        cells = np.flatnonzero(low.reshape(-1) < found - tolerance)
+        best = Bounded(found - tolerance, found, 0.0, 0.0)
         most = effort * min(self.values.size // SIEVED_SHARE, MOST_SIEVED)
-        if len(cells) > most:
+        cells = self._around(np.flatnonzero((self.values < (best.bound + self.slack)[:, None]).reshape(-1)), most)
+        if cells is None:
             low = self.corners_low - self.bends(below=True)
-            cells = np.flatnonzero(low.reshape(-1) < found - tolerance)
-        best = Bounded(max(found - tolerance, float(low.min())), found, 0.0, 0.0)
+            cells = np.flatnonzero(low.reshape(-1) < best.bound)
+            lows = low.reshape(-1)[cells]
+        else:
+            lows = np.full(len(cells), -np.inf)
         if not len(cells):
             return best
-        lows = low.reshape(-1)[cells]
         lows, cells, left = _lowest_first(lows, cells, most)
-        row, channel, column = (np.asarray(index) for index in np.unravel_index(cells, low.shape))
+        row, channel, column = self._places(cells)
         lows = np.maximum(
             lows, self._control(row, channel, column, SIEVE).min(axis=(1, 2)) - self._error(SIEVE)[channel]
         )
@@ -143,6 +154,24 @@ class Waves:
             control, error, lows = _halved(control[open_]), np.repeat(error[open_], 4), np.repeat(lows, 4)
         return best._replace(bound=min(best.bound, left))
 
+    def _around(self, points: Indices, most: int) -> Indices | None:
+        """The cells with one of the points (k,) in a corner, as indices like those of `corners`; None if more than `most`."""
+        if 4 * len(points) > most:
+            return None
+        row, channel, column = self._places(points)
+        return np.unique(
+            [
+                ((row + down) * self.values.shape[1] + channel) * self.columns + (column - across) % self.columns
+                for down in (0, 1)
+                for across in (0, 1)
+            ]
+        )
+
+    def _places(self, flat: Indices) -> tuple[Indices, Indices, Indices]:
+        """Row, channel and column of indices (k,)."""
+        above, column = np.divmod(flat, self.columns)
+        return *np.divmod(above, self.values.shape[1]), column
+
     def bends(self, *, below: bool = False) -> Array:
         """How far it can pass the bilinear surface through the corners of each cell, or `below` it alone: like the corners.
 
@@ -174,19 +203,19 @@ class Waves:
         found = [np.abs(np.diff(points, 2, axis=axis)) for axis in (1, 2)]
         seen = np.stack([found[0][:, :, 1:3].max(axis=(1, 2)), found[1][:, 1:3].max(axis=(1, 2))], axis=1)
         seen = seen.reshape(len(row), len(channels), 2).swapaxes(1, 2)
-        return np.asarray(np.minimum(seen + self._moved, self.reach**2 * self.amplitude) / self.step**2)
+        return np.asarray(np.minimum(seen + self._moved, self.moved(2)) / self.step**2)
 
     @property
     def _moved(self) -> Array:
         """How far h^2 times a second derivative in a cell may pass the second differences at its corners, (channels,).
 
-        It differs from those by (N h)^4 A / 12 at most, and moves by less than (N h)^4 A / 4 within the cell.
+        It differs from those by D(4) / 12 at most, and moves by less than D(4) / 4 within the cell.
         """
-        return np.asarray(self.reach**4 / 3 * self.amplitude)
+        return self.moved(4) / 3
 
     def _error(self, size: int) -> Array:
         """How far the polynomial through a stencil may be off, (channels,)."""
-        return np.asarray(_stencil(size)[1] * self.reach**size * self.amplitude)
+        return np.asarray(_stencil(size)[1] * self.moved(size))
 
     def _control(self, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
         """Bernstein coefficients (k, size, size) of the polynomials through the size x size points about cells (k,)."""
@@ -236,7 +265,7 @@ def _halves(size: int) -> Array:
 @lru_cache(maxsize=4)
 def _stencil(size: int) -> tuple[Array, float, Array]:
     """For `size` points about the cell [0, 1], one apart: the matrix from values to Bernstein coefficients; the factor of
-    (N h)^size A in the error of two dimensions; the matrix for size x size points, (size^2, size^2), which stands on the right.
+    D(size) in the error of two dimensions; the matrix for size x size points, (size^2, size^2), which stands on the right.
     """
     nodes = np.arange(1.0 - size // 2, 1.0 + size - size // 2)
     degree = size - 1

@@ -39,10 +39,17 @@ class Kernel:
     """The kernel is this times the cosine of the angle, and smoother terms, next to the horizon, and nothing below it."""
     bands: int = FEWEST_BANDS
     """The number of bands beyond which little is left of a light."""
+    energy: float = np.inf
+    """The integral of its square, which is the sum of (2l+1)/4pi times the squared factors."""
 
     def beyond(self, n_bands: int) -> float:
         """The largest factor from that band on; from there on they shrink, every other one may be 0."""
         return float(np.abs(self.factors(n_bands + 2)[-2:]).max())
+
+    def norm_beyond(self, n_bands: int) -> float:
+        """The L2 norm of its bands from that one on."""
+        held = float((2 * np.arange(n_bands) + 1) @ self.factors(n_bands) ** 2) / (4 * np.pi)
+        return float(np.sqrt(max(self.energy - held, 0.0)))
 
 
 @lru_cache(maxsize=64)
@@ -52,7 +59,7 @@ def kernel_of(quantity: str) -> Kernel:
     if quantity == RADIANCE:
         return Kernel(RADIANCE, np.ones)
     if quantity == IRRADIANCE:
-        return Kernel(IRRADIANCE, irradiance_factors)
+        return Kernel(IRRADIANCE, irradiance_factors, energy=2 * np.pi / 3)
     roughness = roughness_of(quantity)
     assert roughness is not None
     shape = Glossy(roughness)
@@ -60,7 +67,7 @@ def kernel_of(quantity: str) -> Kernel:
     def factors(n_bands: int) -> Array:
         return glossy_factors(shape.roughness, n_bands)
 
-    return Kernel(quantity, factors, shape, shape.peak, shape.slope_at_horizon, _bands(shape))
+    return Kernel(quantity, factors, shape, shape.peak, shape.slope_at_horizon, _bands(shape), shape.energy)
 
 
 def _bands(shape: Glossy) -> int:
