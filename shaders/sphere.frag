@@ -6,11 +6,15 @@
 // pane should not pay for what it does not show. Linear until the last line; display.glsl alone turns radiance into colour.
 
 #include "constants.glsl"
-#include "sh.glsl"
 #include "lobes.glsl"
 #include "lat_long.glsl"
 #include "display.glsl"
 #include "lines.glsl"
+#if RECONSTRUCTION == RECONSTRUCTION_SUM
+#include "sh.glsl"
+#elif RECONSTRUCTION != RECONSTRUCTION_MAP
+#include "encodings.glsl"
+#endif
 #include "error.glsl"
 
 uniform vec2 centre;            // pixels from the bottom left; of a map: where azimuth and elevation are 0
@@ -36,8 +40,10 @@ vec3 reconstruction_radiance(vec3 direction) {
     vec3 suns = lobe_radiance(direction, sun_lobes);
 #if RECONSTRUCTION == RECONSTRUCTION_SUM
     return suns + sh_radiance(direction);
-#else
+#elif RECONSTRUCTION == RECONSTRUCTION_MAP
     return suns + spline_map_radiance(reconstruction_map, direction);
+#else
+    return suns + encoded_irradiance(direction);
 #endif
 }
 

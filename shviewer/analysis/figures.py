@@ -188,7 +188,7 @@ def lows_of(light: Light, projection: Projection, what: Shown) -> Lows:
 def irradiance_error(light: Light, projection: Projection, what: Shown) -> float:
     """`Figures.irradiance_relative_l2`, without the others."""
     shown, known = sums(light, projection, what)
-    if projection.encoding:
+    if projection.stored is not None:
         return known.relative_l2
     irradiance = through(light, IRRADIANCE)
     own = project(light, *BEST, projection.n_bands).radiance[: len(shown)]

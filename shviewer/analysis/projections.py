@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from shviewer.analysis.cache import MEMORY, remember
-from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.recipe import Recipe, Shown
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import errors_by_band_count
@@ -22,6 +22,9 @@ from shviewer.harmonics.quadrature import DirectionSet, gauss_legendre, jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
+
+if TYPE_CHECKING:
+    from shviewer.harmonics.quantities.encodings import Stored
 
 BEST = ("best", 0, 0)
 """Method, samples and seed of the best way, which does not depend on the last two."""
@@ -41,12 +44,16 @@ class Projection:
     """The time; None if nothing was projected: given coefficients, or some that the light had kept."""
     radiance: Array
     """The coefficients of the light's source, from which those of another quantity follow."""
-    encoding: str = ""
-    """The encoding of irradiance that the coefficients stand for; "" for the plain bands."""
+    stored: Stored | None = None
+    """What an encoding keeps of the irradiance, whose bands the coefficients are; None for the bands themselves."""
 
     @property
     def n_bands(self) -> int:
         return count_bands(self.coefficients)
+
+    def stored_as(self, shown: Shown) -> Stored | None:
+        """The numbers of the encoding that is shown; None where there is none, or only some of its bands are shown."""
+        return self.stored if not shown.muted and shown.window == "none" else None
 
     @property
     def evaluation_noun(self) -> str:
@@ -151,16 +158,16 @@ def turned_projection(light: Light, samples: int, seed: int, turn: tuple[float, 
 @remember(most=16, doing="encoding the irradiance")
 def encoded(light: Light, projection: Projection, name: str) -> Projection:
     """An irradiance as one of ENCODINGS keeps it, made of the first bands of a projection."""
-    from shviewer.harmonics.quantities.encodings import BANDS, ENCODINGS
+    from shviewer.harmonics.quantities.encodings import BANDS, ENCODINGS, Stored
 
     encoding = ENCODINGS[name]
     try:
-        made = encoding.make(projection.radiance[: BANDS**2])
+        numbers = encoding.store(projection.radiance[: BANDS**2])
     except ValueError as error:
         raise UsageError(f"encode {name}: {error}") from error
     coefficients = np.zeros_like(projection.coefficients)
-    coefficients[: len(made)] = made
-    return replace(projection, coefficients=coefficients, encoding=name)
+    coefficients[: encoding.bands**2] = encoding.expand(numbers)
+    return replace(projection, coefficients=coefficients, stored=Stored(name, numbers))
 
 
 @remember(most=8)

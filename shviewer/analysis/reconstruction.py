@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from shviewer.analysis.figures import Figures, Sums, error_grid, figures_of, grid_rows, sums
 from shviewer.analysis.projections import BEST, Projection, encoded, project, sampling_of, turned_projection
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import Subject, subject
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.limits import check_radiance
+
+if TYPE_CHECKING:
+    from shviewer.harmonics.quantities.encodings import Stored
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,10 +31,22 @@ class Reconstruction:
     sums: Sums
     """The figures that need no search."""
 
+    @property
+    def stored(self) -> Stored | None:
+        """The numbers of the encoding that is shown; None where the coefficients are summed."""
+        return self.projection.stored_as(self.recipe.shown)
+
     @cached_property
     def figures(self) -> Figures:
         """All figures; searched for when they are asked for."""
         return figures_of(self.subject.light, self.projection, self.recipe.shown)
+
+
+def values_at(directions: Array, coefficients: Array, stored: Stored | None) -> Array:
+    """The radiance of what is shown in unit directions of the light (k, 3): (k, 3) float64."""
+    if stored is not None:
+        return stored.irradiance(directions)
+    return np.asarray(evaluate_basis(directions, count_bands(coefficients)) @ coefficients)
 
 
 def reconstruction_of(

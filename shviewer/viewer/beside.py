@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from shviewer.analysis.figures import Sums
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.reconstruction import Reconstruction
-from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.analysis.reconstruction import Reconstruction, values_at
+from shviewer.harmonics.basis import Array
 from shviewer.viewer.drawn import Drawn
 from shviewer.viewer.view import BESIDES
 from shviewer.words import grouped
@@ -35,7 +33,7 @@ class Beside:
 
     def values_at(self, directions: Array) -> Array:
         """Its radiance, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
-        return np.asarray(evaluate_basis(directions, self.recipe.n_bands) @ self.coefficients)
+        return values_at(directions, self.coefficients, self.projection.stored_as(self.recipe.shown))
 
 
 def recipe_beside(recipe: Recipe, beside: str) -> Recipe:

@@ -17,6 +17,7 @@ from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
 from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import directions_from_angles
+from shviewer.harmonics.quantities.encodings import Stored
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 from shviewer.limits import DIMMEST
@@ -25,11 +26,13 @@ from shviewer.viewer.colour.error_scale import NOISE, ErrorScale, automatic_rang
 from shviewer.viewer.colour.tone import exposed_for
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
+    Floats,
     Surface,
     basis_surface,
     rows_for,
     sample_light,
     sample_reconstruction,
+    sample_stored,
     surface,
     unit_radius,
 )
@@ -119,7 +122,7 @@ def surfaces(
     rows = max(LIGHT_ROWS, rows_for(shown.n_bands, radius))
     original, reconstruction, error, unit = _compared_surfaces(light, projection, shown, rows)
     if other is not None:
-        error = surface(sample_reconstruction(other.coefficients, rows), unit, root=True)
+        error = surface(_sampled(other.coefficients, other.stored, rows), unit, root=True)
     if view.basis is not None:
         l, m = view.basis
         reconstruction = basis_surface(l, m, rows_for(l + 1, radius))
@@ -142,12 +145,17 @@ def _compared_surfaces(
     rows: int,
 ) -> tuple[Surface, Surface, Surface, float]:
     coefficients = sums(light, projection, shown)[0]
-    original, reconstruction = sample_light(light, rows), sample_reconstruction(coefficients, rows)
+    original, reconstruction = sample_light(light, rows), _sampled(coefficients, projection.stored_as(shown), rows)
     unit = unit_radius(original, reconstruction)
     first, second, third = (
         surface(values, unit, root=True) for values in (original, reconstruction, reconstruction - original)
     )
     return first, second, third, unit
+
+
+def _sampled(coefficients: Array, stored: Stored | None, rows: int) -> Floats:
+    """Luminance of a reconstruction on the grid of a surface."""
+    return sample_reconstruction(coefficients, rows) if stored is None else sample_stored(stored, rows)
 
 
 @remember(most=16)

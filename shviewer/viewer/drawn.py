@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.quantities.encodings import Stored
 from shviewer.viewer.surface import Surface
 
 MAP_COLUMNS = (512, 1024, 2048)
@@ -32,6 +33,13 @@ class DirectSum:
 
 
 @dataclass(frozen=True, eq=False)
+class Encoded:
+    """Each pixel evaluates the formula of an encoding, from the numbers that it keeps."""
+
+    stored: Stored
+
+
+@dataclass(frozen=True, eq=False)
 class SplineMap:
     """Each pixel looks the reconstruction up: spline coefficients (rows, columns, 4), rows on the poles."""
 
@@ -45,7 +53,7 @@ class Surfaces:
     shown: tuple[Surface, ...]
 
 
-Drawn: TypeAlias = DirectSum | SplineMap | Surfaces
+Drawn: TypeAlias = DirectSum | Encoded | SplineMap | Surfaces
 
 
 def map_size(n_bands: int, peak: float) -> tuple[int, int]:

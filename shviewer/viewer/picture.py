@@ -11,10 +11,11 @@ import numpy as np
 from shviewer.analysis.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
 from shviewer.analysis.projections import Projection
-from shviewer.analysis.reconstruction import Reconstruction, reconstruction_of
+from shviewer.analysis.reconstruction import Reconstruction, reconstruction_of, values_at
 from shviewer.analysis.subjects import Subject
-from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Extremes
+from shviewer.harmonics.quantities.encodings import Stored
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
@@ -27,7 +28,7 @@ from shviewer.viewer.beside import Beside, recipe_beside
 from shviewer.viewer.colour.error_scale import ErrorScale
 from shviewer.viewer.colour.tone import steepest
 from shviewer.viewer.derived import Peak, camera_of, error_scale, exposure_stops, peak, reconstruction_map, surfaces
-from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces, map_size
+from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces, map_size
 from shviewer.viewer.state import FRONT, State, changed
 
 LIVE = (
@@ -96,6 +97,11 @@ class Picture:
         return isinstance(self.figures, Figures) and isinstance(self.needs, Needs)
 
     @property
+    def stored(self) -> Stored | None:
+        """The numbers of the encoding that is shown; None where the coefficients are summed."""
+        return self.projection.stored_as(self.state.recipe.shown)
+
+    @property
     def light(self) -> Light:
         """The light that the figures are computed for."""
         return self.subject.light
@@ -121,7 +127,7 @@ class Picture:
 
     def rest_at(self, directions: Array) -> Array:
         """Radiance of the coefficients, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
-        return np.asarray(evaluate_basis(directions, self.state.recipe.n_bands) @ self.coefficients)
+        return values_at(directions, self.coefficients, self.stored)
 
     def suns_at(self, directions: Array) -> Array:
         """Radiance of the suns that are drawn on top of it, (k, 3)."""
@@ -194,11 +200,15 @@ def first_picture(
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
     scale = _scale(state, light, projection)
     stops = exposure_stops(view, whole)
-    other = reconstruction_of(recipe_beside(recipe, view.beside)) if view.beside != "off" else None
+    other = None
+    if view.beside != "off":
+        other = reconstruction_of(recipe_beside(recipe, view.beside), 0, view.encode, turn)
 
     def drawn_as(one: Reconstruction) -> Drawn:
         if view.lobe_view:
             return Surfaces(surfaces(view, light, projection, recipe.shown, other))
+        if one.stored is not None and view.evaluate != "map":
+            return Encoded(one.stored)
         if by_map or view.evaluate == "map" or recipe.n_bands > MAX_DIRECT_BANDS:
             largest = _largest(light, one.coefficients, recipe.n_bands)
             size = map_size(recipe.n_bands, _height(largest, scale, 2.0**stops * steepest(view.tone)))

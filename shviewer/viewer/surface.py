@@ -6,6 +6,7 @@ their shape.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, log2, sqrt
@@ -17,6 +18,7 @@ from shviewer.analysis.cache import remember
 from shviewer.harmonics.basis import Array, count_bands, index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
+from shviewer.harmonics.quantities.encodings import Stored
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 
@@ -70,17 +72,15 @@ def sample_basis(l: int, m: int, rows: int) -> Floats:
     return _synthesise(coefficients, rows)
 
 
+def sample_stored(stored: Stored, rows: int) -> Floats:
+    """The same of an irradiance that an encoding keeps."""
+    return _sampled(stored.irradiance, rows)
+
+
 @remember(most=2)
 def sample_light(light: Light, rows: int) -> Floats:
     """Rec. 709 luminance of a light on the grid; remembered with the light."""
-    theta, phi = np.linspace(0, np.pi, rows), column_azimuths(2 * (rows - 1))
-    theta[1:-1] += ASIDE
-    values = np.empty((rows, len(phi)), dtype=np.float32)
-    for start in range(0, rows, BLOCK_ROWS):
-        directions = directions_from_angles(theta[start : start + BLOCK_ROWS, None], phi)
-        radiance = light.radiance(directions.reshape(-1, 3))
-        values[start : start + BLOCK_ROWS] = (radiance @ LUMINANCE).reshape(directions.shape[:2])
-    values[[0, -1]] = values[[0, -1], :1]  # one direction each
+    values = _sampled(light.radiance, rows)
     _raise_landmarks(values, light)
     values.flags.writeable = False
     return values
@@ -109,6 +109,19 @@ def basis_surface(l: int, m: int, rows: int) -> Surface:
     """The surface of Y(l, m), its largest magnitude being the radius 1."""
     values = sample_basis(l, m, rows)
     return surface(values, float(np.abs(values).max()))
+
+
+def _sampled(radiance_at: Callable[[Array], Array], rows: int) -> Floats:
+    """Rec. 709 luminance of a function of directions (k, 3) on the grid."""
+    theta, phi = np.linspace(0, np.pi, rows), column_azimuths(2 * (rows - 1))
+    theta[1:-1] += ASIDE
+    values = np.empty((rows, len(phi)), dtype=np.float32)
+    for start in range(0, rows, BLOCK_ROWS):
+        directions = directions_from_angles(theta[start : start + BLOCK_ROWS, None], phi)
+        radiance = radiance_at(directions.reshape(-1, 3))
+        values[start : start + BLOCK_ROWS] = (radiance @ LUMINANCE).reshape(directions.shape[:2])
+    values[[0, -1]] = values[[0, -1], :1]  # one direction each
+    return values
 
 
 def _synthesise(coefficients: Array, rows: int) -> Floats:

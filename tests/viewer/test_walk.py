@@ -21,7 +21,7 @@ from shviewer.viewer import picture as picture_module
 from shviewer.viewer.actions import Command, step_sweep, toggle_band, with_bands
 from shviewer.viewer.composing.composition import Composition, frame_for
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
+from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import ACTIONS
 from shviewer.viewer.overlay.probe import probe, probe_layers
@@ -204,7 +204,7 @@ def test_every_state_that_a_walk_reaches_is_drawn(
             raise AssertionError(
                 f"seed {seed}, step {number}, after {walk.trail[-40:]}: {walk.session.state}"
             ) from error
-    assert len(walk.drawn & {DirectSum, SplineMap, Surfaces}) >= 2  # which, is chance
+    assert len(walk.drawn & {DirectSum, Encoded, SplineMap, Surfaces}) >= 2  # which, is chance
     again = [render_rgb(renderer, prepare(walk.session.state), walk.composition()) for _ in range(2)]
     np.testing.assert_array_equal(*again)
 

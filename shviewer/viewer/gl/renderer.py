@@ -15,7 +15,7 @@ from shviewer.lights.lobe import Lobe
 from shviewer.viewer.colour import colour_maps
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Pane, Sphere
-from shviewer.viewer.drawn import DirectSum, Drawn, SplineMap, Surfaces
+from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
 from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.gl.shared import (
     BACKGROUND,
@@ -232,6 +232,8 @@ class Renderer:
             sun_lobes=suns,
             original_rows_on_poles=source.map is not None and source.map.rows_on_poles,
         )
+        if isinstance(picture.drawn, Encoded):
+            program.set(stored=[tuple(row) for row in picture.drawn.stored.numbers.tolist()])
         scale = picture.error_scale
         if scale is not None:
             program.set(error_kind=ERRORS.index(scale.kind) - 1, error_range=scale.end, error_floor=scale.floor)
@@ -241,7 +243,7 @@ class Renderer:
     def _program(self, picture: Picture, shown: str, pane: Pane, samples: int = 1) -> Program:
         """The program that draws `shown`, compiled when first wanted. Choices that it does not read make no new one."""
         original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
-        reconstruction = "MAP" if isinstance(picture.drawn, SplineMap) and shown != "ORIGINAL" else "SUM"
+        reconstruction = _reconstruction(picture.drawn) if shown != "ORIGINAL" else "SUM"
         tone = "NONE" if shown == "ERROR" else picture.state.view.tone.upper()
         form = "SPHERE" if isinstance(pane, Sphere) else "MAP"
         lobes = {
@@ -288,6 +290,17 @@ class Renderer:
 def _held(shown: LatLongMap | None) -> tuple[NDArray[np.float32] | None, bool]:
     """The texels of a map, and whether half floats hold them."""
     return (None, False) if shown is None else (shown.texels, shown.halves)
+
+
+def _reconstruction(drawn: Drawn) -> str:
+    """The choice of a program that draws the reconstruction in that way."""
+    match drawn:
+        case Encoded(stored):
+            return stored.encoding.formula.upper()
+        case SplineMap():
+            return "MAP"
+        case _:
+            return "SUM"
 
 
 def _samples(original: LatLongMap | None, pane: Pane) -> int:

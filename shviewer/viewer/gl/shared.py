@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, index, normalisation
+from shviewer.harmonics.quantities.decoding import FORMULAS, LINEAR, MEAN, ZONAL
 from shviewer.harmonics.quantities.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.lobe import Lobe
@@ -22,7 +23,7 @@ from shviewer.viewer.view import ERRORS, TONES
 CHOICES: dict[str, tuple[str, ...]] = {
     "SHOWN": ("ORIGINAL", "RECONSTRUCTION", "ERROR"),
     "ORIGINAL": ("LOBES", "MAP"),
-    "RECONSTRUCTION": ("SUM", "MAP"),
+    "RECONSTRUCTION": ("SUM", "MAP", *(formula.upper() for formula in FORMULAS)),
     "TONE": tuple(tone.upper() for tone in TONES),
     "PANE": ("SPHERE", "MAP"),
 }
@@ -77,6 +78,9 @@ FLOATS = {
     **LINES,
     "LOG_RANGE": LOG_RANGE,
     "BRIGHTEST_EXPOSED": BRIGHTEST_EXPOSED,
+    "STORED_MEAN": MEAN,
+    "STORED_LINEAR": LINEAR,
+    "STORED_ZONAL": ZONAL,
 }
 VECTORS = {
     "BACKGROUND": BACKGROUND,

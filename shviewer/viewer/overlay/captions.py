@@ -15,7 +15,7 @@ from shviewer.viewer.beside import Beside, words_of
 from shviewer.viewer.composing.composition import Caption, Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
+from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, REGULAR, SEMIBOLD, Ink, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
@@ -85,6 +85,8 @@ def describe_evaluation(picture: Picture, timing: bool) -> str:
     match picture.drawn:
         case DirectSum():
             return "summed per pixel" if timing else ""
+        case Encoded():
+            return "its formula per pixel"
         case SplineMap(splines):
             height, width = splines.shape[:2]
             return f"from a map of {width} × {height}"

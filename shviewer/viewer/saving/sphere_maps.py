@@ -57,7 +57,7 @@ def _blocks(picture: Picture, width: int) -> Iterator[tuple[slice, Array]]:
     theta, block = row_angles(width // 2), max(1, BLOCK_PIXELS // width)
     world_from_light, turned = picture.light_from_world.T, bool((picture.light_from_world != np.eye(3)).any())
     coefficients = rotate(picture.coefficients, world_from_light) if turned else picture.coefficients
-    synthesis = Synthesis(coefficients)
+    synthesis = Synthesis(coefficients) if picture.stored is None else None
     for start in range(0, len(theta), block):
         here = theta[start : start + block]
         world = directions_from_angles(here[:, None], column_azimuths(width)).reshape(-1, 3)
@@ -68,7 +68,10 @@ def _blocks(picture: Picture, width: int) -> Iterator[tuple[slice, Array]]:
             rows = light.radiance(directions) if turned else light.rows(here, width).transpose(0, 2, 1)
             return rows.reshape(len(here), width, 3)
 
-        rest = synthesis.on_rows(here, width).transpose(0, 2, 1)
+        if synthesis is None:
+            rest = picture.rest_at(directions).reshape(shape)
+        else:
+            rest = synthesis.on_rows(here, width).transpose(0, 2, 1)
         whole, suns = picture.subject.whole, picture.suns_at(directions).reshape(shape)
         original = of(whole)
         compared = original if picture.light is whole else of(picture.light)

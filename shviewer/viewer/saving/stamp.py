@@ -17,6 +17,7 @@ from typing import Any, Protocol
 from shviewer.analysis.figures import Figures, Needs, Pending
 from shviewer.analysis.projections import project, sampling_of
 from shviewer.analysis.recipe import Recipe
+from shviewer.harmonics.basis import Array
 from shviewer.lights.find import file_of, version_of_light
 from shviewer.lights.light import Light
 from shviewer.lights.suns.sun import Sun
@@ -24,7 +25,7 @@ from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.version import __version__
 from shviewer.viewer.colour.colour_maps import map_of
 from shviewer.viewer.composing.panes import Sphere, WholeSphere
-from shviewer.viewer.drawn import DirectSum, SplineMap, Surfaces
+from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.file_marks import mark_of
 from shviewer.viewer.state import State
@@ -32,7 +33,7 @@ from shviewer.viewer.view import View
 
 SCHEMA = 1
 
-EVALUATED = {DirectSum: "direct", SplineMap: "map", Surfaces: "surfaces"}
+EVALUATED = {DirectSum: "direct", Encoded: "formula", SplineMap: "map", Surfaces: "surfaces"}
 """The word in a stamp for each way to draw the reconstruction."""
 
 NOT_SEEN = ("roughness", "layout_tried")
@@ -115,6 +116,7 @@ def metadata(picture: Picture, composition: Frame, opengl: str, *, overlay: bool
         "sheet": state.view.sheet,
         "lobe_view": state.view.lobe_view,
         "basis": state.view.basis,
+        "encoding": picture.stored and {"name": picture.stored.name, "numbers": _rounded(picture.stored.numbers)},
         "evaluated": EVALUATED[type(picture.drawn)],
         "size": [composition.width, composition.height],
         "camera_degrees": picture.placed(state).view.camera,
@@ -175,8 +177,11 @@ def _coefficients(picture: Picture) -> list[list[float]]:
     """
     recipe = picture.state.recipe
     radiance = project(picture.light.source, *sampling_of(recipe), recipe.projected_bands)
-    rows = radiance.coefficients[: min(recipe.n_bands, MAX_DIRECT_BANDS) ** 2].tolist()
-    return [[float(f"{value:.{DIGITS}g}") for value in row] for row in rows]
+    return _rounded(radiance.coefficients[: min(recipe.n_bands, MAX_DIRECT_BANDS) ** 2])
+
+
+def _rounded(rows: Array) -> list[list[float]]:
+    return [[float(f"{value:.{DIGITS}g}") for value in row] for row in rows.tolist()]
 
 
 def _searched(picture: Picture) -> dict[str, Any]:
