@@ -11,9 +11,10 @@ from helpers import picture_of
 
 from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, evaluate_basis
+from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.lobes import LobeLight
+from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.drawn import MAP_COLUMNS, DirectSum, SplineMap, map_size
 from shviewer.viewer.gl.renderer import Renderer
@@ -246,6 +247,22 @@ def test_automatic_exposure_leaves_one_hundredth_above_four_fifths_of_white(ligh
     brightest = shown.light.radiance(directions).max(axis=1) * 2**shown.exposure_stops
     assert weights[brightest > 0.8 * 1.03].sum() / (4 * np.pi) <= 0.0105  # 3 %: the grids are not the same
     assert weights[brightest >= 0.8 / 1.03].sum() / (4 * np.pi) >= 0.0095
+
+
+@pytest.mark.parametrize("sharpness", [300.0, 1e3, 1e4, 1e5, 1e8])
+def test_a_light_that_is_one_point_is_exposed_for_the_point(sharpness: float) -> None:
+    """The percentile of exp(-s (1 - cos)) is exp(-0.02 s) of the peak: 2^-289 for 1e4, which float32 cannot undo."""
+    lobe = Lobe(Gaussian(sharpness), np.array([1.0, 0.0, 0.0]), np.full(3, 3.0))
+    stops = picture_of(LobeLight((lobe,), "point")).exposure_stops
+    assert -2 < stops < 8
+    if sharpness > 300:
+        assert stops == pytest.approx(np.log2(0.8 / 3), abs=0.01)
+
+
+def test_a_sun_ten_million_times_as_bright_leaves_the_exposure_to_its_sky() -> None:
+    sun = Lobe(Disc(np.radians(0.265)), np.array([0.0, 0.0, 1.0]), np.full(3, 1e7))
+    sky = Lobe(Constant(), np.array([0.0, 0.0, 1.0]), np.ones(3))
+    assert picture_of(LobeLight((sun, sky), "day")).exposure_stops == pytest.approx(np.log2(0.8), abs=0.01)
 
 
 def test_a_fixed_exposure_is_kept_and_offsets_are_added() -> None:
