@@ -158,11 +158,9 @@ def processes(path: Path, layout: str) -> None:
 
 def window(paths: list[Path]) -> None:
     import glfw
-    import moderngl
 
     from shviewer.errors import GraphicsError
-    from shviewer.viewer.desktop.canvas import Canvas
-    from shviewer.viewer.desktop.window import LEAVE_SECONDS, Window, open_window
+    from shviewer.viewer.desktop.window import LEAVE_SECONDS, Window, canvas_of, open_window
     from shviewer.viewer.picture import prepare
     from shviewer.viewer.state import changed, state_of
 
@@ -176,11 +174,11 @@ def window(paths: list[Path]) -> None:
     try:
         with open_window((1280, 640)) as handle:
             for path in paths:
-                shown = Window(handle, Canvas(moderngl.create_context(require=330)), prepare(state_of("green")), False)
+                shown = Window(handle, canvas_of(handle), prepare(state_of("green")), False)
                 before = [frame(shown, turn) for turn in range(BEFORE)]
                 shown.session.drop(str(path))
                 meanwhile, start, first = [], time.perf_counter(), 0.0
-                while first == 0 or not shown.session.picture.complete:
+                while first == 0 or not (shown.session.picture.complete and shown.shown is shown.session.picture):
                     assert time.perf_counter() < start + PATIENCE, shown.session.state.view.message
                     meanwhile.append(frame(shown, len(meanwhile)))
                     if first == 0 and shown.shown is not None and shown.shown.light.name == path.stem:

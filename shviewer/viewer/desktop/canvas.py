@@ -11,6 +11,7 @@ from shviewer.errors import ShviewerError
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.evaluation import Evaluation
 from shviewer.viewer.drawn import DirectSum
+from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.foot import Work
@@ -26,17 +27,26 @@ from shviewer.viewer.view import View
 Point = tuple[float, float]
 
 UPLOAD_SECONDS = 0.02
-"""About how long a frame uploads maps."""
+"""About how long a frame uploads maps, where no other thread does."""
+
+UPLOADING = "handing the map to OpenGL"
 
 
 class Canvas:
     """Frames on the screen of a context. release() at the end."""
 
-    def __init__(self, context: moderngl.Context) -> None:
-        self.renderer = Renderer(context)
+    def __init__(self, context: moderngl.Context, carrier: Carrier | None = None) -> None:
+        self.renderer = Renderer(context, carrier)
         self.overlay: Overlay | None = None
         self._overlay_key: object = None
         self._evaluation = Evaluation()
+        self._work: Work | None = None
+        """What is being done, as long as there is no picture."""
+
+    @property
+    def uploading(self) -> bool:
+        """Whether a map is on its way."""
+        return self.renderer.uploading is not None
 
     def by_map(self, state: State, composition: Composition) -> bool:
         """Whether to draw the reconstruction from a map; asked where the choice is left to the time that frames take."""
@@ -50,18 +60,22 @@ class Canvas:
 
         pointer: where the mouse is, for the values of the band under it.
 
-        Return False while a large map is on its way: the last picture stays. GraphicsError for a map that this OpenGL
-        cannot hold.
+        Return False while a large map is on its way: the last picture stays, seen from where the camera is now.
+        GraphicsError for a map that this OpenGL cannot hold.
         """
-        if not self.renderer.show(picture, None if self.renderer.picture is None else UPLOAD_SECONDS):
-            return False
+        uploaded = self.renderer.show(picture, UPLOAD_SECONDS)
+        if not uploaded:
+            self._work = work = work or Work(UPLOADING, round(self.renderer.uploading or 0.0, 2))
+            if self.renderer.picture is None:
+                return False
+            self.renderer.picture = picture = self.renderer.picture.seen(picture.state)
         hovered = self.band_at(pointer)
         key = work, hovered, _overlay_key(picture, composition)
         if key != self._overlay_key:
             opengl = self.renderer.version
             self.overlay = draw_overlay(picture, composition, timing=True, opengl=opengl, work=work, hovered=hovered)
             self._overlay_key = key
-        return True
+        return uploaded
 
     def band_at(self, pointer: Point | None) -> int | None:
         """The band whose slot in the curve is there; None for any other place."""
@@ -77,7 +91,11 @@ class Canvas:
         """Draw the picture last shown, with the values under the pointer; return whether another frame is due.
 
         alone: nothing else is at work. Then a picture that is summed per pixel is timed, and may turn out to be too slow.
+        Until there is a picture, what is being done.
         """
+        if self.renderer.picture is None and self._work is not None:
+            self.wait(self._work, composition)
+            return False
         picture = self._picture
         layers = self.layers(composition, pointer)
         timed = alone and picture.state.view.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
@@ -110,6 +128,8 @@ class Canvas:
 
     def release(self) -> None:
         self.renderer.release()
+        if self.renderer.carrier is not None:
+            self.renderer.carrier.end()
 
     @property
     def _picture(self) -> Picture:

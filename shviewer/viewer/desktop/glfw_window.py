@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -86,19 +87,51 @@ def open_window(size: tuple[int, int]) -> Iterator[Any]:
         glfw.terminate()
 
 
+class SideContext:
+    """A context for another thread, which shares its textures with the window's. Made where the window is current."""
+
+    def __init__(self, handle: Any) -> None:
+        self._handle = handle
+
+    def enter(self) -> None:
+        glfw.make_context_current(self._handle)
+
+    def leave(self) -> None:
+        glfw.make_context_current(None)
+
+    def address(self, function: str) -> int:
+        return ctypes.cast(glfw.get_proc_address(function), ctypes.c_void_p).value or 0
+
+
+def side_context(window: Any) -> SideContext | None:
+    """A second context beside the window's, on a window that nobody sees; None where the system gives none.
+
+    It goes with the window.
+    """
+    _hint(*(glfw.get_window_attrib(window, what) for what in (glfw.CONTEXT_VERSION_MAJOR, glfw.CONTEXT_VERSION_MINOR)))
+    glfw.window_hint(glfw.VISIBLE, False)
+    handle = glfw.create_window(1, 1, "shviewer", None, window)
+    return SideContext(handle) if handle else None
+
+
 def _create_window(size: tuple[int, int], version: int) -> Any:
-    glfw.default_window_hints()
-    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version // 100)
-    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version % 100 // 10)
-    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
-    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
-    glfw.window_hint(glfw.DEPTH_BITS, 0)
-    glfw.window_hint(glfw.STENCIL_BITS, 0)
+    _hint(version // 100, version % 100 // 10)
     glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
     handle = glfw.create_window(*size, "shviewer", None, None)
     if handle:
         glfw.set_window_size_limits(handle, *SMALLEST_WINDOW, glfw.DONT_CARE, glfw.DONT_CARE)
     return handle
+
+
+def _hint(major: int, minor: int) -> None:
+    """Ask for a version of OpenGL, and for nothing that is not used."""
+    glfw.default_window_hints()
+    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, major)
+    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, minor)
+    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
+    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
+    glfw.window_hint(glfw.DEPTH_BITS, 0)
+    glfw.window_hint(glfw.STENCIL_BITS, 0)
 
 
 def _last_error() -> str:

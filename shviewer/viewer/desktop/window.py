@@ -20,10 +20,11 @@ from shviewer.viewer.actions import Command
 from shviewer.viewer.composing.composition import Composition, compose, frame_for
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.desktop.errands import coefficients_text
-from shviewer.viewer.desktop.glfw_window import key_name, open_window
+from shviewer.viewer.desktop.glfw_window import key_name, open_window, side_context
 from shviewer.viewer.desktop.mouse import Mouse
-from shviewer.viewer.desktop.session import PATIENCE, Session
+from shviewer.viewer.desktop.session import PATIENCE, STATUS_SECONDS, Session
 from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.message import DONE, ERROR, WARNING
 from shviewer.viewer.overlay.foot import Work
@@ -52,7 +53,7 @@ def run(
     if first.wait(PATIENCE):
         first.result()  # what is refused at once is refused without a window
     with open_window(size) as handle:
-        canvas = Canvas(moderngl.create_context(require=330))
+        canvas = canvas_of(handle)
         try:
             if _wait_for(first, handle, canvas):
                 shown = Window(handle, canvas, first.result(), verbose, watch, as_image)
@@ -61,6 +62,12 @@ def run(
         finally:
             canvas.release()
     return None
+
+
+def canvas_of(handle: Any) -> Canvas:
+    """The canvas of a window whose context is current, with a thread for large textures where there can be one."""
+    context = moderngl.create_context(require=330)
+    return Canvas(context, Carrier.beside(context, side_context(handle), glfw.post_empty_event))
 
 
 def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
@@ -127,13 +134,14 @@ class Window:
             if self.frames_due:
                 begin = perf_counter()
                 self.frame()
-                if self.session.working:  # the frames leave it half of the time
+                if self.session.working or self.canvas.uploading:  # the frames leave it half of the time
                     sleep(min(perf_counter() - begin, LEAVE_SECONDS))
             if self.frames_due:
                 glfw.poll_events()
             else:
-                glfw.wait_events_timeout(self.session.wait(perf_counter(), IDLE_SECONDS))
-            if self.session.tick(perf_counter()):
+                most = STATUS_SECONDS if self.canvas.uploading else IDLE_SECONDS
+                glfw.wait_events_timeout(self.session.wait(perf_counter(), most))
+            if self.session.tick(perf_counter()) or self.canvas.uploading:
                 self._due()
 
     def redraw(self) -> None:
@@ -179,7 +187,7 @@ class Window:
             uploaded = self.canvas.show(session.picture, composition)
         if uploaded:
             self.shown = session.picture
-        else:
+        elif self.canvas.renderer.carrier is None:
             self._due()
         ready = ready and uploaded
         if session.title != self.title:

@@ -16,6 +16,7 @@ from shviewer.viewer.colour import colour_maps
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Pane, Sphere
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
+from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.gl.shared import (
     BACKGROUND,
@@ -45,8 +46,10 @@ VEC4 = 16
 class Renderer:
     """One context's programs, buffers and textures. `show` uploads what changed, `draw` draws it; release() at the end."""
 
-    def __init__(self, context: moderngl.Context) -> None:
+    def __init__(self, context: moderngl.Context, carrier: Carrier | None = None) -> None:
+        """carrier: makes the textures of large maps, so that drawing does not wait for them."""
         self.context = context
+        self.carrier = carrier
         self.programs: dict[tuple[str | int, ...], Program] = {}
         """Programs of sphere.frag, by the choices they were made for."""
         self.layer_program = Program(context, "layer.frag")
@@ -54,9 +57,8 @@ class Renderer:
         """Made when the first surface is drawn."""
         self.sh_buffer, self.beside_buffer = (context.buffer(reserve=SH_TERMS * VEC4) for _ in range(2))
         self.lobe_buffer = context.buffer(reserve=LOBE_SLOTS * 3 * VEC4)
-        self.original_map, self.compared_map, self.reconstruction_map, self.beside_map, self.colour_map = (
-            ArrayTexture(context) for _ in range(5)
-        )
+        self.original_map, self.compared_map = (ArrayTexture(context, carrier) for _ in range(2))
+        self.reconstruction_map, self.beside_map, self.colour_map = (ArrayTexture(context) for _ in range(3))
         self.layers: dict[int, tuple[Layer, ArrayTexture]] = {}
         """The layers of the last frame and their textures, by the identity of the image."""
         self.colours: dict[str, NDArray[np.float32]] = {}
@@ -74,6 +76,12 @@ class Renderer:
         """OpenGL's version and the name of the graphics processor, as the driver gives them."""
         code = self.context.version_code
         return f"OpenGL {code // 100}.{code % 100 // 10}, {self.context.info['GL_RENDERER']}"
+
+    @property
+    def uploading(self) -> float | None:
+        """How much there is of a map that is on its way; None while none is."""
+        shares = (texture.share for texture in (self.original_map, self.compared_map))
+        return next((share for share in shares if share is not None), None)
 
     def show(self, picture: Picture, seconds: float | None = None) -> bool:
         """Upload what differs from the last picture; return whether it is all there.
@@ -132,6 +140,8 @@ class Renderer:
         target.viewport = (0, 0, composition.width, composition.height)
         if not linear:
             self._draw_layers(target, composition, layers)
+        if self.carrier is not None:
+            self.carrier.drawn()
 
     def draw_text(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
         """Draw layers over the background alone, as long as there is no picture."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError
+from shviewer.viewer.gl.carrier import Carrier, Load
 
 BAND_BYTES = 2**23
 """What is uploaded between two looks at the clock: a few milliseconds."""
@@ -20,11 +21,13 @@ class ArrayTexture:
     It has the array's components, and half floats where the caller knows that those are exact: less memory loses nothing.
     """
 
-    def __init__(self, context: moderngl.Context) -> None:
+    def __init__(self, context: moderngl.Context, carrier: Carrier | None = None) -> None:
+        """carrier: makes large textures meanwhile; without one they go up here, in bands."""
         self._context = context
+        self._carrier = carrier
         self._array: NDArray[np.generic] | None = None
-        self._texture: moderngl.Texture | None = None
-        self._next: _Upload | None = None
+        self._held: _Upload | Load | None = None
+        self._next: _Upload | Load | None = None
 
     def follow(self, array: NDArray[np.generic] | None, halves: bool = False) -> None:
         """Upload `array` unless it is the one held. GraphicsError if this OpenGL has no textures that large.
@@ -35,10 +38,10 @@ class ArrayTexture:
         if array is None:
             self.release()
         elif array is not self._array and self._next is not None:
-            upload, self._next = self._next, None
-            if self._texture is not None and self._texture is not upload.texture:
-                self._texture.release()
-            self._array, self._texture = array, upload.texture
+            before, self._held, self._next = self._held, self._next, None
+            if before is not None and not _same(before, self._held):
+                before.release()
+            self._array = array
 
     def bring(self, array: NDArray[np.generic] | None, seconds: float | None = None, halves: bool = False) -> bool:
         """Upload `array` for at most about `seconds`, beside the one held; return whether all of it is there."""
@@ -50,33 +53,45 @@ class ArrayTexture:
             self._next = self._begin(array, halves)
         return self._next.go_on(None if seconds is None else perf_counter() + seconds)
 
-    def _begin(self, array: NDArray[np.generic], halves: bool) -> _Upload:
+    @property
+    def share(self) -> float | None:
+        """How much there is of what is on its way; None while nothing is."""
+        return None if self._next is None else self._next.share
+
+    def _begin(self, array: NDArray[np.generic], halves: bool) -> _Upload | Load:
         height, width, components = array.shape
         limit = self._context.info["GL_MAX_TEXTURE_SIZE"]
         if max(height, width) > limit:
             raise GraphicsError(f"a map of {width} x {height} texels: this OpenGL takes at most {limit} a side")
         dtype = "f1" if array.dtype == np.uint8 else "f2" if halves else "f4"
-        held = self._texture
+        if array.nbytes > BAND_BYTES and dtype != "f1" and self._carrier is not None:
+            return self._carrier.carry(array, dtype)
+        held = self._held.texture if isinstance(self._held, _Upload) else None
         alike = held is not None and (held.size, held.components, held.dtype) == ((width, height), components, dtype)
         if held is None or not alike or array.nbytes > BAND_BYTES:  # a small one is written over the one held
             held = self._context.texture((width, height), components, dtype=dtype, alignment=1)
         return _Upload(array, held)
 
     def _drop_upload(self) -> None:
-        if self._next is not None and self._next.texture is not self._texture:
-            self._next.texture.release()
+        if self._next is not None and not _same(self._next, self._held):
+            self._next.release()
         self._next = None
 
     def use(self, unit: int) -> None:
         """Bind to a texture unit, if there is an array."""
-        if self._texture is not None:
-            self._texture.use(unit)
+        if self._held is not None:
+            self._held.texture.use(unit)
 
     def release(self) -> None:
         self._drop_upload()
-        if self._texture is not None:
-            self._texture.release()
-        self._texture = self._array = None
+        if self._held is not None:
+            self._held.release()
+        self._held = self._array = None
+
+
+def _same(one: _Upload | Load, other: _Upload | Load | None) -> bool:
+    """Whether they have one texture, which the one is written into over the other."""
+    return isinstance(one, _Upload) and isinstance(other, _Upload) and one.texture is other.texture
 
 
 class _Upload:
@@ -86,6 +101,10 @@ class _Upload:
         self.array = array
         self.texture = texture
         self._row = 0
+
+    @property
+    def share(self) -> float:
+        return float(self._row / max(len(self.array), 1))
 
     def go_on(self, end: float | None) -> bool:
         """Upload until `end` on the clock, at least one band; return whether all rows are there."""
@@ -100,3 +119,6 @@ class _Upload:
             if end is not None and perf_counter() > end:
                 break
         return bool(self._row >= height)
+
+    def release(self) -> None:
+        self.texture.release()

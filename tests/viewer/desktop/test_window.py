@@ -13,6 +13,7 @@ import pytest
 from viewer.desktop.desktop import PATIENCE, Viewer, output_of, screenshot
 
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.gl.textures import BAND_BYTES
 
 Start = Callable[..., Viewer]
 
@@ -280,3 +281,11 @@ def test_keys_between_two_frames_leave_neither_an_old_title_nor_what_opengl_cann
     """T makes the picture before the frame does, so that the frame finds nothing new."""
     printed = output_of(display, TWO_KEYS_SCRIPT)
     assert printed.splitlines() == ["shviewer - constant", "shviewer - constant|constant|a map too large"]
+
+
+def test_a_map_that_another_thread_hands_to_opengl_is_that_of_the_screenshot(start: Start, tmp_path: Path) -> None:
+    pixels = np.random.default_rng(5).random((600, 1200, 3), dtype=np.float32)
+    assert pixels.nbytes > BAND_BYTES
+    np.save(tmp_path / "large.npy", pixels)
+    shown, _ = start("large.npy").saved_picture()
+    np.testing.assert_array_equal(shown, screenshot(tmp_path, "large.npy"))

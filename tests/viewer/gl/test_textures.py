@@ -22,10 +22,11 @@ def texture(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> ArrayTexture
 
 def held(texture: ArrayTexture) -> np.ndarray:
     """What OpenGL holds, (height, width, components)."""
-    assert texture._texture is not None
-    width, height = texture._texture.size
-    dtype = np.float16 if texture._texture.dtype == "f2" else np.float32
-    return np.frombuffer(texture._texture.read(alignment=1), dtype).reshape(height, width, -1)
+    assert texture._held is not None
+    shown = texture._held.texture
+    width, height = shown.size
+    dtype = np.float16 if shown.dtype == "f2" else np.float32
+    return np.frombuffer(shown.read(alignment=1), dtype).reshape(height, width, -1)
 
 
 def test_a_large_array_goes_up_in_bands_while_the_last_one_stays(texture: ArrayTexture) -> None:
@@ -44,8 +45,8 @@ def test_a_large_array_goes_up_in_bands_while_the_last_one_stays(texture: ArrayT
 def test_values_that_half_floats_hold_take_half_the_memory_and_lose_nothing(texture: ArrayTexture) -> None:
     values = LARGE.astype(np.float16).astype(np.float32)
     texture.follow(values, halves=True)
-    assert texture._texture is not None
-    assert texture._texture.dtype == "f2"
+    assert texture._held is not None
+    assert texture._held.texture.dtype == "f2"
     np.testing.assert_array_equal(held(texture), values)
     texture.release()
 
@@ -70,9 +71,10 @@ def test_an_array_that_is_given_up_half_way_leaves_nothing_behind(texture: Array
 
 def test_a_texture_of_the_same_size_is_written_over_where_that_is_quick(texture: ArrayTexture) -> None:
     texture.follow(np.zeros((4, 4, 3), np.float32))
-    first = texture._texture
+    assert texture._held is not None
+    first = texture._held.texture
     texture.follow(np.ones((4, 4, 3), np.float32))
-    assert texture._texture is first
+    assert texture._held.texture is first
     assert (held(texture) == 1).all()
     texture.release()
 
