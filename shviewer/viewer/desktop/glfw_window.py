@@ -97,7 +97,7 @@ class SideContext:
         glfw.make_context_current(self._handle)
 
     def leave(self) -> None:
-        glfw.make_context_current(None)
+        glfw.make_context_current(None)  # type: ignore[arg-type]  # None: no window
 
     def address(self, function: str) -> int:
         return ctypes.cast(glfw.get_proc_address(function), ctypes.c_void_p).value or 0
