@@ -119,6 +119,9 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
             "(plus, minus) if parity else (minus, plus)",
         ),
     ),
+    "harmonics/sampling/spread.py": (
+        ("waves not over those of the bump", "function(along) / wave[order, None]", "function(along)"),
+    ),
     "harmonics/theta_series.py": (
         ("k = 0 counted whole where no table is", "np.where(k == 0, 0.5, 1.0)", "np.where(k == 0, 1.0, 1.0)"),
     ),

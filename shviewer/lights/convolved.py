@@ -28,13 +28,17 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class ConvolvedLight(LightBase):
-    """`source` convolved with `kernel`; bands beyond the first `bands` are negligible."""
+    """`source` convolved with `kernel`."""
 
     source: Light
     kernel: Kernel
-    bands: int = FEWEST_BANDS
 
     lobes = ()
+
+    @cached_property
+    def bands(self) -> int:
+        """The number of its bands: of those beyond, kernel or source holds little."""
+        return min(self.kernel.bands, self.source.most_bands)
 
     @property
     def name(self) -> str:
@@ -186,4 +190,4 @@ class RadianceLight(LightBase):
 def convolved(light: Light, quantity: str, kind: type[ConvolvedLight]) -> Light:
     """A radiance as that quantity; itself, if that is radiance. ValueError for an unknown one."""
     kernel = kernel_of(quantity)
-    return light if kernel.quantity == RADIANCE else kind(light, kernel, min(kernel.bands, light.most_bands))
+    return light if kernel.quantity == RADIANCE else kind(light, kernel)

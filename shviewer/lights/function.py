@@ -15,8 +15,9 @@ from numpy.typing import ArrayLike
 
 from shviewer.errors import LightError
 from shviewer.files import naming, read_bytes
-from shviewer.harmonics.basis import Array, check_bands
+from shviewer.harmonics.basis import Array, check_bands, count_bands
 from shviewer.harmonics.sampling.sampled import Sampled, sample
+from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
 from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.limits import DEFAULT_LIMITS, Limits, check_brightness
@@ -25,7 +26,10 @@ from shviewer.words import grouped, theta_phi_degrees
 MAX_CODE_BYTES = 2**22
 
 SAMPLED_BANDS = 128
-"""The most bands there are of a function."""
+"""The bands of a function that are at hand once it is sampled."""
+
+NOTHING = 1e-5
+"""A relative L2 error of those that is less leaves nothing for more bands to hold."""
 
 UNCERTAIN = 5e-4
 """An uncertainty of the figures above this is said in a note."""
@@ -125,16 +129,23 @@ class FunctionLight(RadianceLight):
             self._news[:] = [max([*self._news, (float(size[best]), tuple(directions[best].tolist()))])]
 
     def coefficients(self, n_bands: int) -> Array:
-        check_bands(n_bands, SAMPLED_BANDS)
-        return self._sampled.coefficients[: n_bands**2]
+        """As in Light. The most bands asked for so far are kept."""
+        check_bands(n_bands, MAX_SEPARABLE_BANDS)
+        if len(self._held[0]) < n_bands**2:
+            self._held[0] = self._sampled.with_more_bands(self.radiance, n_bands)
+        return self._held[0][: n_bands**2]
+
+    @cached_property
+    def _held(self) -> list[Array]:
+        return [self._sampled.coefficients]
 
     @property
     def most_bands(self) -> int:
-        return SAMPLED_BANDS
+        return SAMPLED_BANDS if self._sampled.left_out < NOTHING else MAX_SEPARABLE_BANDS
 
     @property
     def kept_bands(self) -> int:
-        return SAMPLED_BANDS if "_sampled" in vars(self) else 0
+        return count_bands(self._held[0]) if "_held" in vars(self) else 0
 
     def products(self) -> Array:
         return self._sampled.products

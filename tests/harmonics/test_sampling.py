@@ -9,9 +9,11 @@ from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 from scipy.special import eval_legendre
 
+from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.sampling.cells import NODES, POINTS, Cells, gauss, locate, project, sectors, shares, to_nodes
 from shviewer.harmonics.sampling.look import LOOK_COLUMNS, LOOK_ROWS, SEEN_DEGREES, look, turned
 from shviewer.harmonics.sampling.sampled import Sampled, sample
+from shviewer.harmonics.sampling.spread import project_points
 
 
 def grey(values: np.ndarray) -> np.ndarray:
@@ -136,3 +138,21 @@ def test_a_small_disc_does_not_cost_a_dense_sphere() -> None:
     base = 512**2 // 8 * 12.7 + 2 * 320**2  # the roots, and the rule that was tried in vain
     assert found.evaluations - sampled(0.0).evaluations < base + 200_000  # a dense sphere of the finest cells has 1e11
     assert found.places[0] @ axis > np.cos(np.radians(0.27))
+
+
+@pytest.mark.parametrize("depth", [0, 1, 3])
+def test_points_that_are_spread_onto_a_grid_have_the_waves_of_the_points(depth: int) -> None:
+    """Some cells anywhere, those beside the poles among them, against the independent basis at their points."""
+    rng, cells = np.random.default_rng(depth), Cells.roots()
+    cells = cells[np.r_[0, 1, len(cells) - 1, rng.integers(0, len(cells), 5)]]
+    for _ in range(depth):
+        cells = cells.divided()
+        cells = cells[rng.integers(0, len(cells), 8)]
+    at, share = gauss(POINTS)
+    smooth = 1 + np.multiply.outer(at, at)  # what a root's points are read as is a polynomial
+    weighted = rng.standard_normal((len(cells), 1, 1, 3)) * (np.multiply.outer(share, share) * smooth)[..., None]
+    n_bands = 12
+    directions = directions_from_angles(cells.theta(at)[:, :, None], cells.phi(at)[:, None, :]).reshape(-1, 3)
+    wanted = scipy_basis(directions, n_bands).T @ weighted.reshape(-1, 3)
+    found = project_points([(cells, weighted)], n_bands)
+    assert_allclose(found, wanted, rtol=0, atol=3e-7 * np.abs(weighted).sum() / 3)

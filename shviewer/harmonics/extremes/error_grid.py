@@ -33,9 +33,6 @@ MOST_OPEN = 1500
 BLOCKS = 6
 """The blocks of the grid from whose highest cells the largest error is climbed to."""
 
-SPARSE_BANDS = 128
-"""A difference of more bands, whose heights fall off, is looked at in two rows a band, others in four."""
-
 NEGLIGIBLE = 1e-7
 """The share of the largest radiance that is no longer told apart."""
 
@@ -225,25 +222,7 @@ class ErrorGrid:
 
     def _error_of_bands(self, seen: _Seen, bands: Bands) -> _Found:
         least = float(np.abs(seen.values - self.original).max())
-        difference, left_out = bands.less(seen.shown, TOLERANCE / 4 * least)
-        synthesis, heights = Synthesis(difference), band_heights(difference)
-        n_rows = max(len(self.theta), (4 if len(heights) <= SPARSE_BANDS else 2) * len(heights))
-        values = synthesis.on_rows(row_angles(n_rows), 2 * n_rows)
-        ends = [int(values.argmin()), int(values.argmax())]
-        row, _, column = np.unravel_index(max(ends, key=lambda at: abs(values.flat[at])), values.shape)
-        start = directions_from_angles(row_angles(n_rows)[[row]], column_azimuths(2 * n_rows)[[column]])
-
-        def error(directions: Array) -> Array:
-            return np.asarray(np.abs(synthesis.in_directions(directions)).max(axis=1))
-
-        found = self._best(error, start)
-        tolerance = max(TOLERANCE * found.value, NEGLIGIBLE * self.peak)
-        sides = [Waves(signed, heights).lowest(-found.value, tolerance) for signed in (values, -values)]
-        deepest = min(sides, key=lambda side: side.lowest)
-        if -deepest.lowest > found.value + tolerance / 2:
-            start = directions_from_angles(np.array([deepest.theta]), np.array([deepest.phi]))
-            found = found.or_larger(self._best(error, start))
-        return found._replace(bound=left_out - min(side.bound for side in sides))
+        return _Found(*bands.largest_error(seen.shown, len(self.theta), least, TOLERANCE, NEGLIGIBLE * self.peak))
 
     def _error(self, seen: _Seen, directions: Array) -> Array:
         return np.asarray(np.abs(seen.synthesis.in_directions(directions) - self.radiance(directions)).max(axis=1))

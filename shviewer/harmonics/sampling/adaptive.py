@@ -68,6 +68,8 @@ class Resolved:
     """The largest |f| seen."""
     places: Array
     """Directions (k, 3) of the brightest point in roots that were divided, those first where most had been missed."""
+    layers: list[tuple[Cells, Array]]
+    """All cells that were not divided, and their values times the weights of their points, (n, POINTS, POINTS, 3)."""
     widest_left: float
     """The height in degrees of the largest cell that should have been divided further; 0 if none was left."""
 
@@ -99,6 +101,7 @@ def resolve(
         work.evaluations,
         work.peak,
         work.places[order[work.brightest[order] >= 0]],
+        work.layers,
         work.widest_left,
     )
 
@@ -114,6 +117,7 @@ class _Work:
         self.whole = np.zeros((n_roots, POINTS, POINTS, 3))
         self.divided = np.zeros((n_roots, NODES, NODES, 3))
         self.products, self.magnitude = np.zeros((3, 3)), np.zeros(3)
+        self.layers: list[tuple[Cells, Array]] = []
         self.squares = np.zeros(7)
         self.evaluations, self.peak, self.widest_left = 0, 0.0, 0.0
         self.brightest, self.places = np.full(n_roots, -1.0), np.zeros((n_roots, 3))
@@ -166,6 +170,7 @@ class _Work:
         self.products += weighted.reshape(-1, 3).T @ values.reshape(-1, 3)
         self.magnitude += np.ones(weighted.size // 3) @ np.abs(weighted).reshape(-1, 3)
         self.squares += (errors[kept] ** 2).sum(axis=0)
+        self.layers.append((cells[kept], weighted))
         if cells.depth == 0:
             self.whole[kept] = weighted
         else:

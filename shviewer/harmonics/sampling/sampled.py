@@ -17,7 +17,9 @@ from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import Radiance, gauss_legendre
 from shviewer.harmonics.sampling.adaptive import resolve
+from shviewer.harmonics.sampling.cells import Cells
 from shviewer.harmonics.sampling.look import SEEN_DEGREES, Integrals, Watched, look, turned
+from shviewer.harmonics.sampling.spread import project_points
 
 ROWS = (160, 320)
 """Gauss-Legendre rows, tried in turn; the first are exact for products of two functions of 160 bands."""
@@ -53,6 +55,22 @@ class Sampled:
     """Directions (k, 3) of the brightest points where cells were divided."""
     seen_degrees: float
     """The width of features that cannot have been missed."""
+    layers: tuple[tuple[Cells, Array], ...] = ()
+    """The cells, and their values times the weights of their points (adaptive.py)."""
+
+    @property
+    def left_out(self) -> float:
+        """The relative L2 error of the coefficients."""
+        return _left_out(self.coefficients, self.products)
+
+    def with_more_bands(self, radiance: Radiance, n_bands: int) -> Array:
+        """Coefficients (n_bands**2, 3), those there are and more of the same cells, or of a rule that has as many bands."""
+        if self.layers:
+            found = project_points(self.layers, n_bands)
+        else:
+            found = project_product(radiance, gauss_legendre(2 * n_bands**2), n_bands)[0]
+        found[: len(self.coefficients)] = self.coefficients
+        return found
 
 
 def sample(radiance: Radiance, n_bands: int) -> Sampled:
@@ -93,6 +111,7 @@ def sample(radiance: Radiance, n_bands: int) -> Sampled:
         max(looked.peak, other.peak, found.peak),
         found.places,
         max(SEEN_DEGREES, found.widest_left / 2),
+        tuple(found.layers),
     )
 
 
