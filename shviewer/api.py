@@ -190,7 +190,7 @@ def report(
     budget: float | None = None,
     force: bool = False,
 ) -> Summary:
-    """Measure speed against error on this machine and write report.md, .json, .csv and plots into `folder`.
+    """Measure speed against error on this machine and write report.html, .md, .json, .csv and plots into `folder`.
 
     of: a light or several; none for the built-in choice. budget: seconds of measuring, 120 unless given; quick: 15 s in all.
     force: replace files there even if shviewer did not write them. OutputError if nothing can be written there.

@@ -120,7 +120,7 @@ OURS = (
     b'"world_from_view"',  # a key of that stamp, the comment of a GIF and the description of a WebP
     b'"shviewer-report/',  # the schema of a report's JSON
     b"section,method,light,n_bands,samples,",  # the head of its CSV
-    b"How long it takes to project a light onto spherical harmonics",  # the first words of its page
+    b"How many bands of spherical harmonics a light needs",  # the first words of its page
     b"<dc:title>shviewer</dc:title>",  # who made an SVG
 )
 """Bytes of the stamps: each file of this program has some of them within OURS_BYTES of one of its ends."""

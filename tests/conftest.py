@@ -14,7 +14,7 @@ from helpers import hear_signals, unavailable
 os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
 
 from shviewer.analysis.cache import MEMORY
-from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
+from shviewer.benchmark.measuring.measured_lights import MeasuredLight, measured_light
 from shviewer.errors import GraphicsError
 from shviewer.lights.find import find_light
 from shviewer.viewer import screenshot

@@ -24,8 +24,9 @@ from shviewer.analysis.information import describe
 from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
-from shviewer.benchmark.page.comparing import compare
-from shviewer.benchmark.page.document import Report, read_report
+from shviewer.benchmark.page.changes import lines
+from shviewer.benchmark.rows.comparing import compare
+from shviewer.benchmark.rows.report import Report, read_report
 from shviewer.cli import project
 from shviewer.cli.main import main
 from shviewer.cli.options.inputs import reading_from
@@ -321,12 +322,10 @@ def test_an_older_report_tells_finite_numbers_and_printable_texts(tmp_path: Path
     page = json.loads(Report(0, "shviewer report", {"processor": HOSTILE}, {}).as_json())
     path = tmp_path / "old.json"
     path.write_text(json.dumps(page))
-    assert all(line.isprintable() for line in compare(read_report(path), read_report(path)).as_markdown("old.json"))
+    assert all(line.isprintable() for line in lines(compare(read_report(path), read_report(path)), "old.json"))
     assert str(read_report(path).machine["processor"]).isprintable()
     path.write_text(json.dumps(page | {"machine": {"processor": ["x" * 900] * 900}}))
-    assert (
-        max(map(len, compare(read_report(path), Report(0, "", {"processor": ""}, {})).as_markdown("old.json"))) < 1000
-    )
+    assert max(map(len, lines(compare(read_report(path), Report(0, "", {"processor": ""}, {})), "old.json"))) < 1000
     for value, says in ((float("nan"), "nan"), (10**400, "beyond 1e308"), ("nan", "no number")):
         path.write_text(json.dumps(page | {"yardstick_milliseconds": {"median": value}}))
         with pytest.raises(UsageError, match=says):

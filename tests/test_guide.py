@@ -290,7 +290,7 @@ def test_the_excerpt_of_the_report_is_in_the_report() -> None:
     said = re.search(r"For 5 %: (\d+ bands); the paper's (.*?)\. The", " ".join(text.split()))
     assert said is not None
     assert re.search(
-        rf"for 5 % relative L2: {said[1]}, .*?; the paper's {re.escape(said[2])}",
+        rf"for a total error of 5 %: {said[1]}, .*?; the paper's {re.escape(said[2])}",
         whole.partition("### hemisphere")[0],
     )
 

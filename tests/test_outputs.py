@@ -258,7 +258,9 @@ def test_a_report_replaces_a_file_of_somebody_else_only_by_force_and_its_own_at_
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     """Before anything is measured: what is replaced is known then."""
-    monkeypatch.setattr(plots, "_plots", lambda rows: dict.fromkeys(("time-error-green", "frame-time"), lambda _: None))
+    monkeypatch.setattr(
+        plots, "plots_of", lambda report: dict.fromkeys(("time-error-green", "frame-time"), lambda _: None)
+    )
     monkeypatch.setattr(plots, "INCHES", (1, 1))
     path = tmp_path / name
     path.write_bytes(b"somebody else's work")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
-from shviewer.benchmark import experiments
+from shviewer.benchmark.measuring import experiments
 from shviewer.errors import UsageError
 from shviewer.lights.reading import DEFAULT_READING, Reading
 

@@ -6,24 +6,38 @@ import json
 import shlex
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from shviewer.benchmark import encodings, end_to_end, experiments, moving, projection_rows, roughness
-from shviewer.benchmark.front import sentences, where_bands_stop_paying
 from shviewer.benchmark.hard_cases import table as stability
 from shviewer.benchmark.hard_cases.shader import renderer_or_reason
-from shviewer.benchmark.machine import machine_record, versions, yardstick
-from shviewer.benchmark.measured_lights import QUICK_TOLERANCES, TOLERANCES, MeasuredLight, find_measured_lights
+from shviewer.benchmark.measuring import (
+    bands,
+    encodings,
+    end_to_end,
+    experiments,
+    moving,
+    moving_texels,
+    projection_rows,
+)
+from shviewer.benchmark.measuring.machine import machine_record, versions, yardstick
+from shviewer.benchmark.measuring.measured_lights import (
+    QUICK_TOLERANCES,
+    TOLERANCES,
+    MeasuredLight,
+    find_measured_lights,
+)
+from shviewer.benchmark.measuring.peers import peer_rows
+from shviewer.benchmark.measuring.reconstruction_rows import BANDS, reconstruction_rows
+from shviewer.benchmark.measuring.timing import summarise
 from shviewer.benchmark.options import Clock, Options, Progress
-from shviewer.benchmark.page import moving_page, plots, writing
-from shviewer.benchmark.page.comparing import compare
-from shviewer.benchmark.page.document import YARDSTICK, Report, read_report
-from shviewer.benchmark.page.tables import lines_not_measured, rows_table
-from shviewer.benchmark.peers import INSTALL, peer_rows
-from shviewer.benchmark.reconstruction_rows import BANDS, reconstruction_rows
-from shviewer.benchmark.row import Row, not_measured
-from shviewer.benchmark.timing import summarise
+from shviewer.benchmark.page import changes, plots, writing
+from shviewer.benchmark.page.advice import sentences
+from shviewer.benchmark.page.section import Page
+from shviewer.benchmark.page.tables import lines_not_measured
+from shviewer.benchmark.rows.comparing import compare
+from shviewer.benchmark.rows.report import YARDSTICK, Report, read_report
+from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.ending import at_the_end
 from shviewer.errors import UsageError
@@ -36,8 +50,6 @@ PEER_BANDS = (3, 9, 16, 32)
 QUICK_RECONSTRUCTED = (3, 16)
 QUICK_REPEATS = 3
 """The repeats in a quick report, in which five of the slow ones do not fit."""
-
-AGAINST = "Against an older report"
 
 
 @dataclass(frozen=True)
@@ -57,14 +69,14 @@ class Run:
 
     options: Options
     folder: Path
-    report: Report
-    page: writing.Page
-    texts: list[str]
+    lights: Sequence[MeasuredLight]
+    texts: Sequence[str]
     """The LIGHTs that can be named to another process."""
+    report: Report
+    clock: Clock
     seconds: Mapping[str, float]
     """The sections wanted, and the time of each."""
-    clock: Clock
-    before: Report | None
+    before: Report | None = None
     yardstick: list[float] = field(default_factory=list)
     stability_failed: bool = False
 
@@ -77,11 +89,12 @@ class Run:
             self.report.yardstick_milliseconds = dict(zip(YARDSTICK, times[:3], strict=True))
         self.report.left_out = lines_not_measured(self.report.rows)
 
-    def write(self) -> None:
+    def write(self, plots: Sequence[str] = (), plot_message: str = "") -> None:
+        """Write what there is so far."""
         if self.before is not None and self.options.against is not None:
-            lines = compare(self.before, self.report).as_markdown(self.options.against.name)
-            self.page.hosted = {AGAINST: ""} | self.page.hosted | {AGAINST: "\n".join(lines)}  # it comes first
-        writing.write(self.folder, self.report, self.page)
+            found = compare(self.before, self.report)
+            self.report.extra[writing.AGAINST] = changes.lines(found, self.options.against.name)
+        writing.write(self.folder, Page(self.report, plots, plot_message))
 
     def measure(self, section: str, measured_by: Callable[..., None], *drawing: Renderer | str) -> None:
         """Measure a section, if it is wanted, and write what it found."""
@@ -94,7 +107,7 @@ class Run:
 def write_report(
     lights: Sequence[str | Light], folder: Path, options: Options | None = None, progress: Progress | None = None
 ) -> Summary:
-    """Measure `lights`, or experiments.LIGHTS if there are none, and write report.md, .json and .csv and plots into `folder`.
+    """Measure `lights`, or experiments.LIGHTS if there are none, and write writing.FILES and plots into `folder`.
 
     OutputError, LightError or UsageError, before anything is measured, if that is impossible or would destroy a file. An
     interrupt is raised again after the rows measured have been written as a partial report.
@@ -116,19 +129,21 @@ def write_report(
         command=options.command or shlex.join(["shviewer", *sys.argv[1:]]),
         machine=machine_record(),
         versions=versions(),
-        lights={measured.name: _light_record(measured) for measured in found},
+        lights={measured.name: measured.record for measured in found},
     )
     texts = [text for text in chosen if isinstance(text, str)]
-    run = Run(options, folder, report, writing.Page(found), texts, seconds, Clock(seconds, progress), before)
+    run = Run(options, folder, found, texts, report, Clock(seconds, progress), seconds, before)
     run.write()
-    with at_the_end(run.write):
+    drawn: list[str] = []
+    message = ""
+    with at_the_end(lambda: run.write(drawn, message)):
         _measure_sections(run)
         report.complete = True
-        paths, run.page.plot_message = plots.make_plots(report.rows, folder, report.extra)
-        run.page.plots += [path.name for path in paths]
+        paths, message = plots.make_plots(report, folder)
+        drawn += [path.name for path in paths]
     run.clock.finish()
     count = sum(row.measured for row in report.rows)
-    return Summary(folder, (*writing.FILES, *run.page.plots), count, _summary(run), run.stability_failed)
+    return Summary(folder, (*writing.FILES, *drawn), count, _summary(report), run.stability_failed)
 
 
 def _check_moving(lights: Sequence[str | Light]) -> None:
@@ -140,32 +155,19 @@ def _check_moving(lights: Sequence[str | Light]) -> None:
             raise UsageError(f"{name}: --moving projects a light in every frame; coefficients are projected already")
 
 
-def _light_record(measured: MeasuredLight) -> dict[str, object]:
-    return {
-        "description": measured.light.description,
-        "best_method": measured.light.best_method,
-        "accuracy": measured.light.accuracy(),
-        "bands_within": {f"{tolerance:g}": count for tolerance, count in measured.needs.items()},
-        "error_by_bands": measured.truncation.tolist(),
-    }
-
-
-def _summary(run: Run) -> str:
+def _summary(report: Report) -> str:
     lines = []
-    for measured in run.page.lights:
-        rows = [row for row in run.report.measured("projection") if row.light == measured.name]
-        lines += [f"{measured.name}: {sentence}" for sentence in sentences(measured, rows)] if rows else []
-    against = run.page.hosted.get(AGAINST, "").partition("\n")[0]
-    return "\n".join([*lines, *([against] if against else [])])
+    for name, record in report.lights.items():
+        rows = [row for row in report.measured("projection") if row.light == name]
+        lines += [f"{name}: {sentence}" for sentence in sentences(record, rows)] if rows else []
+    return "\n".join([*lines, *report.extra.get(writing.AGAINST, [])[:1]])
 
 
 def _measure_sections(run: Run) -> None:
-    found = roughness.staircases(run.page.lights)
-    run.report.extra[roughness.KEY] = roughness.as_extra(found)
-    run.page.hosted[roughness.TITLE] = roughness.as_markdown(found)
-    kept = [one for measured in run.page.lights for one in encodings.kept_of(measured)]
-    run.report.extra[encodings.KEY] = encodings.as_extra(kept)
-    run.page.hosted[encodings.TITLE] = encodings.as_markdown(kept)
+    extra = run.report.extra
+    extra[bands.BANDS_KEY] = bands.bands_extra(run.lights)
+    extra[bands.ROUGHNESS_KEY] = bands.roughness_extra(bands.staircases(run.lights))
+    extra[encodings.KEY] = [asdict(kept) for measured in run.lights for kept in encodings.kept_of(measured)]
     run.measure("projection", _projection)
     run.measure("peers", _peers)
     with renderer_or_reason(run.options.shader and len(run.options.sections) > 0) as drawing:
@@ -180,7 +182,7 @@ def _measure_sections(run: Run) -> None:
 def _projection(run: Run) -> None:
     quick = run.options.quick
     rounds = projection_rows.plan(
-        run.page.lights,
+        run.lights,
         experiments.QUICK_BANDS if quick else experiments.BANDS,
         experiments.QUICK_SAMPLES if quick else experiments.SAMPLES,
         run.options.methods,
@@ -192,47 +194,31 @@ def _peers(run: Run) -> None:
     try:
         rows, missing = peer_rows(run.texts, PEER_BANDS, run.seconds["peers"], run.options.seed)
     except UsageError as error:
-        run.page.hosted["Peers"] = f"{error}."
+        run.report.note("peers", [str(error)])
         return
     run.add(rows)
-    lines = ["The same projections by other libraries, one thread each, in one process of their own, taking turns.", ""]
-    lines += rows_table(rows, ("note", "set up"))
-    if missing:
-        lines += ["", *(f"- without {line}" for line in missing), "", f"All of them: `{INSTALL}`"]
-    run.page.hosted["Peers"] = "\n".join(lines)
+    run.report.note("peers", missing)
 
 
 def _reconstruction(run: Run, drawing: Renderer | str) -> None:
     kinds: dict[type, MeasuredLight] = {}
-    for measured in run.page.lights:
+    for measured in run.lights:
         kinds.setdefault(type(measured.light), measured)
     quick = run.options.quick
     chosen = list(kinds.values())[: 1 if quick else 2]  # the first light of each kind
-    bands = QUICK_RECONSTRUCTED if quick else BANDS
+    counts = QUICK_RECONSTRUCTED if quick else BANDS
     for number, measured in enumerate(chosen):
         run.clock.tell(measured.name)
         filling = 0.5 * run.seconds["reconstruction"] / len(chosen)
         at_most = run.clock.left() / (len(chosen) - number)
-        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=bands))
-    rows = [row for row in run.report.rows if row.section == "reconstruction"]
-    lines = [
-        "What a band costs where the sum is evaluated, against what it brings. Where the arithmetic error reaches what the",
-        "bands left out hold, more bands are of no use.",
-        "",
-        *rows_table(rows, ("left out", "arithmetic", "note")),
-        "",
-    ]
-    for measured in chosen:
-        sentence = where_bands_stop_paying([row for row in rows if row.light == measured.name and row.measured])
-        lines += [f"- {sentence}"] if sentence else []
+        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=counts))
     if isinstance(drawing, str):
-        lines += ["", f"Nothing was drawn: {drawing}."]
-    run.page.hosted["Reconstruction"] = "\n".join(lines)
+        run.report.note("reconstruction", [f"pictures: nothing was drawn: {drawing}"])
 
 
 def _end_to_end(run: Run, drawing: Renderer | str) -> None:
     text = run.texts[0] if run.texts else experiments.LIGHTS[0]
-    name = run.page.lights[0].name if run.texts else text
+    name = run.lights[0].name if run.texts else text
     missing = [f"pictures: nothing was drawn: {drawing}"] if isinstance(drawing, str) else []
     at_least = QUICK_REPEATS if run.options.quick else 5
     parts = (("pictures", end_to_end.session_rows, 0.25), ("new processes", end_to_end.process_rows, 0.35))
@@ -247,16 +233,14 @@ def _end_to_end(run: Run, drawing: Renderer | str) -> None:
             missing.append(f"an idle window: {idle}")
         else:
             run.add([idle])
-    rows = [row for row in run.report.rows if row.section == "end to end"]
-    lines = ["What a user waits for.", "", *rows_table(rows, ("note",))]
-    run.page.hosted["End to end"] = "\n".join([*lines, "", *(f"- Without {line}" for line in missing)])
+    run.report.note("end to end", missing)
 
 
 def _moving(run: Run) -> None:
     seed, found = run.options.seed, list[moving.Sampled]()
-    exact = {measured.name: moving.turned_exactly(measured) for measured in run.page.lights}
-    stated = [*moving.noise(seed), *moving.sun(seed)]
-    rounds = [(one, count, way) for one in run.page.lights for count in moving.SAMPLES for way in moving.WAYS]
+    exact = {measured.name: moving.turned_exactly(measured) for measured in run.lights}
+    stated = [*moving_texels.noise(seed), *moving_texels.sun(seed)]
+    rounds = [(one, count, way) for one in run.lights for count in moving.SAMPLES for way in moving.WAYS]
     for number, (measured, count, way) in enumerate(rounds):
         if run.clock.left() < 0:
             left = [(one.name, way, count) for one, count, way in rounds[number:]]
@@ -265,12 +249,14 @@ def _moving(run: Run) -> None:
         run.clock.tell(f"{measured.name}, {way}, {count} samples")
         found += moving.sampled(measured, way, count, seed)
     run.add([one.row for one in found])
-    run.report.extra[moving.SECTION] = moving.as_extra(exact, found, stated)
-    run.page.hosted[moving_page.TITLE] = moving_page.as_markdown(exact, found, stated)
+    run.report.extra[moving.SECTION] = {
+        "turned_exactly": exact,
+        "sampled": [asdict(one) for one in found],
+        "stated": [asdict(one) for one in stated],
+    }
 
 
 def _stability(run: Run) -> None:
     outcomes = stability.run(progress=run.clock.tell, shader=run.options.shader)
     run.stability_failed = not all(outcome.passed for outcome in outcomes)
-    run.report.extra["stability"] = json.loads(stability.as_json(outcomes))
-    run.page.hosted["Hard cases"] = stability.as_markdown(outcomes).partition("\n")[2]
+    run.report.extra[stability.KEY] = json.loads(stability.as_json(outcomes))

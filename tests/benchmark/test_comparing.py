@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.benchmark.page.comparing import compare
-from shviewer.benchmark.page.document import Report, read_report
-from shviewer.benchmark.row import Row, not_measured
+from shviewer.benchmark.page.changes import lines
+from shviewer.benchmark.rows.comparing import compare
+from shviewer.benchmark.rows.report import Report, read_report
+from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.errors import UsageError
 
 MACHINE = {"processor": "one", "processors": 2, "system": "Linux 6"}
@@ -68,7 +69,7 @@ def test_times_of_another_machine_are_not_compared_but_errors_are() -> None:
         report(row(1.0, error=1e-3)), report(row(9.0, error=2e-3), machine={**MACHINE, "processor": "another"})
     )
     assert (found.changes[0].time, found.changes[0].error) == ("", "worse")
-    text = "\n".join(found.as_markdown("old.json"))
+    text = "\n".join(lines(found, "old.json"))
     assert "not comparable" in text
     assert "processor one there, another here" in text
 
@@ -82,7 +83,7 @@ def test_rows_are_matched_by_what_was_done_and_counted_otherwise() -> None:
     found = compare(before, after)
     assert [change.after for change in found.changes] == [row()]
     assert (found.only_before, found.only_after) == (1, 2)
-    assert "Only there: 1 rows; only here: 2." in found.as_markdown("old.json")
+    assert "Only there: 1 rows; only here: 2." in lines(found, "old.json")
 
 
 def test_what_one_of_the_two_did_not_measure_is_not_compared() -> None:

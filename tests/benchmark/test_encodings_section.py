@@ -1,12 +1,17 @@
 """The section on encodings of irradiance says what each keeps, of every kind of light."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import reconstruction_of
-from shviewer.benchmark.encodings import as_extra, as_markdown, kept_of
-from shviewer.benchmark.measured_lights import measured_light
+from shviewer.benchmark.measuring.encodings import KEY, kept_of
+from shviewer.benchmark.measuring.measured_lights import measured_light
+from shviewer.benchmark.page.encodings_page import lines
+from shviewer.benchmark.page.section import Page
+from shviewer.benchmark.rows.report import Report
 from shviewer.harmonics.quantities.encodings import ENCODINGS, REPORTED
 from shviewer.harmonics.zonal import Constant
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -18,11 +23,23 @@ from shviewer.lights.lobes import LobeLight
 def test_a_light_has_a_row_for_each_encoding_and_a_sentence_on_the_best_of_four_five_and_nine() -> None:
     found = kept_of(measured_light(find_light("venice_sunset")))
     assert [kept.encoding for kept in found] == list(REPORTED)
-    page = as_markdown(found)
-    best = "of four floats ZH3 hallucinated is best, 8.3 % (L1 as it is 11.6 %); five leave 6.53 % (ZH3), nine 1.43 %."
-    assert best in page
+    report = Report(0, "", {}, {}, extra={KEY: [asdict(kept) for kept in found]})
+    page = "\n".join(lines(Page(report)))
+    best = (
+        "of four floats ZH3 hallucinated is best and leaves 8.30 % of the irradiance (L1 as it is leaves 11.6 %); of five"
+        " ZH3, 6.53 %; of nine L2, linear, 1.43 %."
+    )
+    assert best in " ".join(page.split())
     assert sum(line.startswith("| venice_sunset ") for line in page.splitlines()) == len(REPORTED)
-    assert as_extra(found)[0]["floats"] == 4
+
+
+def test_rounding_is_not_called_an_error() -> None:
+    """A hemisphere's irradiance is linear: "5.46e-15 %" of it was left."""
+    report = Report(
+        0, "", {}, {}, extra={KEY: [asdict(kept) for kept in kept_of(measured_light(find_light("hemisphere")))]}
+    )
+    page = " ".join("\n".join(lines(Page(report))).split())
+    assert "of four floats L1, linear is best and leaves 0 % of the irradiance; of five ZH3, 0 %" in page
 
 
 def test_what_a_float_saves_is_the_error_that_the_mean_alone_has_more() -> None:

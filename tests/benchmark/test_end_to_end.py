@@ -13,8 +13,8 @@ from viewer.desktop.desktop import missing_programs, virtual_display
 
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.figures import figures_of
-from shviewer.benchmark import end_to_end
-from shviewer.benchmark.end_to_end import (
+from shviewer.benchmark.measuring import end_to_end
+from shviewer.benchmark.measuring.end_to_end import (
     COMPLETE,
     FIRST,
     IDLE,
@@ -27,7 +27,7 @@ from shviewer.benchmark.end_to_end import (
     process_rows,
     session_rows,
 )
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.rows.row import Row
 from shviewer.errors import GraphicsError
 from shviewer.lights.reading import DEFAULT_READING
 from shviewer.viewer.gl.renderer import Renderer

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shviewer.benchmark import projection_rows
-from shviewer.benchmark.experiments import BEST, METHODS, Method, method
-from shviewer.benchmark.measured_lights import MeasuredLight, find_measured_lights, measured_light
+from shviewer.benchmark.measuring import projection_rows
+from shviewer.benchmark.measuring.experiments import BEST, METHODS, Method, method
+from shviewer.benchmark.measuring.measured_lights import MeasuredLight, find_measured_lights, measured_light
+from shviewer.benchmark.measuring.projection_rows import Experiment, errors_of
 from shviewer.benchmark.page.tables import lines_not_measured
-from shviewer.benchmark.projection_rows import Experiment, errors_of
-from shviewer.benchmark.row import Row, not_measured
+from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import channel_figures

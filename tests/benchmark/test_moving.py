@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from itertools import count
 from pathlib import Path
 
@@ -9,12 +10,15 @@ import numpy as np
 import pytest
 from places import kernels
 
-from shviewer.benchmark import moving
-from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
-from shviewer.benchmark.moving import BANDS, MOST, WAYS, Sampled, Stated, noise, sampled, sun, turned_exactly
+from shviewer.benchmark.measuring import moving
+from shviewer.benchmark.measuring.measured_lights import MeasuredLight, measured_light
+from shviewer.benchmark.measuring.moving import BANDS, MOST, WAYS, Sampled, sampled, turned_exactly
+from shviewer.benchmark.measuring.moving_texels import noise, sun
 from shviewer.benchmark.options import Options
-from shviewer.benchmark.page.further_plots import MOVING, further_plots
-from shviewer.benchmark.page.moving_page import answer, as_markdown
+from shviewer.benchmark.page.moving_page import STEM, answer, lines
+from shviewer.benchmark.page.plots import plots_of
+from shviewer.benchmark.page.section import Page
+from shviewer.benchmark.rows.report import Report
 from shviewer.benchmark.run import write_report
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -117,16 +121,21 @@ def test_the_answer_names_the_figures_of_the_run_and_stands_without_samples(few:
     stated = [*noise(0), *sun(0)]
     said = answer(few, stated)
     assert said.startswith("Half true.")
-    assert f"green in 16 bands by {100 * of(few, FRESH, 100, 16).flicker:.3g} % of its norm" in said
-    assert f"and by {100 * of(few, FRESH, 961, 16).flicker:.3g} % with 961" in said
+    assert f"green in 16 bands by {100 * of(few, FRESH, 100, 16).flicker:.0f} % of its norm" in said
+    assert f"and by {100 * of(few, FRESH, 961, 16).flicker:.1f} % with 961" in said
     assert "Irradiance is calm because it is a blur" in answer([], stated)
-    page = as_markdown({"green": 2e-15, "room": None}, few, stated)
+    extra = {"turned_exactly": {"green": 2e-15, "room": None}}
+    extra |= {"sampled": [asdict(one) for one in few], "stated": [asdict(one) for one in stated]}
+    report = Report(0, "", {}, {}, extra={"moving": extra})
+    page = "\n".join(lines(Page(report)))
     assert "- green, projected in closed form, and turned back: it changes by 2e-15 of its norm." in page
-    rows = [row for row in page.splitlines() if row.startswith("| green")]
-    assert len(rows) == 3 * len(WAYS) * 2  # of 3, 5 and 16 bands, from 100 and from 961 points
+    rows = [row for row in page.splitlines() if row.startswith(("| jittered", "| independent"))]
+    assert len(rows) == len(WAYS) * 2  # from 100 and from 961 points
     assert max(map(len, page.splitlines())) <= 128
-    assert MOVING in further_plots({"moving": moving.as_extra({}, few, stated)})
-    assert further_plots({"moving": moving.as_extra({}, [], [Stated("x", 1, 0.1, 0.1)])}) == {}
+    assert STEM in plots_of(report)
+    extra["sampled"] = []
+    assert plots_of(report) == {}
+    assert "### green" not in "\n".join(lines(Page(report)))
 
 
 def test_coefficients_cannot_move(tmp_path: Path) -> None:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from shviewer.benchmark import peers
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.measuring import peers
+from shviewer.benchmark.rows.row import Row
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import degrees
 from shviewer.harmonics.quadrature import fibonacci

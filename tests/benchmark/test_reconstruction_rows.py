@@ -10,21 +10,24 @@ import pytest
 
 from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projections import BEST
-from shviewer.benchmark import reconstruction_rows as module
-from shviewer.benchmark.front import where_bands_stop_paying
-from shviewer.benchmark.measured_lights import MeasuredLight, measured_light
-from shviewer.benchmark.reconstruction_rows import (
+from shviewer.benchmark.measuring import reconstruction_rows as module
+from shviewer.benchmark.measuring.evaluations import (
     BASIS,
     CACHED,
     DIRECT,
+    FRAME,
     MAP_32,
     MAP_64,
     PER_FRAME,
     PER_MILLION,
     SCATTERED,
-    reconstruction_rows,
+    Evaluations,
+    Frame,
 )
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.measuring.measured_lights import MeasuredLight, measured_light
+from shviewer.benchmark.measuring.reconstruction_rows import reconstruction_rows
+from shviewer.benchmark.page.advice import where_bands_stop_paying
+from shviewer.benchmark.rows.row import Row
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
@@ -93,10 +96,10 @@ def test_the_shader_is_as_exact_as_float32_at_every_band_count(green: MeasuredLi
 
 def test_an_error_in_the_coefficients_drawn_is_seen(green: MeasuredLight, renderer: Renderer) -> None:
     """The shader's error is not the difference of two equal wrongs: one per cent more light is one per cent of error."""
-    stage = module._Stage(green, 5)
+    stage = Evaluations(green, 5)
     brighter = replace(stage.direct, drawn=DirectSum(1.01 * stage.coefficients))
-    with offscreen(renderer, module.FRAME) as target:
-        found = module._Frame(renderer, target)._error(stage, brighter)
+    with offscreen(renderer, FRAME) as target:
+        found = Frame(renderer, target)._error(stage, brighter)
     kept = np.sqrt(1 - green.truncation[4] ** 2)
     assert found == pytest.approx(0.01 * kept, rel=0.1)  # on the part of the sphere that is compared
 
@@ -140,11 +143,14 @@ def made_up(truncations: list[float], direct: list[float], cached: list[float], 
 def test_bands_stop_paying_in_the_direct_sum_where_time_grows_faster_than_the_error_falls() -> None:
     text = where_bands_stop_paying(made_up([0.8, 0.4, 0.3, 0.28], [20, 22, 40, 90], [23, 23, 23, 23]))
     assert (
-        "summed in the shader they stop paying at 2 bands: 4 take 1.82 times as long and leave 0.75 of the error"
+        "summed in the shader they stop paying at 2 bands: 4 take 1.8 times as long as 2 and leave 0.75 of their error"
         in text
     )
-    assert "from 4 bands on a cached map draws faster, 23 ms after 40 ms to make it" in text
-    assert text.startswith("lamp: more bands bring less error up to the 8 measured, where 28 % is left out")
+    assert (
+        "from 4 bands on a cached map draws faster than the direct sum, 23.0 ms a frame against 40.0 ms, after 40.0 ms"
+        in text
+    )
+    assert text.startswith("lamp: more bands bring less error up to the 8 measured, where 28.0 % is left out")
 
 
 def test_a_longer_time_within_the_spread_is_none() -> None:
@@ -155,7 +161,7 @@ def test_a_longer_time_within_the_spread_is_none() -> None:
 
 def test_bands_stop_where_what_they_leave_out_is_lost_in_rounding() -> None:
     text = where_bands_stop_paying(made_up([0.5, 2e-7, 1e-9], [20, 21, 60], [23, 23, 23], arithmetic=3e-7))
-    assert "more than 2 bands bring nothing: no more than 0.00003 % is left out" in text
+    assert "more than 2 bands bring nothing: no more than 3.0e-5 % is left out" in text
 
 
 def test_a_constant_light_needs_one_band() -> None:
@@ -166,7 +172,7 @@ def test_a_constant_light_needs_one_band() -> None:
 
 def test_without_opengl_the_sentence_is_about_the_map(green: MeasuredLight) -> None:
     rows = reconstruction_rows(green, NO_OPENGL, budget=0, bands=(1, 5), at_least=1)
-    assert "up to the 5 measured, where 28 % is left out" in where_bands_stop_paying(rows)
+    assert "up to the 5 measured, where 28.3 % is left out" in where_bands_stop_paying(rows)
     assert where_bands_stop_paying([]) == ""
 
 

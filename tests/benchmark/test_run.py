@@ -12,12 +12,13 @@ from pathlib import Path
 
 import pytest
 
-from shviewer.benchmark import end_to_end, options, projection_rows, timing
+from shviewer.benchmark import options
+from shviewer.benchmark.measuring import end_to_end, projection_rows, timing
 from shviewer.benchmark.options import Clock, Options
 from shviewer.benchmark.page import plots
-from shviewer.benchmark.page.document import read_report
 from shviewer.benchmark.page.projection_tables import _matrix
-from shviewer.benchmark.row import COLUMNS, Row
+from shviewer.benchmark.rows.report import read_report
+from shviewer.benchmark.rows.row import COLUMNS, Row
 from shviewer.benchmark.run import write_report
 from shviewer.errors import LightError, OutputError, UsageError
 
@@ -35,7 +36,9 @@ def _on_any_machine() -> Iterator[None]:
         for module in (options, projection_rows, timing):
             patch.setattr(module, "perf_counter", lambda: next(ticks) / 1000)
         patch.setattr(
-            plots, "make_plots", lambda rows, folder, extra: ((folder / "a-b.svg", folder / "a-b.png"), MESSAGE)
+            plots,
+            "make_plots",
+            lambda report, folder: ((folder / "error-bands.svg", folder / "error-bands.png"), MESSAGE),
         )
         yield
 
@@ -65,20 +68,20 @@ def test_a_report_is_a_page_every_row_as_json_and_every_row_as_csv(folder: Path)
     assert document["yardstick_milliseconds"]["median"] > 0
 
 
-def test_what_to_use_comes_first_and_everything_is_legible_at_128_columns(folder: Path) -> None:
+def test_the_bands_and_what_to_use_come_first_and_everything_is_legible_at_128_columns(folder: Path) -> None:
     page = (folder / "report.md").read_text()
     headings = [line for line in page.splitlines() if line.startswith("## ")]
-    assert headings[0] == "## What to use"
+    assert headings[:2] == ["## How many bands", "## What to use"]
     tables = [line for line in page.splitlines() if line.startswith("|")]
     assert tables
-    assert max(map(len, tables)) <= 128
+    assert max(map(len, page.splitlines())) <= 128
     assert "\u00b1" in page
 
 
 def test_plots_are_linked_and_the_line_that_installs_them_is_there(folder: Path) -> None:
     page = (folder / "report.md").read_text()
-    assert "![a b](a-b.svg)" in page
-    assert "a-b.png" not in page
+    assert "![Relative L2 error of the first 1, 2, 3, ... bands of each light](error-bands.svg)" in page
+    assert "error-bands.png" not in page
     assert MESSAGE in page
 
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from shviewer.benchmark import timing
-from shviewer.benchmark.timing import MOST_REPEATS, summarise, time_interleaved
+from shviewer.benchmark.measuring import timing
+from shviewer.benchmark.measuring.timing import MOST_REPEATS, summarise, time_interleaved
 
 
 @pytest.fixture

@@ -17,8 +17,8 @@ import numpy as np
 from measure import cpu_milliseconds, machine
 
 from shviewer.analysis.roughness import staircase
-from shviewer.benchmark.measured_lights import measured_light
-from shviewer.benchmark.moving import SAMPLES, WAYS, noise, sampled, sun
+from shviewer.benchmark.measuring.measured_lights import measured_light
+from shviewer.benchmark.measuring.moving import SAMPLES, WAYS, noise, sampled, sun
 from shviewer.harmonics.quadrature import gauss_legendre_rows
 from shviewer.harmonics.quantities.glossy import glossy_factors
 from shviewer.lights.environment import EnvironmentLight

@@ -47,7 +47,7 @@ def medians(
 
 def machine() -> str:
     """What everything was measured on and with, as the report says it."""
-    from shviewer.benchmark.machine import machine_line, versions
+    from shviewer.benchmark.measuring.machine import machine_line, versions
 
     made_with = versions(["numpy"])
     return f"{machine_line()}, Python {made_with['Python']}, numpy {made_with['numpy']}"

@@ -30,7 +30,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = os.environ[
 import numpy as np
 from measure import machine, medians, wall_milliseconds
 
-from shviewer.benchmark.peers import IMAGE_PEERS, available
+from shviewer.benchmark.measuring.peers import IMAGE_PEERS, available
 from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_image, project_product

@@ -31,9 +31,9 @@ import numpy as np
 
 import shviewer
 from shviewer import outputs
-from shviewer.benchmark import page
 from shviewer.benchmark.page import plots, writing
-from shviewer.benchmark.page.document import Report
+from shviewer.benchmark.page.section import Page
+from shviewer.benchmark.rows.report import Report
 from shviewer.cli.main import main
 from shviewer.ending import end_by_signals
 from shviewer.errors import ShviewerError
@@ -171,8 +171,8 @@ def press_p() -> int:
 def write_report() -> None:
     Path("report").mkdir(exist_ok=True)
     report = Report(0, "shviewer report", {}, {})
-    plots.make_plots([], Path("report"))
-    writing.write(Path("report"), report, page.writing.Page([]))
+    plots.make_plots(report, Path("report"))
+    writing.write(Path("report"), Page(report))
 
 
 KINDS: dict[str, tuple[Callable[[], int], tuple[str, ...]]] = {
@@ -215,7 +215,7 @@ def give_pixels() -> None:
     for module in (screenshot, animation, errands):
         module.render_rgb = lambda *arguments, **options: PIXELS  # type: ignore[attr-defined]
     screenshot.render_linear = lambda *arguments: PIXELS.astype(np.float32)
-    plots._plots = lambda rows: {"error-bands": lambda figure: None}
+    plots.plots_of = lambda report: {"error-bands": lambda figure: None}
 
 
 def in_child(run: Callable[[], int]) -> tuple[int, str]:

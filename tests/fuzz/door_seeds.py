@@ -19,8 +19,8 @@ from seeds import seeds as image_seeds
 
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
-from shviewer.benchmark.page.document import Report
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.rows.report import LightRecord, Report
+from shviewer.benchmark.rows.row import Row
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.writing import FORMATS
 from shviewer.resources import resource_folder
@@ -177,7 +177,7 @@ def _reports() -> dict[str, bytes]:
     rows.append(Row(section="reconstruction", method="direct", note="not measured"))
     report = Report(1, "shviewer report", {"processor": "any", "cores": 2}, {"numpy": "2"}, "GL", rows, complete=True)
     report.yardstick_milliseconds = {"median": 2.0, "low_quartile": 1.9, "high_quartile": 2.2}
-    report.lights = {"green": {"kind": "lobes"}}
+    report.lights = {"green": LightRecord("lobes", "closed form", 0.0, {"0.05": 15}, [0.9, 0.1])}
     return {"against/report.json": report.as_json().encode()}
 
 

@@ -35,8 +35,9 @@ from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.benchmark.options import Options
-from shviewer.benchmark.page.comparing import compare
-from shviewer.benchmark.page.document import read_report
+from shviewer.benchmark.page import changes
+from shviewer.benchmark.rows.comparing import compare
+from shviewer.benchmark.rows.report import read_report
 from shviewer.cli import help as help_pages
 from shviewer.cli import info
 from shviewer.cli.info import as_text
@@ -129,7 +130,7 @@ def _against(path: Path, data: bytes) -> Iterator[object]:
     found, sound = read_report(path), _sound_report()
     found.as_json()  # only what is finite can be
     for pair in ((found, sound), (sound, found)):
-        yield from compare(*pair).as_markdown("old.json")
+        yield from changes.lines(compare(*pair), "old.json")
 
 
 def _sound_report() -> Any:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,14 +23,17 @@ from shviewer.benchmark.hard_cases import (
 )
 from shviewer.benchmark.hard_cases.outcome import Case, Outcome, largest
 from shviewer.benchmark.hard_cases.shader import SEED, bound, error_of, renderer_or_reason
-from shviewer.benchmark.machine import machine_line, versions
-from shviewer.benchmark.row import finite
+from shviewer.benchmark.measuring.machine import machine_line, versions
+from shviewer.benchmark.rows.row import finite
 
 if TYPE_CHECKING:
     from shviewer.viewer.gl.renderer import Renderer
 
 FILES = (evaluation, identities, sampling, projecting, layouts, radiances, rotating, ringing, figures, programs)
 CASES: tuple[Case, ...] = tuple(case for file in FILES for case in file.CASES)
+
+KEY = "stability"
+"""The key in a report's `extra`."""
 
 HEADINGS = ("", "case", "reference", "error", "bound", "float32", "bound")
 PACKAGES = ("numpy", "moderngl")
@@ -85,22 +89,23 @@ def as_text(outcomes: Sequence[Outcome]) -> str:
     widths = [max(len(row[column]) for row in rows) for column in range(len(HEADINGS))]
     columns = "  ".join(f"{{:{'>' if number > 2 else '<'}{width}}}" for number, width in enumerate(widths))
     lines = [columns.format(*row).rstrip() for row in rows]
-    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", *_remarks(outcomes)]) + "\n"
+    *packages, (_, machine), (_, seed) = _made_with().items()
+    made = f"Made with {', '.join(map(' '.join, packages))} on {machine}; seed {seed}"
+    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", made, *_remarks(outcomes)]) + "\n"
 
 
 def as_markdown(outcomes: Sequence[Outcome]) -> str:
-    """A page: the table, remarks, and the machine and versions it was measured with."""
+    """The table and remarks on it."""
     rows = [_cells(outcome) for outcome in outcomes]
     lines = ["| " + " | ".join(HEADINGS) + " |", "|---|---|---|--:|--:|--:|--:|"]
     lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
-    made = [f"- {name}: {value}" for name, value in _made_with().items()]
     explanation = "An error in float32 is the fragment shader's, relative to the peak; the others are float64's."
-    return "\n".join(["# Hard cases", "", *lines, "", *_remarks(outcomes), "", explanation, "", *made]) + "\n"
+    return "\n".join([explanation, "", *lines, "", *_remarks(outcomes)]) + "\n"
 
 
 def as_json(outcomes: Sequence[Outcome]) -> str:
     """The table for programs; an error that could not be measured is null."""
-    columns = ("name", "reference", "error", "bound", "shader_error", "shader_bound", "passed", "note")
+    columns = ("name", "reference", "error", "bound", "shader_error", "shader_bound", "passed", "note", "drawn_by")
     page = {
         "passed": all(outcome.passed for outcome in outcomes),
         "shader": "; ".join(_drawn_by(outcomes)),
@@ -108,6 +113,16 @@ def as_json(outcomes: Sequence[Outcome]) -> str:
         "cases": [{name: finite(getattr(outcome, name)) for name in columns} for outcome in outcomes],
     }
     return json.dumps(page, indent=1, allow_nan=False) + "\n"
+
+
+def from_json(page: Mapping[str, Any]) -> list[Outcome]:
+    """The outcomes of a table that `as_json` wrote, parsed: an error of null is infinite, unless no shader was concerned."""
+    outcomes = []
+    for case in page["cases"]:
+        errors = ("error", "bound", *(("shader_error",) if case["shader_bound"] is not None else ()))
+        known = {name: value for name, value in case.items() if name != "passed"}
+        outcomes.append(Outcome(**known | {name: math.inf for name in errors if known[name] is None}))
+    return outcomes
 
 
 def _cells(outcome: Outcome) -> tuple[str, ...]:
@@ -120,14 +135,12 @@ def _number(value: float | None) -> str:
 
 
 def _remarks(outcomes: Sequence[Outcome]) -> list[str]:
-    """Lines below the table: one per exception, on the shader, on what it was made with, and with the count."""
+    """Lines below the table: one per exception, on the shader, and with the count."""
     lines = [f"{outcome.name}: {outcome.note}" for outcome in outcomes if outcome.note]
     missing = any(outcome.drawn_by and outcome.shader_error is None for outcome in outcomes)
     drawn_by = _drawn_by(outcomes)
     if drawn_by:
         lines.append(f"{'No float32 column' if missing else 'Float32 drawn by'}: {'; '.join(drawn_by)}")
-    *packages, (_, machine), (_, seed) = _made_with().items()
-    lines.append(f"Made with {', '.join(map(' '.join, packages))} on {machine}; seed {seed}")
     passed = sum(outcome.passed for outcome in outcomes)
     return [*lines, f"{passed} of {len(outcomes)} cases are within their bounds."]
 

@@ -1,1 +1,1 @@
-"""The report as files: tables, plots, the page, and the changes since an older report."""
+"""How the page is drawn: tables, advice and plots, all made from the rows of a report and from nothing else."""

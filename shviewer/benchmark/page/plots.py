@@ -1,7 +1,7 @@
 """The report's plots, made from its rows: time against error, error against bands, frame time against bands.
 
-They fit a column of print: 86 mm wide, 8 pt, with a colour, a marker and a dash for each curve (M. Okabe, K. Ito, "Color
-Universal Design", 2008), and a legend below the axes. Equal rows give equal bytes with the same version of matplotlib.
+They fit a column of print: 86 mm wide, 8 pt, with a colour, a marker and a dash for each curve, and a legend below the axes.
+Equal reports give equal bytes with the same version of matplotlib.
 """
 
 from __future__ import annotations
@@ -14,14 +14,36 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shviewer.benchmark import reconstruction_rows as reconstruction
-from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.measured_lights import TOLERANCES
-from shviewer.benchmark.page.further_plots import STEMS, further_plots
-from shviewer.benchmark.page.plot_marks import INCHES, STYLE, Curve, draw_curves, log_axes, padded, shorten
-from shviewer.benchmark.page.tables import plain
-from shviewer.benchmark.projection_rows import SECTION as PROJECTION
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.measuring import evaluations
+from shviewer.benchmark.measuring import reconstruction_rows as reconstruction
+from shviewer.benchmark.measuring.bands import ROUGHNESS_KEY
+from shviewer.benchmark.measuring.experiments import METHODS
+from shviewer.benchmark.measuring.measured_lights import TOLERANCES
+from shviewer.benchmark.measuring.moving import SECTION as MOVING
+from shviewer.benchmark.measuring.projection_rows import SECTION as PROJECTION
+from shviewer.benchmark.page.bands_page import BANDS_STEM, ROUGHNESS_STEM
+from shviewer.benchmark.page.further_plots import draw_moving, draw_staircases
+from shviewer.benchmark.page.moving_page import STEM as MOVING_STEM
+from shviewer.benchmark.page.plot_marks import (
+    BELOW,
+    FRONT,
+    INCHES,
+    MARKED,
+    SCREEN,
+    WHITE,
+    Curve,
+    add_faces,
+    draw_curves,
+    log_axes,
+    padded,
+    shorten,
+    style,
+    tick_text,
+)
+from shviewer.benchmark.page.rows_pages import FRAME_STEM
+from shviewer.benchmark.page.use_page import time_error_stems
+from shviewer.benchmark.rows.report import LightRecord, Report
+from shviewer.benchmark.rows.row import Row
 from shviewer.harmonics.metrics import pareto_front
 from shviewer.outputs import write_atomically
 
@@ -31,9 +53,6 @@ if TYPE_CHECKING:
 
 MISSING = "no plots: matplotlib is not installed; python -m pip install 'shviewer[report]'"
 
-ERROR_BANDS, FRAME_TIME = "error-bands", "frame-time"
-"""Stems of the files of two plots."""
-
 PIXELS_PER_INCH = 240
 FLOOR = 1e-5
 """Errors below this share are drawn on the lower edge."""
@@ -42,17 +61,10 @@ BAND_FLOOR = 1e-3
 """The same in the plot of error against bands, where tolerances of 10 to 1 % matter."""
 
 SIXTY_HERTZ = 1000 / 60
-MARKED: dict[str, Any] = {"color": "0.45", "linewidth": 0.7, "linestyle": (0, (1, 2)), "zorder": 1}
-"""The look of a level that is marked across the axes."""
-
-BELOW: dict[str, Any] = {"loc": "outside lower left", "ncols": 2}
-"""The place of a legend: below the axes, in columns."""
 
 
-def make_plots(
-    rows: Sequence[Row], folder: Path, extra: Mapping[str, Any] | None = None
-) -> tuple[tuple[Path, ...], str]:
-    """Write the plots for which there are rows, or results in a report's `extra`, as .svg and .png.
+def make_plots(report: Report, folder: Path) -> tuple[tuple[Path, ...], str]:
+    """Write the plots of what there is in a report: .svg on the ground of the picture, .png on white paper, for print.
 
     Returns the files, and MISSING if matplotlib is missing.
 
@@ -64,54 +76,46 @@ def make_plots(
         from matplotlib.figure import Figure
     except ImportError:
         return (), MISSING
+    add_faces()
     written: list[Path] = []
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(STYLE)
-        for stem, draw in (_plots(rows) | further_plots(extra or {})).items():
-            figure = Figure(figsize=INCHES)
-            FigureCanvasAgg(figure)
-            draw(figure)
-            stamps = {".svg": {"Date": None, "Creator": "shviewer"}, ".png": {"Software": None, "shviewer": stem}}
-            for suffix, metadata in stamps.items():
+    for stem, draw in plots_of(report).items():
+        for suffix, paper in ((".svg", SCREEN), (".png", WHITE)):
+            with matplotlib.rc_context():
+                matplotlib.rcdefaults()
+                matplotlib.rcParams.update(style(paper))
+                figure = Figure(figsize=INCHES)
+                FigureCanvasAgg(figure)
+                draw(figure)
+                stamps = {".svg": {"Date": None, "Creator": "shviewer"}, ".png": {"Software": None, "shviewer": stem}}
                 buffer = io.BytesIO()
-                figure.savefig(buffer, format=suffix[1:], dpi=PIXELS_PER_INCH, metadata=metadata)
-                written.append(folder / f"{stem}{suffix}")
-                write_atomically(written[-1], buffer.getvalue())
+                figure.savefig(buffer, format=suffix[1:], dpi=PIXELS_PER_INCH, metadata=stamps[suffix])
+            written.append(folder / f"{stem}{suffix}")
+            write_atomically(written[-1], buffer.getvalue())
     return tuple(written), ""
 
 
-def _plots(rows: Sequence[Row]) -> dict[str, Callable[[Figure], None]]:
-    """File stem -> the function that draws the plot."""
+def plots_of(report: Report) -> dict[str, Callable[[Figure], None]]:
+    """File stem -> the function that draws the plot, for what there is in the report."""
     plots: dict[str, Callable[[Figure], None]] = {}
-    lights = list(dict.fromkeys(row.light for row in rows if row.section == PROJECTION))
+    lights = list(report.lights)
     for light, stem in zip(lights, time_error_stems(lights), strict=True):
-        curves = time_error_curves(rows, light)
-        if curves:
+        if curves := time_error_curves(report.rows, light):
             plots[stem] = partial(draw_time_error, light=light, curves=curves)
-    errors, frames = error_curves(rows), frame_curves(rows)
-    if errors:
-        plots[ERROR_BANDS] = partial(draw_errors, curves=errors)
-    if frames:
-        plots[FRAME_TIME] = partial(draw_frames, curves=frames)
+    if errors := error_curves(report.lights):
+        plots[BANDS_STEM] = partial(draw_errors, curves=errors)
+    if frames := frame_curves(report.rows):
+        plots[FRAME_STEM] = partial(draw_frames, curves=frames)
+    if found := report.extra.get(ROUGHNESS_KEY):
+        plots[ROUGHNESS_STEM] = partial(draw_staircases, found=found)
+    if samples := report.extra.get(MOVING, {}).get("sampled"):
+        plots[MOVING_STEM] = partial(draw_moving, samples=samples)
     return plots
 
 
 def names_of(lights: Sequence[str]) -> list[str]:
     """The names of all files that the plots of a report on these lights may have."""
-    stems = (*time_error_stems(lights), ERROR_BANDS, FRAME_TIME, *STEMS)
+    stems = (*time_error_stems(list(lights)), BANDS_STEM, FRAME_STEM, ROUGHNESS_STEM, MOVING_STEM)
     return [f"{stem}{suffix}" for stem in stems for suffix in (".svg", ".png")]
-
-
-def time_error_stems(lights: Sequence[str]) -> list[str]:
-    """A file stem for each light's plot, all different."""
-    stems: list[str] = []
-    for light in lights:
-        stem = f"time-error-{''.join(c if c.isalnum() or c in '-_' else '-' for c in light)}"
-        while stem in stems:
-            stem += "-"
-        stems.append(stem)
-    return stems
 
 
 def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:
@@ -129,26 +133,24 @@ def time_error_curves(rows: Sequence[Row], light: str) -> list[Curve]:
     return curves
 
 
-def error_curves(rows: Sequence[Row]) -> list[Curve]:
-    """A curve (bands, percent left out) for each light."""
+def error_curves(lights: Mapping[str, LightRecord]) -> list[Curve]:
+    """A curve (bands, percent left out) for each light, of every band count; marked where it first meets a tolerance."""
     curves = []
-    for look, light in enumerate(dict.fromkeys(row.light for row in rows if row.truncation is not None)):
-        found = {
-            row.n_bands: 100 * max(row.truncation, BAND_FLOOR)
-            for row in rows
-            if row.light == light and row.truncation is not None and row.n_bands
-        }
-        curves.append(Curve(light, tuple(sorted(found.items())), look))
-    return [curve for curve in curves if len(curve.points) > 1]
+    for look, (name, record) in enumerate(lights.items()):
+        errors = record.error_by_bands
+        first = (next((i for i, error in enumerate(errors) if error <= tolerance), None) for tolerance in TOLERANCES)
+        points = tuple((n, 100 * max(error, BAND_FLOOR)) for n, error in enumerate(errors, 1))
+        curves.append(Curve(name, points, look, marked=tuple(i for i in first if i is not None)))
+    return curves
 
 
 def frame_curves(rows: Sequence[Row]) -> list[Curve]:
     """A curve (bands, milliseconds) for each way of drawing and for making the map: medians over the lights, quartiles."""
     drawn = ("milliseconds", "low_quartile", "high_quartile")
     columns = (
-        ("direct sum", reconstruction.DIRECT, drawn),
-        ("cached map", reconstruction.CACHED, drawn),
-        ("making the map", reconstruction.CACHED, ("set_up_milliseconds",)),
+        ("direct sum", evaluations.DIRECT, drawn),
+        ("cached map", evaluations.CACHED, drawn),
+        ("making the map", evaluations.CACHED, ("set_up_milliseconds",)),
     )
     curves = []
     for look, (name, method, names) in enumerate(columns):
@@ -175,22 +177,22 @@ def draw_time_error(figure: Figure, light: str, curves: Sequence[Curve]) -> None
     axes.set_xlabel("milliseconds to project")
     stairs = [(front[0][0], y[1]), *front, (x[1], front[-1][1])]
     draw_curves(axes, curves)
-    broad: dict[str, Any] = {"color": "0.85", "linewidth": 5, "zorder": 1, "solid_joinstyle": "miter"}
+    broad: dict[str, Any] = {"color": FRONT, "linewidth": 5, "zorder": 1, "solid_joinstyle": "miter"}
     axes.step(*zip(*stairs, strict=True), where="post", **broad, label="Pareto front")
     figure.legend(**BELOW)
 
 
 def draw_errors(figure: Figure, curves: Sequence[Curve]) -> None:
-    """Draw the error of n bands for each light, with the tolerances."""
+    """Draw the error of every number of bands for each light, with the tolerances."""
     lowest = min(y for curve in curves for _, y in curve.points)
     bottom = lowest if lowest == 100 * BAND_FLOOR else min(lowest / 1.3, 0.8)
-    axes = _band_axes(figure, "relative L2 error of the first bands", curves, (bottom, 115.0))
+    axes = _band_axes(figure, "relative L2 error of the first n bands", curves, (bottom, 115.0))
     ticks = [tick for tick in (0.1, 1, 5, 10, 100) if tick >= bottom]
-    axes.set_yticks(ticks, [f"{'< ' * (tick == 100 * BAND_FLOOR == lowest)}{plain(tick)} %" for tick in ticks])
+    axes.set_yticks(ticks, [f"{'< ' * (tick == 100 * BAND_FLOOR == lowest)}{tick_text(tick, ' %')}" for tick in ticks])
     for tolerance in TOLERANCES:
         axes.axhline(100 * tolerance, **MARKED)
     draw_curves(axes, curves)
-    axes.plot([], [], **MARKED, label="tolerances")
+    axes.plot([], [], **MARKED, label="10, 5 and 1 %")
     figure.legend(**BELOW)
 
 
@@ -210,6 +212,6 @@ def _band_axes(figure: Figure, title: str, curves: Sequence[Curve], y: tuple[flo
     low, high = min(bands) / 1.12, max(bands) * 1.12
     axes = log_axes(figure, title, (low, high), y, unit)
     ticks = [n for n in (*reconstruction.BANDS, 128) if low <= n <= high]
-    axes.set_xticks(ticks, [plain(n) for n in ticks])
-    axes.set_xlabel("bands")
+    axes.set_xticks(ticks, [tick_text(n) for n in ticks])
+    axes.set_xlabel("bands n" if "first n" in title else "bands")
     return axes

@@ -4,25 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.measured_lights import MeasuredLight
+from shviewer.benchmark.measuring.experiments import METHODS
+from shviewer.benchmark.measuring.projection_rows import SECTION
+from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, error_of, milliseconds, table, time_of, words_of
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.rows.row import Row
 from shviewer.words import counted, grouped
 
 Experiment = tuple[str, int | None]
 
 
-def lines(lights: Sequence[MeasuredLight], rows: Sequence[Row]) -> list[str]:
+EXPLAINED = """\
+Every row measured: times and errors of the coefficients, ||c - exact|| / ||exact||; "±" is half the range over the seeds.
+The smallest comes first, and what the time did not allow is left: another run may measure other rows, but the errors of
+those that both have are the same."""
+
+
+def projection_lines(page: Page) -> list[str]:
     """A table of the methods, then three tables per light."""
-    methods = [f"| {each.words} | {each.explanation} |" for each in METHODS]
-    found = ["| method | what it is |", "|---|---|", *methods, ""]
-    for measured in lights:
-        own = [row for row in rows if row.light == measured.name]
+    rows = page.report.measured(SECTION)
+    methods = [(each.words, each.name, each.explanation) for each in METHODS]
+    found = [EXPLAINED, "", *table(("method", "METHOD", "what it is"), methods, left=3), ""] if rows else []
+    for name in page.report.lights:
+        own = [row for row in rows if row.light == name]
         if own:
-            found += [f"### {measured.name}: milliseconds", "", *_matrix(own, time_of), ""]
-            found += [f"### {measured.name}: error of the coefficients", "", *_matrix(own, error_of), ""]
-            found += [f"### {measured.name}: evaluations, set-up and memory", "", *_set_up(own), ""]
+            found += [f"### {name}: milliseconds", "", *_matrix(own, time_of), ""]
+            found += [f"### {name}: error of the coefficients", "", *_matrix(own, error_of), ""]
+            found += [f"### {name}: evaluations, set-up and memory", "", *_set_up(own), ""]
     return found
 
 

@@ -8,30 +8,51 @@ from math import floor, log10
 
 import numpy as np
 
-from shviewer.benchmark.experiments import METHODS
-from shviewer.benchmark.row import Row
-from shviewer.words import grouped, three_digits
+from shviewer.benchmark.measuring.experiments import METHODS
+from shviewer.benchmark.rows.row import Row
+from shviewer.words import grouped
 
 ABSENT = "-"
 MOST_COLUMNS = 128
+MOST_DIGITS = 12
 
 
-def milliseconds(value: float | None) -> str:
-    """A time in three digits, without an exponent."""
-    return ABSENT if value is None else three_digits(value)
+def significant(value: float, digits: int = 3) -> str:
+    """A number in so many digits, without a power of ten; a whole number keeps all of its own."""
+    if value == 0:
+        return "0"
+    return f"{value:.{max(0, digits - 1 - floor(log10(abs(value)) + 1e-9))}f}"
 
 
-def percent(share: float | None) -> str:
-    """A share in percent, at most three digits: 0.0512 as 5.12 %."""
-    return ABSENT if share is None else f"{100 * share:.3g} %"
+def milliseconds(value: float | None, digits: int = 3) -> str:
+    """A time in three digits, without a power of ten."""
+    return ABSENT if value is None else significant(value, digits)
 
 
-def error(value: float | None) -> str:
-    """An error in two digits; one next to 1 in as many as tell it from 1."""
+def error(value: float | None, digits: int = 3) -> str:
+    """An error in percent, as the picture has it: 8.51 %; next to 100 % in as many digits as tell it from that, and below a
+    thousandth of a percent with a power of ten: 2.2e-5 %.
+    """
     if value is None or value == 0:
-        return ABSENT if value is None else "0"
-    missing = 1 - value
-    return f"{value:.{1 - floor(log10(missing))}f}" if 1e-12 < missing < 0.1 else f"{value:.1e}"
+        return ABSENT if value is None else "0 %"
+    percent = 100 * value
+    if percent < 1e-3:
+        mantissa, exponent = f"{percent:.{digits - 2}e}".split("e")
+        return f"{mantissa}e{int(exponent)} %"
+    text = significant(percent, digits)
+    while value < 1 - 1e-12 and float(text) >= 100:
+        text = significant(percent, digits := digits + 1)
+    return f"{text} %"
+
+
+def told_apart(values: Sequence[float | None], said: Callable[[float | None, int], str]) -> list[str]:
+    """Each value as `said`(value, digits) has it, in three digits or as many as tell it from every other of the values."""
+
+    def alone(value: float | None, digits: int) -> bool:
+        return said(value, digits) not in {said(other, digits) for other in values if other != value}
+
+    enough = (next((n for n in range(3, MOST_DIGITS) if alone(value, n)), MOST_DIGITS) for value in values)
+    return [said(value, digits) for value, digits in zip(values, enough, strict=True)]
 
 
 def plain(value: float, digits: int = 4) -> str:
@@ -112,5 +133,7 @@ def _places(lights: dict[str, list[str]]) -> list[str]:
 
 
 def bullet(text: str) -> str:
-    """One item of a list, on as many lines as it takes."""
-    return textwrap.fill(text, MOST_COLUMNS, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False)
+    """One item of a list, on as many lines as it takes; a number keeps its percent sign."""
+    kept = text.replace(" %", "\0%")
+    lines = textwrap.fill(kept, MOST_COLUMNS, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False)
+    return lines.replace("\0%", " %")

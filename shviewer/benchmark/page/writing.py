@@ -1,35 +1,33 @@
-"""A report as files: report.md to be read, report.json and report.csv with every row."""
+"""A report as files: report.html and report.md to be read, report.json and report.csv with every row."""
 
 from __future__ import annotations
 
 import csv
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from shviewer.benchmark.front import front_of, name_of, sentences
-from shviewer.benchmark.measured_lights import MeasuredLight
-from shviewer.benchmark.page import projection_tables
-from shviewer.benchmark.page.document import Report
-from shviewer.benchmark.page.tables import bullet, error, milliseconds, table
-from shviewer.benchmark.projection_rows import SECTION as PROJECTION
-from shviewer.benchmark.row import COLUMNS, Row
+from shviewer.benchmark.hard_cases import table as stability
+from shviewer.benchmark.page import bands_page, encodings_page, moving_page, rows_pages, use_page
+from shviewer.benchmark.page.html import as_html
+from shviewer.benchmark.page.projection_tables import projection_lines
+from shviewer.benchmark.page.section import Page, Section
+from shviewer.benchmark.page.tables import bullet
+from shviewer.benchmark.rows.report import Report
+from shviewer.benchmark.rows.row import COLUMNS, Row
 from shviewer.errors import OutputError
 from shviewer.outputs import write_atomically
 
-FILES = ("report.md", "report.json", "report.csv")
+FILES = ("report.html", "report.md", "report.json", "report.csv")
+
+AGAINST = "against"
+"""The key in the report's `extra` of the lines on the changes since an older report."""
 
 INTRODUCTION = """\
-How long it takes to project a light onto spherical harmonics, and how wrong the result is, measured together on one machine.
-
-A *time* is the median wall time of repeated runs that took turns with the others of the same light, band count and number of
-samples; "±12%" is half the distance of its quartiles. An *error* is that of the coefficients, ||c - exact|| / ||exact||,
-against the light's closed form or exact texel integrals; where samples are random it is the median over several seeds, and "±"
-half of their range.
-The *total* error adds what the bands left out hold: it is that of the picture, ||light - reconstruction|| / ||light||.
-A dash is something that was not measured. The smallest comes first, and what the time did not allow is left: another run may
-measure other rows, but the errors of those that both have are the same."""
+How many bands of spherical harmonics a light needs, how long it takes to project it onto them, and how wrong the result is,
+measured together on one machine, which the end of the page names. Errors are relative L2 norms in percent, against the light's
+closed form or exact texel integrals. A *time* is the median wall time of repeated runs that took turns with those that it is
+compared with; "±12%" is half the distance of its quartiles. A dash is something that was not measured."""
 
 NOT_COVERED = (
     "Other machines: times hold for the one below. Ratios between rows of one table travel better.",
@@ -37,8 +35,33 @@ NOT_COVERED = (
     " samples did.",
     "Graphics hardware, if the renderer below is software.",
     "Errors of the peers: texels are points to them and areas to us, which is not an error of theirs.",
-    "How the pictures look: a relative L2 error says nothing about where it is.",
+    "How the pictures look: a relative L2 error says nothing about where it is. `shviewer LIGHT`, key D, shows that.",
 )
+
+
+def _against(page: Page) -> list[str]:
+    return list(page.report.extra.get(AGAINST, []))
+
+
+def _hard_cases(page: Page) -> list[str]:
+    found = page.report.extra.get(stability.KEY)
+    return stability.as_markdown(stability.from_json(found)).splitlines()[2:] if found else []
+
+
+SECTIONS = (
+    Section("Against an older report", "shviewer report --against OLD.json", _against),
+    Section("How many bands", "shviewer info LIGHT", bands_page.needed_lines),
+    Section("What to use", "shviewer report LIGHT", use_page.lines),
+    Section("What a number of bands serves", "shviewer info LIGHT", bands_page.serves_lines),
+    Section("Irradiance in few floats", "shviewer report LIGHT", encodings_page.lines),
+    Section("Reconstruction", "shviewer report LIGHT", rows_pages.reconstruction_lines),
+    Section("End to end", "shviewer report LIGHT", rows_pages.end_to_end_lines),
+    Section("Peers", "shviewer report LIGHT --peers", rows_pages.peers_lines),
+    Section("Lights that move", "shviewer report LIGHT --moving", moving_page.lines),
+    Section("Projection", "shviewer report LIGHT --methods METHOD", projection_lines),
+    Section("Hard cases", "shviewer report --stability", _hard_cases),
+)
+"""The sections in the order of the page: answers first, long tables last."""
 
 
 def make_folder(folder: Path) -> None:
@@ -51,24 +74,13 @@ def make_folder(folder: Path) -> None:
         ) from problem
 
 
-@dataclass
-class Page:
-    """The content of the page beside the rows."""
-
-    lights: Sequence[MeasuredLight]
-    hosted: dict[str, str] = field(default_factory=dict)
-    """Title -> Markdown of a further section."""
-    plots: list[str] = field(default_factory=list)
-    """Names of picture files in the report's folder."""
-    plot_message: str = ""
-    """The reason why there are no plots, and the remedy."""
-
-
-def write(folder: Path, report: Report, page: Page) -> None:
-    """Write all three files, each whole or not at all. OutputError if one cannot be written."""
-    write_atomically(folder / "report.csv", as_csv(report.rows).encode())
-    write_atomically(folder / "report.json", report.as_json().encode())
-    write_atomically(folder / "report.md", as_markdown(report, page).encode())
+def write(folder: Path, page: Page) -> None:
+    """Write all files, each whole or not at all. OutputError if one cannot be written."""
+    text = as_markdown(page)
+    write_atomically(folder / "report.csv", as_csv(page.report.rows).encode())
+    write_atomically(folder / "report.json", page.report.as_json().encode())
+    write_atomically(folder / "report.md", text.encode())
+    write_atomically(folder / "report.html", as_html(text).encode())
 
 
 def as_csv(rows: Sequence[Row]) -> str:
@@ -80,26 +92,20 @@ def as_csv(rows: Sequence[Row]) -> str:
     return text.getvalue()
 
 
-def as_markdown(report: Report, page: Page) -> str:
-    """The page; the advice on what to use comes first."""
-    projections = report.measured(PROJECTION)
+def as_markdown(page: Page) -> str:
+    """The page, in lines of at most 128 columns where they can be broken."""
+    report = page.report
     lines = ["# Speed against error", ""]
     if not report.complete:
         lines += [
             "**This report is partial: the run did not come to its end, and what it had not measured is missing.**",
             "",
         ]
-    lines += [INTRODUCTION, "", "## What to use", ""]
-    for measured in page.lights:
-        lines += _what_to_use(measured, [row for row in projections if row.light == measured.name])
-    pictures = [name for name in page.plots if name.endswith(".svg")]
-    if pictures or page.plot_message:
-        lines += ["## Plots", "", *([f"{page.plot_message}\n"] if page.plot_message else [])]
-        lines += [f"![{Path(name).stem.replace('-', ' ')}]({name})\n" for name in pictures]
-    if projections:
-        lines += ["## Projection", "", *projection_tables.lines(page.lights, projections)]
-    for title, text in page.hosted.items():
-        lines += [f"## {title}", "", text.strip(), ""]
+    lines += [INTRODUCTION, "", *([page.plot_message, ""] if page.plot_message else [])]
+    for section in SECTIONS:
+        own = section.lines(page)
+        if own:
+            lines += [f"## {section.title}", "", f"`{section.command}`", "", *own, ""]
     lines += ["## What this report does not cover", "", *(bullet(line) for line in NOT_COVERED)]
     if report.renderer is None:
         lines.append("- Drawing: there was no OpenGL.")
@@ -107,38 +113,6 @@ def as_markdown(report: Report, page: Page) -> str:
         lines += ["", "Not measured for want of time; a larger --budget measures more:", ""]
         lines += [bullet(line) for line in report.left_out]
     return "\n".join([*lines, "", *_made_with(report)]) + "\n"
-
-
-def _what_to_use(measured: MeasuredLight, projections: Sequence[Row]) -> list[str]:
-    light = measured.light
-    lines = [f"### {measured.name}", "", *([light.description, ""] if light.description else [])]
-    if not projections:
-        return [*lines, "Not measured.", ""]
-    lines += [bullet(sentence) for sentence in sentences(measured, projections)]
-    front = [
-        (
-            name_of(row, measured),
-            str(row.n_bands),
-            milliseconds(row.milliseconds),
-            milliseconds(row.set_up_milliseconds),
-            error(row.error),
-            error(row.truncation),
-            error(row.total_error),
-        )
-        for row in front_of(projections, light.accuracy())
-    ]
-    headings = ("on the front", "bands", "ms", "set-up ms", "error", "left out", "total")
-    accuracy = light.accuracy()
-    if accuracy:
-        lines += ["", f"The reference itself may be off by {error(accuracy)}."]
-    return [
-        *lines,
-        "",
-        "Nothing that was measured is both faster and more accurate than these:",
-        "",
-        *table(headings, front),
-        "",
-    ]
 
 
 def _made_with(report: Report) -> list[str]:

@@ -205,7 +205,7 @@ def report_parser() -> OneLineParser:
     """shviewer report [LIGHT ...]: speed against error, measured on this machine."""
     parser = _parser(
         "shviewer report",
-        "Measure speed against error on this machine and write report.md, report.json, report.csv and plots. "
+        "Measure speed against error on this machine and write report.html, report.md, report.json, report.csv and plots. "
         "Without LIGHT: built-in scenes and two environment maps.",
         "\n\nWith --stability alone only the hard cases are run and printed (about 15 s). Plots need "
         "matplotlib:\npip install 'shviewer[report]'.",

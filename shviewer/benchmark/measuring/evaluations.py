@@ -1,16 +1,11 @@
-"""The cost of a band where the sum is evaluated, against its use: in the shader, from a map, and on the CPU.
+"""The ways to evaluate the sum of one light's first n bands: their works, to be timed, and the error of their arithmetic.
 
-Each time has two errors beside it: the truncation error, from the bands left out, and the arithmetic error of the evaluation.
-Both are relative to the norm of the light and so can be compared: where they meet, more bands are of no use.
+`Evaluations` has those on the CPU, `Frame` those in the shader, summed directly or drawn from a map.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from contextlib import nullcontext
 from dataclasses import replace
-from time import perf_counter
 
 import moderngl
 import numpy as np
@@ -18,9 +13,8 @@ from numpy.typing import NDArray
 
 from shviewer.benchmark.hard_cases.evaluation import towards
 from shviewer.benchmark.hard_cases.shader import in_blocks
-from shviewer.benchmark.measured_lights import MeasuredLight
-from shviewer.benchmark.row import Row, not_measured
-from shviewer.benchmark.timing import Timing, Work, time_interleaved, wall_milliseconds
+from shviewer.benchmark.measuring.measured_lights import MeasuredLight
+from shviewer.benchmark.measuring.timing import Work
 from shviewer.harmonics.basis import Array, evaluate_basis, normalise
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.limits import MAX_DIRECT_BANDS
@@ -29,11 +23,9 @@ from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.screenshot import offscreen, render_linear
+from shviewer.viewer.screenshot import render_linear
 from shviewer.viewer.state import state_of
 
-SECTION = "reconstruction"
-BANDS = (1, 2, 3, 5, 9, 16, 32, 64)
 FRAME = compose(1280, 640)
 MAP_SIZE = (1025, 2048)
 """Height and width of the maps that the CPU makes, and the largest that the shader draws from."""
@@ -65,69 +57,12 @@ CHECKED = 512
 
 SEED = 20_240_602
 
-Name = tuple[str, int]
 
-
-def reconstruction_rows(
-    measured: MeasuredLight,
-    drawing: Renderer | str,
-    *,
-    budget: float,
-    at_most: float = math.inf,
-    bands: Sequence[int] = BANDS,
-    at_least: int = 3,
-) -> list[Row]:
-    """Rows of every evaluation of the light at every band count. LightError if it is too dim or too bright to be drawn.
-
-    drawing: a renderer, or why nothing can be drawn, and then its rows are absent. budget: seconds for all timings, exceeded
-    only to reach `at_least` runs of each; the errors, which warm everything up, take a few seconds more. at_most: seconds for
-    everything. Band counts come smallest first; a count is not measured if the time of the one before does not fit into the
-    rest.
-    """
-    begun = perf_counter()
-    stages: dict[int, _Stage] = {}
-    errors: dict[Name, float | None] = {}
-    works: dict[Name, Work] = {}
-    turn = step = step_turn = 0.0  # seconds: of one run of every work; of the last band count, alone and of its works
-    with nullcontext() if isinstance(drawing, str) else offscreen(drawing, FRAME) as target:
-        frame = None if isinstance(drawing, str) or target is None else _Frame(drawing, target)
-
-        def before(name: Name, repeat: int) -> None:
-            if frame is not None:
-                frame.be_ready_for(name[0], stages[name[1]])
-
-        for n_bands in sorted(bands):
-            start = perf_counter()
-            if start - begun + step + at_least * (turn + step_turn) >= at_most:
-                break
-            stage = stages[n_bands] = _Stage(measured, n_bands)
-            errors |= {(method, n_bands): error for method, error in stage.errors().items()}
-            own = stage.works()
-            if frame is not None:
-                errors |= {(method, n_bands): error for method, error in frame.errors(stage).items()}
-                own |= frame.works(stage)
-            works |= {(method, n_bands): work for method, work in own.items()}
-            step_turn = 0.0
-            for method, work in own.items():
-                before((method, n_bands), -1)
-                step_turn += wall_milliseconds(work) / 1000
-            turn += step_turn
-            step = perf_counter() - start
-        times = time_interleaved(works, budget=budget, at_least=at_least, warm_up=False, before=before)
-    missing = [
-        not_measured(SECTION, method, measured.name, n_bands)
-        for n_bands in sorted(set(bands) - set(stages))
-        for method in (*CPU, *(() if isinstance(drawing, str) else _shader_methods(n_bands)))
-    ]
-    in_order = sorted(errors.items(), key=lambda item: item[0][1])
-    return [stages[n_bands].row(method, error, times) for (method, n_bands), error in in_order] + missing
-
-
-def _shader_methods(n_bands: int) -> tuple[str, ...]:
+def shader_methods(n_bands: int) -> tuple[str, ...]:
     return (CACHED, DIRECT) if n_bands <= MAX_DIRECT_BANDS else (CACHED,)
 
 
-class _Stage:
+class Evaluations:
     """One light with one band count: its evaluations on the CPU and their errors."""
 
     def __init__(self, measured: MeasuredLight, n_bands: int) -> None:
@@ -195,35 +130,14 @@ class _Stage:
             MAP_32: self.map,
         }
 
-    def row(self, method: str, arithmetic_error: float | None, times: dict[Name, Timing]) -> Row:
-        """The row of a method. A time on the CPU is scaled to a million directions."""
-        drawn, timing = method in (DIRECT, CACHED), times[method, self.n_bands]
-        directions = MAP_SIZE[0] * MAP_SIZE[1] if method in (MAP_64, MAP_32) else len(self.directions)
-        scale = 1.0 if drawn else 1e6 / directions
-        return Row(
-            section=SECTION,
-            method=method,
-            light=self.light_name,
-            n_bands=self.n_bands,
-            milliseconds=timing.milliseconds * scale,
-            low_quartile=timing.low_quartile * scale,
-            high_quartile=timing.high_quartile * scale,
-            repeats=timing.repeats,
-            set_up_milliseconds=times[MAKING, self.n_bands].milliseconds if method == CACHED else None,
-            truncation=self.truncation,
-            arithmetic_error=arithmetic_error,
-            total_error=float(np.hypot(self.truncation, arithmetic_error or 0.0)),
-            note=PER_FRAME if drawn else PER_MILLION,
-        )
 
-
-class _Frame:
+class Frame:
     """A renderer and a framebuffer of the window's size and format."""
 
     def __init__(self, renderer: Renderer, target: moderngl.Framebuffer) -> None:
         self.renderer = renderer
         self.target = target
-        self.cached: _Stage | None = None
+        self.cached: Evaluations | None = None
         """The stage whose map is shown."""
         sphere = FRAME.spheres[1]
         right, up = np.meshgrid(
@@ -234,11 +148,11 @@ class _Frame:
         self.inside = facing > NEAREST_RIM
         self.normals = np.stack([right, up, facing], axis=-1)[self.inside]
 
-    def works(self, stage: _Stage) -> dict[str, Work]:
+    def works(self, stage: Evaluations) -> dict[str, Work]:
         works: dict[str, Work] = {MAKING: lambda: self.make_map(stage)}
-        return works | dict.fromkeys(_shader_methods(stage.n_bands), self.draw)
+        return works | dict.fromkeys(shader_methods(stage.n_bands), self.draw)
 
-    def be_ready_for(self, method: str, stage: _Stage) -> None:
+    def be_ready_for(self, method: str, stage: Evaluations) -> None:
         """Upload the picture to draw, which is not timed."""
         if method == DIRECT:
             self.cached = None
@@ -247,7 +161,7 @@ class _Frame:
             self.make_map(stage)
         self.renderer.context.finish()
 
-    def make_map(self, stage: _Stage) -> None:
+    def make_map(self, stage: Evaluations) -> None:
         self.cached = stage
         self.renderer.show(stage.on_a_map())
         self.renderer.context.finish()
@@ -256,12 +170,12 @@ class _Frame:
         self.renderer.draw(self.target, FRAME)
         self.renderer.context.finish()
 
-    def errors(self, stage: _Stage) -> dict[str, float]:
+    def errors(self, stage: Evaluations) -> dict[str, float]:
         """Method -> arithmetic error."""
         pictures = {CACHED: stage.on_a_map(), DIRECT: stage.direct}
-        return {method: self._error(stage, pictures[method]) for method in _shader_methods(stage.n_bands)}
+        return {method: self._error(stage, pictures[method]) for method in shader_methods(stage.n_bands)}
 
-    def _error(self, stage: _Stage, picture: Picture) -> float:
+    def _error(self, stage: Evaluations, picture: Picture) -> float:
         """The error of the linear radiance read back from the right sphere, seen from the front and from behind."""
         azimuth, elevation = SEEN_FROM
         total = weights = 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from shviewer.benchmark.rows.report import LightRecord
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
 from shviewer.lights.find import find_light
@@ -32,6 +33,13 @@ class MeasuredLight:
     """The relative L2 error of the exact coefficients with n = 1 ... MOST_BANDS bands, (MOST_BANDS,)."""
     needs: dict[float, int | None]
     """Tolerance -> the smallest band count within it; None if none up to MOST_BANDS is."""
+
+    @property
+    def record(self) -> LightRecord:
+        """What the report keeps of it."""
+        needs = {f"{tolerance:g}": count for tolerance, count in self.needs.items()}
+        light = self.light
+        return LightRecord(light.description, light.best_method, light.accuracy(), needs, self.truncation.tolist())
 
 
 def find_measured_lights(

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from shviewer.benchmark.timing import wall_milliseconds
+from shviewer.benchmark.measuring.timing import wall_milliseconds
 from shviewer.version import __version__
 
 PACKAGES = ("numpy", "moderngl", "glfw", "Pillow", "OpenEXR", "matplotlib")

@@ -5,7 +5,7 @@ three channels. Copies and conversions that a peer needs for that are part of it
 centres, weighted by solid angle; so their error against our areas is not their own fault and is not given.
 
 A library sets its number of threads when it is loaded. The rows are therefore measured by another process, with one thread:
-    python -m shviewer.benchmark.peers '{"lights": ["film_studio"], "bands": [9], "budget": 10, "seed": 0}' rows.json
+    python -m shviewer.benchmark.measuring.peers '{"lights": ["film_studio"], "bands": [9], "budget": 10, "seed": 0}' rows.json
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.benchmark.experiments import lat_long_texels
-from shviewer.benchmark.row import Row, not_measured
-from shviewer.benchmark.timing import Work, time_interleaved, wall_milliseconds
+from shviewer.benchmark.measuring.experiments import lat_long_texels
+from shviewer.benchmark.measuring.timing import Work, time_interleaved, wall_milliseconds
+from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.children import follow_parent, leash
 from shviewer.ending import temporary_folder
 from shviewer.errors import UsageError
@@ -151,7 +151,7 @@ def peer_rows(lights: Sequence[str], bands: Sequence[int], budget: float, seed: 
     environment = {name: value for name, value in os.environ.items() if name not in SLOWING} | ONE_THREAD
     with temporary_folder() as folder, leash(environment) as (stdin, environment):
         out = folder / "rows.json"  # some peers print on stdout
-        command = [sys.executable, "-m", "shviewer.benchmark.peers", json.dumps(request), str(out)]
+        command = [sys.executable, "-m", "shviewer.benchmark.measuring.peers", json.dumps(request), str(out)]
         done = subprocess.run(command, stdin=stdin, env=environment, capture_output=True, text=True, check=False)
         if done.returncode:
             last = (done.stderr.strip().splitlines() or ["no message"])[-1]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from shviewer.analysis.options import is_number
-from shviewer.benchmark.row import Row
+from shviewer.benchmark.rows.row import Row
 from shviewer.errors import LightError, UsageError
 from shviewer.files import read_bytes
 from shviewer.limits import DEFAULT_LIMITS
@@ -24,12 +25,34 @@ MAX_FILE_BYTES = 2**24
 LONGEST_TEXT = 300
 """The most letters of a text that is read from a report."""
 
+NOTES = "notes"
+"""The key of Report.extra under which the lines on what a section lacks are kept."""
+
 YARDSTICK = ("median", "low_quartile", "high_quartile")
+
+
+@dataclass(frozen=True)
+class LightRecord:
+    """The exact answers on one light. TypeError or ValueError for a value of another kind, as in a damaged file."""
+
+    description: str
+    best_method: str
+    accuracy: float
+    """How far the reference may be off, relative to its norm; 0 if it is exact."""
+    bands_within: dict[str, int | None]
+    """Tolerance, such as "0.05" -> the fewest bands with that relative L2 error; None if no count searched has."""
+    error_by_bands: list[float]
+    """The relative L2 error of the exact coefficients with 1, 2, ... bands."""
+
+    def __post_init__(self) -> None:
+        numbers = [self.accuracy, *self.error_by_bands, *map(float, self.bands_within)]
+        if not self.error_by_bands or not all(map(is_number, numbers)):
+            raise ValueError("a light without its errors")
 
 
 @dataclass
 class Report:
-    """The content of report.json, which grows section by section."""
+    """The content of report.json, which grows section by section. The page is made of it and of nothing else."""
 
     seed: int
     command: str
@@ -39,23 +62,31 @@ class Report:
     """The OpenGL that drew; None if there was none."""
     rows: list[Row] = field(default_factory=list)
     """All rows, with those that were not measured for want of time: see Row.measured."""
-    lights: dict[str, dict[str, Any]] = field(default_factory=dict)
+    lights: dict[str, LightRecord] = field(default_factory=dict)
     left_out: list[str] = field(default_factory=list)
     """Lines on the measurements that there was no time for, one for each kind."""
     yardstick_milliseconds: dict[str, float] | None = None
     complete: bool = False
     extra: dict[str, Any] = field(default_factory=dict)
-    """Section -> its results that are no rows."""
+    """Section -> its results that are no rows, as JSON. NOTES -> section -> lines on what is missing in it, and why."""
 
     def measured(self, section: str) -> list[Row]:
         """The rows of one section that were measured."""
         return [row for row in self.rows if row.section == section and row.measured]
 
+    def note(self, section: str, lines: Iterable[str]) -> None:
+        """Keep lines on what a section lacks."""
+        self.extra.setdefault(NOTES, {}).setdefault(section, []).extend(lines)
+
+    def notes(self, section: str) -> list[str]:
+        """The lines on what a section lacks."""
+        return list(self.extra.get(NOTES, {}).get(section, []))
+
     def as_json(self) -> str:
         page = {"schema": SCHEMA} | {name: getattr(self, name) for name in HEAD}
         # one light and one row per line, so that the file can be read and two of them compared
         head = json.dumps(page, indent=1, allow_nan=False).removesuffix("\n}")
-        lights = ",".join(f"\n  {json.dumps(name)}: {_line(record)}" for name, record in self.lights.items())
+        lights = ",".join(f"\n  {json.dumps(name)}: {_line(asdict(record))}" for name, record in self.lights.items())
         rows = ",".join(f"\n  {_line(row.as_dict())}" for row in self.rows)
         return f'{head},\n "lights": {{{lights}}},\n "rows": [{rows}]\n}}\n'
 
@@ -102,7 +133,7 @@ def read_report(path: Path) -> Report:
             versions=dict(page["versions"]),
             renderer=page["renderer"],
             rows=[Row.from_dict(row) for row in page["rows"]],
-            lights=dict(page["lights"]),
+            lights={str(name): LightRecord(**record) for name, record in page["lights"].items()},
             left_out=[str(line) for line in page["left_out"]],
             extra=dict(page["extra"]),
             yardstick_milliseconds=yardstick,

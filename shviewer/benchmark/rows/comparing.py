@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass
 
-from shviewer.benchmark.front import alike, overlap
-from shviewer.benchmark.page.document import Report
-from shviewer.benchmark.page.tables import error, milliseconds, table
-from shviewer.benchmark.row import Row
-from shviewer.words import grouped, one_line
+from shviewer.benchmark.rows.report import Report
+from shviewer.benchmark.rows.row import Row, alike, overlap
+from shviewer.words import one_line
 
 LEAST_RATIO = 1.25
 """The least ratio of times that counts: between runs, a shared machine drifts by more than one run's quartiles show."""
@@ -42,24 +39,6 @@ class Comparison:
     """The differences between the machines, in words; empty if times can be compared."""
     needed_ratio: float
     """The ratio from which two times count as different."""
-
-    def as_markdown(self, name: str) -> list[str]:
-        """The lines of a section of the page; name: that of the older report."""
-        found = Counter(verdict for change in self.changes for verdict in (change.time, change.error))
-        counts = ", ".join(f"{found[verdict]} {verdict}" for verdict in ("faster", "slower", "better", "worse"))
-        lines = [f"{len(self.changes)} rows are in this report and in {name}: {counts}."]
-        if self.different:
-            lines.append(f"The times are not comparable, since the machine is another: {'; '.join(self.different)}.")
-        else:
-            lines.append(
-                f"A time differs if the quartiles are apart and the medians by more than {self.needed_ratio:.2f} times."
-            )
-        lines.append("An error differs if it does beyond its spread over the seeds, or beyond rounding.")
-        if self.only_before or self.only_after:
-            lines.append(f"Only there: {self.only_before} rows; only here: {self.only_after}.")
-        rows = [_cells(change) for change in self.changes if change.time or change.error]
-        headings = ("light", "method", "bands", "samples", "ms before", "ms now", "error before", "error now", "")
-        return [*lines, "", *(table(headings, rows, left=2) if rows else [])]
 
 
 def compare(before: Report, after: Report) -> Comparison:
@@ -115,22 +94,3 @@ def _error_verdict(before: Row, after: Row) -> str:
             return ""
         return "better" if new < old else "worse"
     return ""
-
-
-def _cells(change: Change) -> tuple[str, ...]:
-    row = change.after
-    return (
-        row.light,
-        row.method,
-        str(row.n_bands or ""),
-        "" if row.samples is None else grouped(row.samples),
-        milliseconds(change.before.milliseconds),
-        milliseconds(row.milliseconds),
-        error(_shown_error(change.before)),
-        error(_shown_error(row)),
-        ", ".join(filter(None, (change.time, change.error))),
-    )
-
-
-def _shown_error(row: Row) -> float | None:
-    return next((getattr(row, name) for name in ERRORS if getattr(row, name) is not None), None)

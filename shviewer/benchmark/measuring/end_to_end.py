@@ -17,8 +17,8 @@ import moderngl
 
 from shviewer.analysis.cache import MEMORY
 from shviewer.analysis.recipe import Recipe
-from shviewer.benchmark.row import Row, not_measured
-from shviewer.benchmark.timing import Timing, Work, summarise, time_interleaved
+from shviewer.benchmark.measuring.timing import Timing, Work, summarise, time_interleaved
+from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.children import leash
 from shviewer.ending import temporary_folder
 from shviewer.errors import GraphicsError

@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shviewer.benchmark.experiments import BEST, METHODS, PAPER, PAPER_SAMPLES, Method, Prepared
-from shviewer.benchmark.measured_lights import MeasuredLight
-from shviewer.benchmark.row import Row, not_measured
-from shviewer.benchmark.timing import Timing, time_interleaved, wall_milliseconds
+from shviewer.benchmark.measuring.experiments import BEST, METHODS, PAPER, PAPER_SAMPLES, Method, Prepared
+from shviewer.benchmark.measuring.measured_lights import MeasuredLight
+from shviewer.benchmark.measuring.timing import Timing, time_interleaved, wall_milliseconds
+from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import relative, squared_error
 from shviewer.lights.light import Light

@@ -89,3 +89,16 @@ COLUMNS = tuple(field.name for field in fields(Row))
 def not_measured(section: str, method: str, light: str, n_bands: int | None, samples: int | None = None) -> Row:
     """A row for which there was no time."""
     return Row(section=section, method=method, light=light, n_bands=n_bands, samples=samples, note="not measured")
+
+
+def alike(first: Row, second: Row) -> bool:
+    """Whether the quartiles of two times overlap. A time without quartiles counts as exact."""
+    found = overlap(first.low_quartile, first.high_quartile, second.low_quartile, second.high_quartile)
+    return first.milliseconds == second.milliseconds if found is None else found
+
+
+def overlap(low: float | None, high: float | None, other_low: float | None, other_high: float | None) -> bool | None:
+    """Whether two ranges have a number in common; None if an end is not known."""
+    if low is None or high is None or other_low is None or other_high is None:
+        return None
+    return low <= other_high and other_low <= high

@@ -1,0 +1,1 @@
+"""How rows are kept: one row, the report of all of them as JSON, and the changes between two reports."""
