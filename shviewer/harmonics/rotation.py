@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_basis
 from shviewer.harmonics.projection import BLOCK_VALUES
 from shviewer.harmonics.quadrature import gauss_legendre
+from shviewer.progress import tell
 
 MAX_ROTATED_BANDS = 128
 """The most bands: with more, one rotation takes over a minute."""
@@ -36,6 +37,7 @@ def rotate(coefficients: Array, rotation: ArrayLike) -> Array:
     rotated = np.zeros_like(columns, dtype=np.float64)
     block = max(64, BLOCK_VALUES // n_bands**2)
     for start in range(0, len(points.weights), block):
+        tell(share=start / len(points.weights))
         here = points.directions[start : start + block]
         values = evaluate_basis(here @ matrix, n_bands) @ columns  # row vectors: here @ M is M^T applied to each
         rotated += evaluate_basis(here, n_bands).T @ (points.weights[start : start + block, None] * values)

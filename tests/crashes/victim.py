@@ -40,7 +40,7 @@ from shviewer.errors import ShviewerError
 from shviewer.viewer import screenshot
 from shviewer.viewer.animation import animation
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.desktop import errands, session
+from shviewer.viewer.desktop import session
 from shviewer.viewer.saving.picture_files import write_png
 from shviewer.viewer.state import state_of
 
@@ -154,7 +154,7 @@ def called(function: Callable[[], object]) -> Callable[[], int]:
     return run
 
 
-UNDRAWN = SimpleNamespace(version="none", show=lambda picture: None)
+UNDRAWN = SimpleNamespace(version="none", show=lambda picture, seconds=None: True)
 """A renderer that draws nothing."""
 
 
@@ -162,6 +162,7 @@ def press_p() -> int:
     """P, in a window: an error is a message there."""
     shown = session.Session(state_of())
     shown.save(UNDRAWN, compose(320, 240))  # type: ignore[arg-type]
+    shown.errands.finish()
     if "cannot be written" in shown.state.view.message:
         print(f"shviewer: {shown.state.view.message}", file=sys.stderr)
         return 4
@@ -212,7 +213,7 @@ def give_pixels() -> None:
     """Let no picture be drawn."""
     for module in (screenshot, animation):
         module.headless_renderer = undrawn  # type: ignore[attr-defined]
-    for module in (screenshot, animation, errands):
+    for module in (screenshot, animation, session):
         module.render_rgb = lambda *arguments, **options: PIXELS  # type: ignore[attr-defined]
     screenshot.render_linear = lambda *arguments: PIXELS.astype(np.float32)
     plots.plots_of = lambda report: {"error-bands": lambda figure: None}

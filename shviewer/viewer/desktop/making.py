@@ -6,14 +6,11 @@ from collections.abc import Callable, Iterator
 from threading import Event
 
 from shviewer.analysis.subjects import read_again
-from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.desktop.task import QUIET, Task
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, stages, still
 from shviewer.viewer.state import State
-
-QUIET = 0.3
-"""Seconds after which a task is spoken of."""
 
 Made = tuple[Picture, bool]
 """A picture, and whether it was made by map."""

@@ -24,7 +24,7 @@ from shviewer.viewer.actions import Command, open_light, step_sweep
 from shviewer.viewer.animation.metronome import Metronome
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
-from shviewer.viewer.desktop.errands import save_coefficients, save_picture
+from shviewer.viewer.desktop.errands import Errands, save_coefficients, save_picture
 from shviewer.viewer.desktop.making import Making
 from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
 from shviewer.viewer.desktop.opening import MOST_DROPPED, Opening
@@ -34,6 +34,7 @@ from shviewer.viewer.keys import press
 from shviewer.viewer.message import DONE, ERROR, SECONDS, WARNING, Message, passes
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture, prepare, still
+from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import State, changed, started
 from shviewer.words import one_line
 
@@ -86,8 +87,9 @@ class Session:
         self._making = Making(wake)
         self._enough: State | None = None
         """The still part of the state whose figures are not wanted any more: the search was stopped, or failed."""
-        self._later: list[Callable[[], None]] = []
+        self._later: list[Callable[[], object]] = []
         """Commands that wait for the picture and all its figures."""
+        self.errands, self._openings = Errands(wake), Errands(wake)
         self._said: Work | None = None
         self._message, self._message_at = "", 0.0
         """The message last seen, and when it came."""
@@ -103,7 +105,7 @@ class Session:
 
     def press(self, key: str) -> Command | None:
         """Do what a key asks for; a command that only a window can carry out is returned."""
-        if key == "Esc" and self.working and (self.status or not self._shown):
+        if key == "Esc" and (self.work is not None or (self._making.working and not self._shown)):
             self.stop()
             return None
         state, refused = self.state, self._refused
@@ -132,15 +134,20 @@ class Session:
         elif command is Command.FACE_MARK:
             self.when_ready(self._face_mark)
         elif command is Command.EXPORT:
-            self.when_ready(lambda: self._write(save_coefficients, self.picture))
+            self.when_ready(lambda: self._write("writing the coefficients", save_coefficients, self.picture))
         else:
             return command
         return None
 
     @property
     def working(self) -> bool:
-        """Whether a picture is being made, or its figures."""
-        return self._making.working
+        """Whether anything is done behind the window."""
+        return self._making.working or self.errands.working or self._openings.working
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a command waits for the picture to be there."""
+        return bool(self._later)
 
     @property
     def _shown(self) -> bool:
@@ -150,16 +157,20 @@ class Session:
     @property
     def status(self) -> str:
         """What is done behind the window, once it has taken a while; "" while nothing is at work."""
-        return self._making.status
+        return self._making.status or (self.work.words if self.work is not None else "")
 
     @property
     def work(self) -> Work | None:
         """The same with how far it is, for the hairline; None while nothing is at work."""
-        return self._making.work
+        return self._openings.work or self._making.work or self.errands.work
 
     def stop(self) -> None:
-        """End the task, and stay with the picture there is."""
-        if self.working:
+        """End the task, and stay with the picture there is; where there is none, end what is written and copied."""
+        work = self.work
+        if self._openings.working or not self._making.working:
+            (self._openings if self._openings.working else self.errands).stop()
+            self.say(f"stopped {work.words if work is not None else ''}".rstrip())
+        else:
             what = self._making.doing
             self._making.end()
             self._later.clear()
@@ -182,16 +193,29 @@ class Session:
         if others:  # they come together, wherever some of them were
             lights = (*(light for light in self.state.lights if light not in found.lights), *found.lights)
             self.state = replace(self.state, lights=lights, entry=self.state.entry or self.state.recipe.light)
-        self._reading = Event()
-        self._open(changed(open_light(self.state, first), message="; ".join(found.said)), others)
+        self._open(changed(open_light(self.state, first), message="; ".join(found.said)), others, again=True)
 
-    def _open(self, state: State, others: Sequence[str | Light]) -> None:
-        """Show the light that the state was given, or where it cannot be opened the next of the others."""
-        try:
-            self.state = self._opening.first(state, others)
-        except ShviewerError as error:
+    def _open(self, state: State, others: Sequence[str | Light], *, again: bool = False) -> None:
+        """Show the light that the state was given, or where it cannot be opened the next of the others.
+
+        A picture may have to look at the whole file of its light, so that it is opened behind the window. again: read the
+        light's file again.
+        """
+
+        def opened(found: State) -> None:
+            self.state = found
+            if again:
+                self._reading = Event()
+
+        def refused(error: ShviewerError) -> None:
+            if again:
+                self._reading = Event()
             if not self._pass_over(state, error):
                 self.say(str(error), ERROR)
+
+        self._openings.stop()
+        words = f"opening {light_name(state.recipe.light)}"
+        self._openings.run(words, lambda: self._opening.first(state, others), opened, refused)
 
     def _pass_over(self, tried: State, error: ShviewerError) -> bool:
         """Go on from a light that cannot be opened to the next of those that were asked for; return whether there is one."""
@@ -206,12 +230,14 @@ class Session:
     def tick(self, now: float) -> bool:
         """Take a step of the sweep and a look at a watched file, where they are due; return whether anything changed."""
         last, reading, said = self.state, self._reading, self._said
+        self._openings.take()
+        self.errands.take()
         self._said = self.work
         if self.state.view.message is not self._message:
             self._message, self._message_at = self.state.view.message, now
         elif self._message and passes(self._message) and now - self._message_at >= SECONDS:
             self.state = changed(self.state, message="")
-        if not self.working and self.metronome.beats(self.state.view.sweep_to is not None, now):
+        if not self._making.working and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
         if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
             self._looked_at = now
@@ -229,12 +255,19 @@ class Session:
 
         patience: the seconds to wait for it since it was first wished for; None: as long as it takes.
         """
+        if patience is None:
+            self._openings.finish()
         while self._make(by_map, patience):
             if not self.picture.complete:  # what needs all figures does not get them
                 self._later.clear()
             if not self._later:
+                if patience is None:
+                    self.errands.finish()
                 return True
-            self._later.pop(0)()
+            command = self._later.pop(0)
+            if command() is False:
+                self._later.insert(0, command)
+                return True
         return False
 
     def _make(self, by_map: bool, patience: float | None) -> bool:
@@ -282,8 +315,11 @@ class Session:
                 picture = replace(picture, state=self.state)
         self.picture, self.by_map = picture, by_map
 
-    def when_ready(self, command: Callable[[], None]) -> None:
-        """Carry a command out that needs the picture with all figures: now, or when they are there."""
+    def when_ready(self, command: Callable[[], object]) -> None:
+        """Carry a command out that needs the picture with all figures: now, or when they are there.
+
+        One that returns False is tried again in the next frame.
+        """
         self._enough = None
         self._later.append(command)
         self.prepare(self.by_map, PATIENCE)
@@ -304,20 +340,30 @@ class Session:
         """Save the picture, as soon as it is there, under the next free name in the current folder."""
         self.when_ready(lambda: self._save(renderer, composition))
 
-    def _save(self, renderer: Renderer, composition: Composition) -> None:
+    def _save(self, renderer: Renderer, composition: Composition) -> bool:
+        """Draw and save the picture; False while its map is on its way to OpenGL."""
         state = changed(self.state, message="")
         picture = prepare(state) if self.by_map else self.picture.seen(state)
-        self._write(save_picture, picture, composition, renderer)
+        if not renderer.show(picture, 0.0):
+            return False
+        pixels = render_rgb(renderer, picture, composition)
+        self._write("saving the picture", save_picture, picture, composition, renderer.version, pixels)
+        return True
 
-    def _write(self, write: Callable[P, Path], *arguments: P.args, **named: P.kwargs) -> None:
-        """Write a file, and say which one and in which folder, or why not."""
-        try:
-            path = write(*arguments, **named)
-        except ShviewerError as error:
-            self.say(str(error), ERROR)
-        else:
-            self.say(f"saved {path} in {Path.cwd()}", DONE)
-            self._log(f"saved {path}")
+    def _write(self, words: str, write: Callable[P, Path], *arguments: P.args, **named: P.kwargs) -> None:
+        """Write a file behind the window, and say which one and in which folder, or why not."""
+        self.errands.run(words, lambda: write(*arguments, **named), self._written, self._failed)
+
+    def _written(self, path: Path) -> None:
+        self.say(f"saved {path} in {Path.cwd()}", DONE)
+        self._log(f"saved {path}")
+
+    def _failed(self, error: ShviewerError) -> None:
+        self.say(str(error), ERROR)
+
+    def make_text(self, words: str, make: Callable[[], str], give: Callable[[str], None]) -> None:
+        """Make a text behind the window, when the picture is there, and give it."""
+        self.when_ready(lambda: self.errands.run(words, make, give, self._failed))
 
     def _news(self, light: Light, *, again: bool) -> str:
         """The message about a light that was not shown before."""

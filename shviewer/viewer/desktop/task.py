@@ -12,6 +12,9 @@ from shviewer.viewer.overlay.foot import Work
 
 T = TypeVar("T")
 
+QUIET = 0.3
+"""Seconds after which a task is spoken of."""
+
 LEAST_DONE = 0.03
 """The share of a work that must be done before the rest is estimated from it."""
 

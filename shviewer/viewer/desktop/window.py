@@ -26,7 +26,7 @@ from shviewer.viewer.desktop.session import PATIENCE, STATUS_SECONDS, Session
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
-from shviewer.viewer.message import DONE, ERROR, WARNING
+from shviewer.viewer.message import DONE, WARNING
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.probe import direction_at
 from shviewer.viewer.picture import Picture
@@ -58,7 +58,10 @@ def run(
             if _wait_for(first, handle, canvas):
                 shown = Window(handle, canvas, first.result(), verbose, watch, as_image)
                 shown.loop()
-                return shown.size_in_points()
+                size = shown.size_in_points()
+                glfw.hide_window(handle)
+                shown.session.errands.finish()  # what was asked for is written before the end
+                return size
         finally:
             canvas.release()
     return None
@@ -187,6 +190,8 @@ class Window:
             uploaded = self.canvas.show(session.picture, composition)
         if uploaded:
             self.shown = session.picture
+            if session.waiting and ready:  # for what is there now
+                self._due()
         elif self.canvas.renderer.carrier is None:
             self._due()
         ready = ready and uploaded
@@ -244,14 +249,9 @@ class Window:
 
     def _copy(self, what: str, make: Callable[[], str]) -> None:
         """Give a text to the clipboard, when the picture is there; where there is none, to the terminal."""
-        self.session.when_ready(lambda: self._give(what, make))
+        self.session.make_text(f"writing {what}", make, lambda text: self._give(what, text))
 
-    def _give(self, what: str, make: Callable[[], str]) -> None:
-        try:
-            text = make()
-        except ShviewerError as error:
-            self.session.say(str(error), ERROR)
-            return
+    def _give(self, what: str, text: str) -> None:
         if self.has_clipboard:
             glfw.get_error()  # of whatever was before
             glfw.set_clipboard_string(self.handle, text)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from shviewer.files import FileVersion, opened, version_of
+from shviewer.progress import tell
 
 
 def mark_of(path: Path, version: FileVersion | None) -> dict[str, Any] | None:
@@ -29,9 +30,11 @@ def has_mark(path: Path, mark: dict[str, Any]) -> bool:
 def _digest(path: str, version: FileVersion) -> str | None:
     try:
         with opened(Path(path)) as file:
-            digest = hashlib.sha256()
+            digest, done = hashlib.sha256(), 0
             while piece := file.read(2**20):
                 digest.update(piece)
+                done += len(piece)
+                tell(share=done / max(version.size, done))
             return digest.hexdigest()
     except OSError:
         return None

@@ -41,7 +41,7 @@ def test_what_is_done_goes_after_four_seconds_and_what_is_wrong_at_the_next_key(
 
 def test_each_thing_that_is_said_has_its_kind(tmp_path: Path) -> None:
     session = Session(state_of("green"))
-    session._write(lambda: tmp_path / "a.png")
+    session._write("writing", lambda: tmp_path / "a.png")
     assert kind_of(session.state.view.message) == DONE
     session.keep(UsageError("too many"))
     assert kind_of(session.state.view.message) == ERROR

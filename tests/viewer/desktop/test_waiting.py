@@ -14,6 +14,7 @@ from shviewer.lights.function import FunctionLight
 from shviewer.progress import Stopped, listening, tell
 from shviewer.viewer.actions import Command
 from shviewer.viewer.desktop import errands, making
+from shviewer.viewer.desktop import session as sessions
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.state import changed, state_of
@@ -124,13 +125,16 @@ def test_a_command_that_needs_the_picture_is_carried_out_when_it_is_there(gate: 
 
 def test_saving_waits_for_the_picture_that_was_asked_for(gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
     saved = []
-    monkeypatch.setattr(errands, "render_rgb", lambda renderer, picture, composition: None)
+    monkeypatch.setattr(sessions, "render_rgb", lambda renderer, picture, composition: None)
     monkeypatch.setattr(errands, "metadata", lambda picture, *rest: picture.light.name)
     monkeypatch.setattr(errands, "write_png", lambda path, pixels, text, exclusive: saved.append((path, text)))
     monkeypatch.setattr(errands, "write_numbered", lambda stem, write: write(stem) or "it")
 
     class Anything:
         version = ""
+
+        def show(self, picture: object, seconds: float) -> bool:
+            return True
 
     session = waiting(gate)
     session.save(Anything(), Anything())  # type: ignore[arg-type]
