@@ -1,46 +1,36 @@
 """Integrals of the basis over areas of the sphere from their boundaries alone.
 
-On the sphere the Laplacian of Y(l, m) is -l(l+1) Y(l, m), so by Green's theorem
-    integral of Y(l, m) over an area = -1/(l(l+1)) times the integral of t . (r x grad) Y(l, m) along its boundary,
-with the boundary's tangent t, counterclockwise as seen from outside. The operator r x grad takes Y(l, m) to functions of the
-same degree, by the algebra of angular momentum (DLMF 14.30; Y = sqrt(2) {Re, Im} of the complex functions):
-    (r x grad)_z Y(m) = i m Y(m),     (r x grad)_x +- i (r x grad)_y = i {L+, L-},
-    L+- Y(m) = sqrt((l -+ m)(l +- m + 1)) Y(m +- 1).
-So three plain projections, of the components of t, are all that is needed. For l = 0 the area itself is.
+By Green's theorem, for a function that is f(theta) times {cos, sin}(m phi),
+    integral of it over an area = the integral of F(theta) {cos, sin}(m phi) d(phi) along its boundary,   F' = f sin(theta),
+counterclockwise as seen from outside. With F(pi) = 0 the south pole is no exception; the north pole must not be in the area,
+nor near it. The waves of theta_series.py are such functions, and their F are waves again, but for a constant:
+    f = cos(k theta):   F = cos((k-1) theta) / (2 (k-1)) - cos((k+1) theta) / (2 (k+1)),     for k = 1 the second term alone,
+    f = sin(k theta):   F = sin((k-1) theta) / (2 (k-1)) - sin((k+1) theta) / (2 (k+1)),     for k = 1, (theta - pi) / 2 for the first.
+So one plain sum of waves over the boundary is all that is needed.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.theta_series import degrees_and_orders
+from shviewer.harmonics.areas.patches import mirrored_waves
+from shviewer.harmonics.basis import Array, check_bands
+from shviewer.harmonics.row_transform import by_parity
+from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
 
 
-def from_boundary(tangents: Array) -> Array:
-    """Coefficients (n**2, ...) of areas of constant value from sums along their boundaries; 0 for l = 0.
+def project_boundary(directions: Array, values: Array, n_bands: int) -> Array:
+    """Coefficients (n**2, channels) of areas of constant value, from points on their boundaries and on mirror images of them.
 
-    tangents: (3, n**2, ...), the projections of the x, y and z component of value times tangent.
+    directions: (k, 3). values: (x, y, z, k, channels), as in `project_mirrored`: value times d(phi).
     """
-    n_bands = count_bands(tangents[0])
-    degree, order, sine = degrees_and_orders(n_bands)
-    flat = tangents.reshape(3, n_bands**2, -1)
-    x, y, z = np.zeros((3, n_bands, n_bands + 2, flat.shape[-1]), np.complex128)  # l, m from -1
-    cosines, sines = sine == 0, sine == 1
-    for table, sums in zip((x, y, z), flat, strict=True):
-        table[degree[cosines], order[cosines] + 1] = sums[cosines]
-        table[degree[sines], order[sines] + 1] += 1j * sums[sines]
-        table[:, 2:] /= np.sqrt(2)
-        table[:, 0] = -np.conj(table[:, 2])
-    l, m = np.arange(n_bands)[:, None], np.arange(n_bands)
-    up = np.sqrt(np.maximum((l - m) * (l + m + 1), 0))[..., None] / 2
-    down = np.sqrt(np.maximum((l + m) * (l - m + 1), 0))[..., None] / 2
-    higher, lower = slice(2, None), slice(0, -2)
-    flux = 1j * (up * x[:, higher] + down * x[:, lower])
-    flux += up * y[:, higher] - down * y[:, lower]
-    flux += 1j * m[:, None] * z[:, 1:-1]
-    flux /= -np.maximum(l * (l + 1), 1)[..., None]
-    flux[0] = 0
-    flux[:, 1:] *= np.sqrt(2)
-    found = np.where(sine[:, None] == 1, flux[degree, order].imag, flux[degree, order].real)
-    return np.asarray(found.reshape(tangents.shape[1:]))
+    check_bands(n_bands, MAX_SEPARABLE_BANDS)
+    sums = np.empty((n_bands, 2, values.shape[-1], n_bands + 1))
+    sums[..., by_parity(n_bands + 1)] = mirrored_waves(directions, values, n_bands + 1)[:n_bands]
+    k = np.arange(n_bands)
+    apart = np.where(k == 1, np.inf, k - 1)
+    areas = sums[..., np.abs(k - 1)] / apart - sums[..., 1:] / (k + 1)
+    if n_bands > 1:
+        areas[1::2, ..., 1] += sums[1::2, ..., 0]
+    areas[::2] -= sums[::2, ..., :1] * ((-1.0) ** (k - 1) * (1 / apart - 1 / (k + 1)))
+    return from_waves(areas[..., by_parity(n_bands)] / 2)

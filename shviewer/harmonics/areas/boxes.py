@@ -5,8 +5,9 @@ rounding. So a point gives its box only the moments of low degree, a cost that d
 moments meet the waves once for each box. The Chebyshev series of a wave e^(i k t) over an interval of half-width a ends like
 the Bessel functions J(j)(k a), which is where DEGREES comes from (Rivlin, "Chebyshev Polynomials", 2nd ed., chapter 3).
 
-Mirrored points share everything but their values, so all points are reflected into the octant where x, y and z are not
-negative, and the octants' moments are added up by parity, as the waves are even or odd in each coordinate.
+All points are reflected into the octant where x, y and z are not negative, as the waves are even or odd in each coordinate.
+Along an axis with mirrored points the values are folded into their sum and difference first; along one without, the moments of
+its two sides are.
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ from numpy.typing import NDArray
 from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_values, points_from_series
 from shviewer.harmonics.basis import Array, normalise
 
-PHASE = 5.0
+PHASE = 4.6
 """The phase, in radians, of the shortest wave from the middle of a box to its edge."""
 
-DEGREES = 25
-"""Moments along each side of a box: twice J(25)(5) and what follows it is 1e-15."""
+DEGREES = 24
+"""Moments along each side of a box: twice J(24)(4.6) and what follows it is 2e-15; a multiple of 8 multiplies faster."""
 
 BOX_POINTS = 256
 """The most points in one product, whose factors stay in the cache."""
@@ -33,70 +34,86 @@ STRIP_POINTS = 2**16
 """The most points whose polynomials are held at a time."""
 
 
+def folded(values: Array) -> Array:
+    """The values and those at mirrored points, along an axis of 2, as their sum and difference: (x, y, z, ...) each."""
+    for axis in range(3):
+        if values.shape[axis] == 2:
+            first, second = np.take(values, 0, axis), np.take(values, 1, axis)
+            values = np.stack([first + second, first - second], axis)
+    return values
+
+
 def wave_sums(directions: Array, values: Array, n_bands: int) -> Array:
     """Sums of value times {cos, sin}(m phi) times cos(k theta), for odd m sin(k theta): as `from_waves` takes them.
+
+    In place of sin(0 theta) stands theta - pi, of which boundary.py makes use.
 
     directions: (k, 3), any length. values: (x, y, z, k, channels) with 1 or 2 along each of the first three axes; index 1 is
     the value in the direction whose coordinate of that name is negated. Returns (m, {cos, sin}, channel, k by parity).
     """
-    channels = values.shape[-1]
-    x, y, z = normalise(directions).T
-    octant = (x < 0) * 4 + (y < 0) * 2 + (z < 0)
-    theta, phi = np.arctan2(np.hypot(x, y), np.abs(z)), np.arctan2(np.abs(y), np.abs(x))
+    channels, mirrors = values.shape[-1], np.array(values.shape[:3])
+    units = normalise(directions)
+    x, y, z = np.abs(units).T
+    theta, phi = np.arctan2(np.hypot(x, y), z), np.arctan2(y, x)
     boxes = max(1, ceil((n_bands - 1) * pi / (4 * PHASE)))
     width = pi / 2 / boxes
     strip, box = (np.minimum((angle / width).astype(np.int64), boxes - 1) for angle in (theta, phi))
-    order = np.argsort((strip * boxes + box) * 8 + octant, kind="stable")
-    place = ((strip * boxes + box) * 8 + octant)[order]
-    columns = np.ascontiguousarray(values.reshape(-1, len(x), channels).transpose(0, 2, 1)).reshape(-1, len(x))
-    mirrors = [4 * i + 2 * j + k for i, j, k in np.ndindex(values.shape[:3])]
-    edges = np.searchsorted(place, np.arange(boxes + 1) * (boxes * 8))
+    negative = (units < 0).T
+    sides = np.zeros_like(box)
+    columns = np.ascontiguousarray(folded(values).swapaxes(3, 4))
+    for axis in range(3):
+        if mirrors[axis] == 1:
+            sides = 2 * sides + negative[axis]
+        elif negative[axis].any():
+            np.negative(
+                columns, out=columns, where=np.indices(columns.shape[:3])[axis][..., None, None] * negative[axis] > 0
+            )
+    n_sides = int(np.prod(3 - mirrors))
+    place = (strip * boxes + box) * n_sides + sides
+    order = np.argsort(place, kind="stable")
+    place, columns = place[order], columns.reshape(-1, len(x))
+    edges = np.searchsorted(place, np.arange(boxes + 1) * (boxes * n_sides))
     result = np.zeros((n_bands, 2, channels, n_bands))
-    memory = np.empty((8, boxes, DEGREES, channels, DEGREES)) if len(x) else np.empty(0)
-    for row in range(boxes):
-        if edges[row] == edges[row + 1]:
-            continue
-        used = np.unique(place[edges[row] : edges[row + 1]] // 8) - row * boxes
-        moments = memory.reshape(-1)[: memory.size // boxes * len(used)].reshape(8, len(used), *memory.shape[2:])
+    memory = np.empty((n_sides, boxes, DEGREES, len(columns), DEGREES)) if len(x) else np.empty(0)
+    for row in np.flatnonzero(np.diff(edges)).tolist():
+        first, last = (int(place[i]) // n_sides - row * boxes for i in (edges[row], edges[row + 1] - 1))
+        used = slice(first, last + 1)
+        moments = memory[:, used]
         moments[:] = 0
         for start in range(edges[row], edges[row + 1], STRIP_POINTS):
             stop = min(start + STRIP_POINTS, edges[row + 1])
             here = order[start:stop]
             north = chebyshev_values(2 * (theta[here] / width - row) - 1, DEGREES)
             around = chebyshev_values(2 * (phi[here] / width - box[here]) - 1, DEGREES)
-            where = np.searchsorted(used, box[here]) * 8 + octant[here]
-            _add_moments(moments, where, north, around, columns[:, here], mirrors)
-        _add_waves(result, moments, row, used, boxes)
+            where = place[start:stop] - (row * boxes + first) * n_sides
+            _add_moments(moments, where, north, around, columns[:, here])
+        _add_waves(result, moments, mirrors, row, used, boxes)
     return result
 
 
-def _add_moments(
-    moments: Array, where: NDArray[np.int64], north: Array, around: Array, columns: Array, mirrors: list[int]
-) -> None:
-    """Add points of one strip, sorted by `where`: the box along phi times 8, and the octant."""
+def _add_moments(moments: Array, where: NDArray[np.int64], north: Array, around: Array, columns: Array) -> None:
+    """Add points of one strip, sorted by `where`: the box along phi times the number of sides, and the side."""
     starts = np.concatenate([[0], np.flatnonzero(np.diff(where)) + 1, [len(where)]])
     memory = np.empty(DEGREES * len(columns) * min(BOX_POINTS, len(where)))
     product = np.empty((DEGREES * len(columns), DEGREES))
-    by_mirror = product.reshape(DEGREES, len(mirrors), -1, DEGREES)
     for first, last in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True):
-        box, octant = divmod(int(where[first]), 8)
+        box, side = divmod(int(where[first]), len(moments))
         for start in range(first, last, BOX_POINTS):
             points = slice(start, min(start + BOX_POINTS, last))
             count = points.stop - start
             weighted = memory[: len(product) * count].reshape(DEGREES, -1, count)
             np.multiply(around[:, None, points], columns[:, points], out=weighted)
             np.matmul(weighted.reshape(-1, count), north[:, points].T, out=product)
-            for i, mirror in enumerate(mirrors):
-                moments[octant ^ mirror, box] += by_mirror[:, i]
+            moments[side, box] += product.reshape(moments.shape[2:])
 
 
-def _add_waves(result: Array, moments: Array, row: int, used: NDArray[np.int64], boxes: int) -> None:
+def _add_waves(result: Array, moments: Array, mirrors: NDArray[np.int64], row: int, used: slice, boxes: int) -> None:
     """Turn the moments of a strip's boxes into sums with waves, and add them to the result of `wave_sums`."""
-    n_bands, values = len(result), len(used) * DEGREES
+    n_bands, channels = len(result), result.shape[2]
     n_even = (n_bands + 1) // 2
-    octants = moments.reshape(2, 2, 2, values, -1)
-    for axis in range(3):
-        first, second = np.moveaxis(octants, axis, 0)
+    by_side = moments.reshape(*(3 - mirrors), *moments.shape[1:])
+    for axis in np.flatnonzero(mirrors == 1):
+        first, second = np.moveaxis(by_side, axis, 0)
         difference = first - second
         first += second
         second[:] = difference
@@ -104,18 +121,28 @@ def _add_waves(result: Array, moments: Array, row: int, used: NDArray[np.int64],
     for parity, sine, odd_k in np.ndindex(2, 2, 2):
         if max(parity, odd_k) >= n_bands:
             continue
-        folded = octants[(parity + sine) % 2, sine, (parity + odd_k) % 2]
-        around = series[sine, parity::2, used].swapaxes(0, 1).reshape(-1, values) @ folded
+        odd = np.array([(parity + sine) % 2, sine, (parity + odd_k) % 2])
+        table = by_side[tuple(odd * (2 - mirrors))]
+        table = table.reshape(len(table) * DEGREES, -1, channels * DEGREES)
+        table = table[:, np.ravel_multi_index(tuple(odd * (mirrors - 1)), tuple(mirrors))]
+        around = series[sine, parity::2, used].reshape(-1, len(table)) @ table
         product = around.reshape(-1, DEGREES) @ series[parity, odd_k::2, row].T
         kept = slice(n_even, None) if odd_k else slice(0, n_even)
-        result[parity::2, sine, :, kept] += product.reshape(-1, result.shape[2], product.shape[-1])
+        result[parity::2, sine, :, kept] += product.reshape(-1, channels, product.shape[-1])
+        if parity and odd_k:  # theta - pi is theta - pi/2, odd about the equator, and a constant, which is even
+            result[1::2, sine, :, 0] -= pi / 2 * around.reshape(-1, channels, DEGREES) @ series[0, 0, row]
 
 
 @lru_cache(maxsize=8)
 def _wave_series(n_bands: int, boxes: int) -> Array:
-    """The Chebyshev series of cos(k t) and sin(k t) in each box of a quarter turn: ({cos, sin}, k, box, degree)."""
+    """The Chebyshev series of cos(k t) and sin(k t) in each box of a quarter turn: ({cos, sin}, k, box, degree).
+
+    In place of sin(0 t) that of t - pi/2.
+    """
     nodes = (np.arange(boxes)[:, None] + (1 + chebyshev_points(DEGREES)) / 2) * (pi / 2 / boxes)
     phase = np.arange(n_bands)[:, None, None] * nodes
-    series = np.stack([np.cos(phase), np.sin(phase)]) @ points_from_series(DEGREES)
+    series = np.stack([np.cos(phase), np.sin(phase)])
+    series[1, 0] = nodes - pi / 2
+    series = series @ points_from_series(DEGREES)
     series.flags.writeable = False
     return series

@@ -27,12 +27,13 @@ def integrate_series(table: Array) -> Array:
     return np.asarray(result)
 
 
-def point_count(phase: float) -> int:
+def point_count(phase: float, more: int = 0) -> int:
     """Chebyshev points that make waves of at most this phase, from the middle of an interval to its ends, exact to rounding.
 
     The series of e^(i phase u) ends like the Bessel functions J(j)(phase): this many make the rest less than 1e-14.
+    more: how many more points than radians a factor needs whose series ends later.
     """
-    return int(np.ceil(1.03 * phase + 8 * np.cbrt(phase) + 7))
+    return max(int(np.ceil(1.03 * phase + 8 * np.cbrt(phase) + 7)), int(phase) + more)
 
 
 def chebyshev_points(n_points: int) -> Array:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.areas.boxes import wave_sums
+from shviewer.harmonics.areas.boxes import folded, wave_sums
 from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_values, integrate_series, points_from_series
 from shviewer.harmonics.basis import Array, check_bands, normalise
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
@@ -27,7 +27,10 @@ DIRECT_BANDS = 32
 """The most bands for which each point meets each wave."""
 
 BLOCK_VALUES = 2**21
-"""How many basis values, or texel values, are held in float64 at a time."""
+"""Eight times the basis values that are held at a time."""
+
+BLOCK_TEXELS = 2**17
+"""How many texels are held in float64 at a time, 3 MiB."""
 
 
 def texel_weights(edges: Array, n_points: int) -> tuple[Array, Array]:
@@ -100,14 +103,16 @@ def _sum_rows(weights: Array, image: NDArray[np.floating], spans: NDArray[np.int
     """weights (n, rows) times image (rows, width, 3): (n, width * 3), float64, in blocks of rows."""
     height, width = image.shape[:2]
     sums = np.zeros((len(weights), width * 3))
-    block = max(1, BLOCK_VALUES // (8 * width))
-    column = np.arange(width)
+    block = min(height, max(1, BLOCK_TEXELS // width))
+    memory = np.empty((block, width, 3))
     for start in range(0, height, block):
-        rows = slice(start, start + block)
-        wide = image[rows].astype(np.float64)
+        some = image[start : start + block]
+        wide = memory[: len(some)]
+        np.copyto(wide, some)
         if spans is not None:
-            wide[(column < spans[rows, :1]) | (column >= spans[rows, 1:])] = 0.0
-        sums += weights[:, rows] @ wide.reshape(len(wide), -1)
+            for row, (first, last) in zip(wide, spans[start : start + block].tolist(), strict=True):
+                row[:first] = row[last:] = 0.0
+        sums += weights[:, start : start + block] @ wide.reshape(len(wide), -1)
     return sums
 
 
@@ -116,19 +121,22 @@ def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
 
     directions: (k, 3), any length. values: (x, y, z, k, channels) with 1 or 2 along each of the first three axes; index 1 is
     the value in the direction whose coordinate of that name is negated.
+    """
+    check_bands(n_bands, MAX_SEPARABLE_BANDS)
+    return from_waves(mirrored_waves(directions, values, n_bands))
+
+
+def mirrored_waves(directions: Array, values: Array, n_bands: int) -> Array:
+    """`wave_sums` of boxes.py, whose cost is no longer n^2, or for few bands directly.
 
     Every Y is a sum of products of {cos, sin}(m phi) and, for even m, cos(k theta), for odd m, sin(k theta)
     (theta_series.py), each even or odd in every coordinate. So the values are summed with the products alone, and each kind
-    needs only the sum or the difference of mirror images. Many bands take the way of boxes.py, whose cost is no longer n^2.
+    needs only the sum or the difference of mirror images.
     """
-    check_bands(n_bands, MAX_SEPARABLE_BANDS)
     if n_bands > DIRECT_BANDS:
-        return from_waves(wave_sums(directions, values, n_bands))
+        return wave_sums(directions, values, n_bands)
     channels = values.shape[-1]
-    for axis in range(3):
-        if values.shape[axis] == 2:
-            first, second = np.take(values, 0, axis), np.take(values, 1, axis)
-            values = np.stack([first + second, first - second], axis)
+    values = folded(values)
     last = np.array(values.shape[:3]) - 1
     n_even = (n_bands + 1) // 2
     sums = np.zeros((n_bands, 2, channels, n_bands))  # m, {cos, sin}(m phi), channel, k by parity
@@ -143,6 +151,7 @@ def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
             phi[0] / np.where(off_axis, from_axis, 1.0), phi[1] / np.where(off_axis, from_axis, 1.0), n_bands
         )
         polar = waves(z, from_axis, n_bands)
+        polar[1][0] = -np.arctan2(z, from_axis)
         for parity, sine, odd_k in np.ndindex(2, 2, 2):
             if max(parity, odd_k) >= n_bands:
                 continue
@@ -152,7 +161,9 @@ def project_mirrored(directions: Array, values: Array, n_bands: int) -> Array:
             product = azimuth[sine][parity::2] @ along_theta.reshape(-1, len(x)).T
             kept = slice(n_even, None) if odd_k else slice(0, n_even)
             sums[parity::2, sine, :, kept] += product.reshape(len(product), -1, channels).swapaxes(1, 2)
-    return from_waves(sums)
+            if parity and odd_k:  # as in boxes.py
+                sums[1::2, sine, :, 0] -= np.pi / 2 * azimuth[sine][1::2] @ mirrored
+    return sums
 
 
 def waves(cosine: Array, sine: Array, n: int) -> tuple[Array, Array]:

@@ -14,9 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_shares
 from shviewer.harmonics.areas.patches import project_mirrored, quadrant_weights
 from shviewer.harmonics.basis import Array, Indices
 from shviewer.lights.layouts.disc import DiscLayout
+
+DENSITY_POINTS = 24
+"""Chebyshev points a side that make the density exact to rounding in a quadrant."""
+
+AREA_POINTS = 12
+"""Gauss's points a side of a texel, exact for such a polynomial."""
 
 
 @dataclass(frozen=True)
@@ -29,27 +36,24 @@ class AngularLayout(DiscLayout):
     def theta(self, radius: Array) -> Array:
         return radius * np.pi
 
-    def on_line(self, y: Array, x: Array, depth: Array) -> tuple[Array, Array]:
+    def on_line(self, y: Array, x: Array, depth: Array) -> Array:
         radius = np.hypot(x, y)
         from_rim = np.pi * depth**2 / (1 + radius)
-        cosine, sine = -np.cos(from_rim), np.sin(from_rim)
-        scale, turning = sine / radius, -x * depth / radius  # and dr/dt
-        growth = turning * (np.pi * cosine - scale) / radius  # d(scale)/dt
-        direction = np.stack([cosine, x * scale, y * scale])
-        return direction, np.stack([-np.pi * sine * turning, x * growth - depth * scale, y * growth])
+        return np.stack([-np.cos(from_rim), x * np.sin(from_rim) / radius, y * np.sin(from_rim) / radius])
 
     def opening(self, depth: Array) -> Array:
         return np.asarray(2 * np.sin(np.pi / 2 * depth**2 / (1 + np.sqrt(1 - depth**2))) ** 2)
 
     def whole_solid_angles(self) -> Array:
-        quadrant = np.zeros((self.half, self.half))
+        """As in DiscLayout: the density is a polynomial to rounding, so its integrals over texels are a matrix product."""
         low, size = self.edges[:-1], np.diff(self.edges)
-        nodes, weights = np.polynomial.legendre.leggauss(_whole_point_count(self.side))
-        for x_node, x_weight in zip((1 + nodes) / 2, weights / 2, strict=True):
-            for y_node, y_weight in zip((1 + nodes) / 2, weights / 2, strict=True):
-                radius = np.hypot(low + size * x_node, (low + size * y_node)[:, None])
-                quadrant += (x_weight * y_weight * np.pi**2) * np.sinc(radius)
-        return np.asarray(quadrant * size * size[:, None])
+        nodes, weights = np.polynomial.legendre.leggauss(AREA_POINTS)
+        places = low + size * (1 + nodes[:, None]) / 2
+        shares = chebyshev_shares(2 * places.ravel() - 1, DENSITY_POINTS).reshape(DENSITY_POINTS, *places.shape)
+        by_texel = np.einsum("ngt,g,t->nt", shares, weights / 2, size)
+        points = (1 + chebyshev_points(DENSITY_POINTS)) / 2
+        density = np.pi**2 * np.sinc(np.hypot(points, points[:, None]))
+        return np.asarray(by_texel.T @ density @ by_texel)
 
     def inside(self) -> Indices:
         return self.whole
@@ -65,11 +69,6 @@ class AngularLayout(DiscLayout):
         directions = np.stack([np.cos(np.pi * radius), x * density / np.pi, y * density / np.pi], axis=-1)
         values = weights.swapaxes(0, 1).reshape(2, 2, -1, 3) * density[:, None]
         return project_mirrored(directions, values[None], n_bands)
-
-
-def _whole_point_count(side: int) -> int:
-    """Points a side of a whole texel that make its area exact to rounding, by the error term of Gauss's rule."""
-    return 14 if side < 16 else 6 if side < 512 else 3
 
 
 def quadrant_point_count(n_bands: int) -> int:

@@ -11,7 +11,7 @@ mirror ball shows left and right exchanged, like any mirror: turn it over first.
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,10 @@ from shviewer.lights.layouts.rim import Disc, cut_areas, project_rim, quadrants
 
 ON_THE_RIM = 1e-14
 """Corners that are this near the rim do not cross it, on whichever side rounding puts them."""
+
+
+FEWEST_TEXELS = 128
+"""The smallest side of an image that is projected as it is."""
 
 
 @dataclass(frozen=True)
@@ -138,13 +142,12 @@ class DiscLayout(Disc):
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         """As in Layout."""
+        if self.side < FEWEST_TEXELS:  # as a larger image of the same areas, whose rim is far from the poles
+            times = -(-FEWEST_TEXELS // self.side)
+            finer = pixels.repeat(times, axis=0).repeat(times, axis=1)
+            return replace(self, side=times * self.side).project(finer, n_bands)
         inside = self.inside()
-        coefficients = self.project_inside(pixels, inside, n_bands) + project_rim(self, pixels, inside, n_bands)
-        rim = self.from_column(inside)
-        areas = self.quadrant_solid_angles[rim] / np.sqrt(4 * np.pi)
-        for view in quadrants(pixels):
-            coefficients[0] += areas @ view[rim].astype(np.float64)
-        return coefficients
+        return self.project_inside(pixels, inside, n_bands) + project_rim(self, pixels, inside, n_bands)
 
     @abstractmethod
     def inside(self) -> Indices:

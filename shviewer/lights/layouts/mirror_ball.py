@@ -3,7 +3,7 @@
 With X to the right and Y up in units of half the side, and r their distance from the centre,
     direction = (1 - 2 r^2, -2 X sqrt(1 - r^2), 2 Y sqrt(1 - r^2)),   density = 4 everywhere.
 The root has no series at the rim, where the whole world behind the ball is squeezed. So the disc is cut into square tiles
-that shrink towards it, none larger than its distance from the rim, each a patch of its own; what is left at the rim is
+that shrink towards it, none larger than twice its distance from the rim, each a patch of its own; what is left at the rim is
 integrated along the texels' edges (rim.py), on which directions are trigonometric polynomials of degree 2.
 """
 
@@ -21,8 +21,12 @@ from shviewer.harmonics.basis import Array, Indices
 from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.rim import quadrants
 
-LARGEST_TILE, SMALLEST_TILE = 256, 64
-"""The sides of tiles, in texels. Smaller ones would have more points than the lines through them."""
+SMALLEST_TILE, LARGEST_TILE = 64, 4
+"""The side of the smallest tiles, in texels, in images in which that is an eighth of the radius or less; and of the largest ones
+in them. Smaller ones would have more points than the lines through them."""
+
+ROOT_POINTS = 24
+"""How many more Chebyshev points than radians of a wave a tile has along a side, for the sake of the root."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +39,8 @@ class MirrorBallLayout(DiscLayout):
     def theta(self, radius: Array) -> Array:
         return np.asarray(2 * np.arcsin(radius))
 
-    def on_line(self, y: Array, x: Array, depth: Array) -> tuple[Array, Array]:
-        direction = np.stack([2 * depth**2 - 1, 2 * x * depth, 2 * y * depth])
-        return direction, np.stack([4 * x * depth, 2 * (x - depth) * (x + depth), 2 * y * x])
+    def on_line(self, y: Array, x: Array, depth: Array) -> Array:
+        return np.stack([2 * depth**2 - 1, 2 * x * depth, 2 * y * depth])
 
     def opening(self, depth: Array) -> Array:
         return np.asarray(2 * depth**2)
@@ -47,9 +50,14 @@ class MirrorBallLayout(DiscLayout):
         return np.asarray(4 * size * size[:, None])
 
     def inside(self) -> Indices:
-        far = np.minimum(np.arange(1, -(-self.half // SMALLEST_TILE) + 1) * SMALLEST_TILE, self.half + 1)
-        covered = _fits(far, far[:, None], SMALLEST_TILE, self.half)
-        return np.asarray(SMALLEST_TILE * covered.sum(axis=1).repeat(SMALLEST_TILE)[: self.half])
+        size = self._smallest_tile
+        far = np.minimum(np.arange(1, -(-self.half // size) + 1) * size, self.half + 1)
+        covered = _fits(far, far[:, None], size, self.half)
+        return np.asarray(size * covered.sum(axis=1).repeat(size)[: self.half])
+
+    @property
+    def _smallest_tile(self) -> int:
+        return int(min(SMALLEST_TILE, 2 ** (max(self.half // 8, 1).bit_length() - 1)))
 
     def project_inside(self, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
         views, coordinates, found = quadrants(pixels), [], []
@@ -73,9 +81,10 @@ class MirrorBallLayout(DiscLayout):
 
     def _tiles(self) -> Iterator[tuple[int, int, int]]:
         """Sides of tiles in a quadrant, and their first rows and columns."""
-        size = LARGEST_TILE
+        smallest = self._smallest_tile
+        size = LARGEST_TILE * smallest
         rows, columns = (a.ravel() * size for a in np.indices((-(-self.half // size),) * 2))
-        while size >= SMALLEST_TILE and len(rows):
+        while size >= smallest and len(rows):
             fits = _fits(rows + size, columns + size, size, self.half)
             for row, column in zip(rows[fits].tolist(), columns[fits].tolist(), strict=True):
                 yield size, row, column
@@ -94,9 +103,9 @@ class MirrorBallLayout(DiscLayout):
         )
         directions = self._directions(*(a.ravel() for a in np.meshgrid(x, y))).reshape(5, 5, 3)
         down, right = (4 * np.linalg.norm(np.diff(directions, axis=axis), axis=2).max() for axis in (0, 1))
-        return point_count(n_bands * down / 2), point_count(n_bands * right / 2)
+        return point_count(n_bands * down / 2, ROOT_POINTS), point_count(n_bands * right / 2, ROOT_POINTS)
 
 
 def _fits(rows: Indices, columns: Indices, size: int, half: int) -> NDArray[np.bool_]:
-    """Whether tiles with far corners there are no larger than their distance from the rim."""
-    return np.asarray(np.hypot(rows, columns) + size <= half)
+    """Whether tiles with far corners there are no larger than twice their distance from the rim."""
+    return np.asarray(np.hypot(rows, columns) + size / 2 <= half)

@@ -1,7 +1,8 @@
 """Texels next to the rim of a disc: integrated along their edges, on which nothing is singular.
 
 The rim is one point of the sphere, straight back, so a texel that it cuts is bounded by the texel's own edges alone, and
-boundary.py makes coefficients of integrals along them. On the line Y = y of the image, with rho^2 = 1 - y^2,
+boundary.py makes coefficients of integrals along them. The pole that must not be in the
+area is straight ahead: axes are exchanged for that. On the line Y = y of the image, with rho^2 = 1 - y^2,
     X = rho cos t,      depth sqrt(1 - X^2 - y^2) = rho sin t,
 and directions are analytic in t up to the rim, at t = 0. Neighbours share an edge, so that a line carries the differences of
 the texels on either side; with Chebyshev points in t their integrals are closed forms, as in patches.py.
@@ -12,11 +13,12 @@ A quadrant has X and Y from 0 to 1, in world directions +y and +z; the others ar
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.areas.boundary import from_boundary
+from shviewer.harmonics.areas.boundary import project_boundary
 from shviewer.harmonics.areas.chebyshev import (
     chebyshev_points,
     chebyshev_shares,
@@ -25,17 +27,17 @@ from shviewer.harmonics.areas.chebyshev import (
     point_count,
     points_from_series,
 )
-from shviewer.harmonics.areas.patches import project_mirrored
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.cycling import cycled
 
-GROUP = 128
-"""Neighbouring lines that share their points: the directions are smooth across lines, too."""
+GROUPS = 4
+"""Groups of neighbouring lines, over equal angles, that share their points: directions are smooth across lines, too."""
 
-LINES = 8
-"""Lines whose polynomials are held at once."""
+MORE_POINTS = 35
+"""How many more Chebyshev points than radians of a wave a line has for the sake of d(phi), which is infinite in the middle."""
 
-BEHIND = -0.2
-"""The x of directions from which on the other two components of a tangent suffice."""
+FEWEST_LINES, MOST_LINES, LINE_TEXELS = 8, 64, 2048
+"""Lines whose polynomials are held at once, and about how many texels on them, if they are few."""
 
 AREA_POINTS = 24
 """Gauss's points on an edge that make its part of an area exact to rounding, even in an image of three texels."""
@@ -55,8 +57,8 @@ class Disc(ABC):
         """The number of texels in each row, or column, of which some part lies inside, (half,)."""
 
     @abstractmethod
-    def on_line(self, y: Array, x: Array, depth: Array) -> tuple[Array, Array]:
-        """Directions and their derivatives by t, (3, ...) each, on lines of the quadrant."""
+    def on_line(self, y: Array, x: Array, depth: Array) -> Array:
+        """Directions (3, ...) on lines of the quadrant."""
 
     @abstractmethod
     def opening(self, depth: Array) -> Array:
@@ -71,33 +73,26 @@ def quadrants(pixels: NDArray[np.float32]) -> list[NDArray[np.float32]]:
 
 
 def project_rim(disc: Disc, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
-    """Coefficients (n**2, 3), without l = 0, of the texels from column inside[row] on to the rim, in all four quadrants.
+    """Coefficients (n**2, 3) of the texels from column inside[row] on to the rim, in all four quadrants.
 
-    inside: (half,), descending, the same for rows and columns.
+    inside: (half,), descending, the same for rows and columns. The middle must not be among the texels, or next to them.
     """
-    views, directions, tangents, values = quadrants(pixels), [], [], []
-    for start in range(0, len(inside), GROUP):
-        lines = slice(start, min(start + GROUP, len(inside)))
-        direction, tangent, along, across = _on_lines(disc, views, inside, lines, n_bands)
-        # On lines of constant X, coordinates change places, which turns the boundary round.
+    views, directions, values = quadrants(pixels), [], []
+    starts = (len(inside) * np.sin(np.linspace(0, np.pi / 2, GROUPS + 1))).astype(np.int64).tolist()
+    for lines in map(slice, starts, starts[1:]):
+        direction, along, across = _on_lines(disc, views, inside, lines, n_bands)
+        # On lines of constant X, coordinates change places.
         directions += [direction, direction[[0, 2, 1]]]
-        tangents += [tangent, -tangent[[0, 2, 1]]]
         values += [along, across]
-    direction, tangent = np.concatenate(directions, axis=1), np.concatenate(tangents, axis=1)
-    axes = slice(0, 3)
-    if direction[0].max() < BEHIND:  # r . (r x grad) = 0, so that one component can be told by the others
-        tangent[1:] -= direction[1:] * (tangent[0] / direction[0])
-        axes = slice(1, 3)
-    weighted = _times_tangent(np.concatenate(values, axis=2), tangent, axes)
-    sums = np.zeros((3, n_bands**2, 3))
-    sums[axes] = project_mirrored(direction.T, weighted[None], n_bands).reshape(n_bands**2, -1, 3).swapaxes(0, 1)
-    return from_boundary(sums)
+    x, y, z = np.concatenate(directions, axis=1)
+    # Values (left and right, down and up), their axes from y and z to x and y.
+    return cycled(project_boundary(np.stack([y, z, x], axis=-1), np.concatenate(values, axis=2)[:, :, None], n_bands))
 
 
 def _on_lines(
     disc: Disc, views: list[NDArray[np.float32]], inside: Indices, lines: slice, n_bands: int
-) -> tuple[Array, Array, Array, Array]:
-    """Directions and tangents (3, k) at points that stand for some lines of constant Y, and values there, (2, 2, k, 3).
+) -> tuple[Array, Array, Array]:
+    """Directions (3, k) at points that stand for some lines of constant Y, and values there, (2, 2, k, 3), times d(phi).
 
     Values also of the image with X and Y exchanged, whose lines are those of constant X.
     """
@@ -110,49 +105,36 @@ def _on_lines(
     n_along, n_across = _point_counts(disc, length, middle, half, n_bands)
     shares = chebyshev_shares((angle - middle) / half, n_across)
     sums = np.zeros((n_across, n_along + 1, 24))
-    for start in range(lines.start, lines.stop, LINES):
-        some = slice(start, min(start + LINES, lines.stop))
+    start = lines.start
+    while start < lines.stop:
+        columns = int(disc.reach[max(start - 1, 0)]) - int(inside[min(start + MOST_LINES, lines.stop) - 1])
+        some = slice(start, min(start + max(FEWEST_LINES, min(MOST_LINES, LINE_TEXELS // columns)), lines.stop))
         here = slice(some.start - lines.start, some.stop - lines.start)
         first, last = int(inside[some.stop - 1]), int(np.searchsorted(edges[:-1], rho[here][0, 0]))
         ends = np.minimum(_parameter(edges[first : last + 1], rho[here]), length)
-        corners = np.zeros((len(ends), last - first + 1, 2, 4, 3))
-        for i, view in enumerate(views):
-            for turned, texels in enumerate((view, view.swapaxes(0, 1))):
-                steps = _steps(disc, texels, inside, some, first, last)
-                corners[:, 1:, turned, i] = steps  # at the end of each edge, and at its beginning
-                corners[:, :-1, turned, i] -= steps
         polynomials = chebyshev_values(2 * ends / length - 1, n_along + 1)
-        by_line = polynomials.swapaxes(0, 1) @ corners.reshape(*corners.shape[:2], -1)
+        by_line = polynomials.swapaxes(0, 1) @ _corners(disc, views, inside, some, first, last)
         sums += (shares[:, here] @ by_line.reshape(len(by_line), -1)).reshape(sums.shape)
+        start = some.stop
     values = points_from_series(n_along) @ integrate_series(sums.swapaxes(0, 1)).swapaxes(0, 1) * (length / 2)
     along, across = values.reshape(-1, 2, 2, 2, 3).transpose(1, 2, 3, 0, 4)
     y, rho = _circle(middle + half * chebyshev_points(n_across)[:, None])
-    direction, tangent = disc.on_line(y, *_place(rho, length * (1 + chebyshev_points(n_along)) / 2))
-    return direction.reshape(3, -1), tangent.reshape(3, -1), along, across
+    x, depth = _place(rho, length * (1 + chebyshev_points(n_along)) / 2)
+    turning = (y * depth / (1 - depth**2)).ravel()  # d(phi)/dt about the direction ahead; on lines of constant X, too
+    return disc.on_line(y, x, depth).reshape(3, -1), along * turning[:, None], across * turning[:, None]
 
 
 def _point_counts(disc: Disc, length: float, middle: float, half: float, n_bands: int) -> tuple[int, int]:
     """Chebyshev points along lines and across them, by the longest way that a direction goes, from a few of them."""
     y, rho = _circle(middle + half * np.linspace(-1, 1, 9)[:, None])
-    directions = disc.on_line(y, *_place(rho, length * np.linspace(0, 1, 9)))[0]
+    directions = disc.on_line(y, *_place(rho, length * np.linspace(0, 1, 9)))
     across, along = (8 * float(np.linalg.norm(np.diff(directions, axis=axis), axis=0).max()) for axis in (1, 2))
-    return point_count(n_bands * along / 2), point_count(n_bands * across / 2)
+    return point_count(n_bands * along / 2, MORE_POINTS), point_count(n_bands * across / 2, MORE_POINTS)
 
 
 def _circle(angle: Array) -> tuple[Array, Array]:
     """y and rho of the lines at an angle, in which directions are analytic up to the top of the disc."""
     return np.cos(angle), np.sin(angle)
-
-
-def _times_tangent(values: Array, tangent: Array, axes: slice) -> Array:
-    """Values (2, 2, k, 3) times some components of the tangents (3, k) in each quadrant: (2, 2, k, 3 for each axis)."""
-    count = len(tangent[axes])
-    weighted = np.empty((*values.shape[:3], count, 3))
-    for i, j in np.ndindex(2, 2):
-        left, up = 1 - 2 * i, 1 - 2 * j  # a mirror turns the boundary round
-        signed = (tangent[axes].T * np.array([left * up, up, left])[axes])[..., None]
-        np.multiply(signed, values[i, j][:, None], out=weighted[i, j])
-    return weighted.reshape(*values.shape[:3], 3 * count)
 
 
 def _parameter(x: Array, rho: Array) -> Array:
@@ -165,14 +147,25 @@ def _place(rho: Array, t: Array) -> tuple[Array, Array]:
     return rho * np.cos(t), rho * np.sin(t)
 
 
-def _steps(disc: Disc, view: NDArray[np.float32], inside: Indices, lines: slice, first: int, last: int) -> Array:
-    """Texels above each line minus those below it, (lines, columns, 3); texels that are not next to the rim count as 0."""
-    rows, columns = np.maximum(np.arange(lines.start - 1, lines.stop), 0), np.arange(first, last)
-    texels = view[rows, first:last].astype(np.float64)
-    texels[(columns < inside[rows, None]) | (columns >= disc.reach[rows, None])] = 0.0
+def _corners(
+    disc: Disc, views: list[NDArray[np.float32]], inside: Indices, lines: slice, first: int, last: int
+) -> Array:
+    """The weights of antiderivatives at the corners on some lines, (lines, last - first + 1, 24).
+
+    That of an edge, of the texel above minus the one below, counts at its end and is taken off at its beginning. Texels that
+    are not next to the rim count as 0. The last axis: the image and the one with X and Y exchanged, quadrant, channel.
+    """
+    rows, columns = np.arange(lines.start - 1, lines.stop), np.arange(first, last)
+    texels = np.zeros((len(rows), len(columns) + 2, 2, 4, 3))
+    above = slice(max(rows[0], 0), lines.stop)
+    for i, view in enumerate(views):
+        for turned, image in enumerate((view, view.swapaxes(0, 1))):
+            texels[above.start - lines.start + 1 :, 1:-1, turned, i] = image[above, first:last]
+    texels[:, 1:-1][(columns < inside[rows, None]) | (columns >= disc.reach[rows, None])] = 0.0
     if lines.start == 0:
         texels[0] = 0.0
-    return np.asarray(np.diff(texels, axis=0))
+    edges = np.diff(texels.reshape(*texels.shape[:2], -1), axis=0)
+    return edges[:, :-1] - edges[:, 1:]
 
 
 def cut_areas(disc: Disc, rows: Indices, columns: Indices) -> Array:
