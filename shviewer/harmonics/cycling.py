@@ -1,7 +1,7 @@
 """Coefficients of a function whose axes are exchanged cyclically: those of g(x, y, z) = f(y, z, x).
 
-That is the rotation by a quarter turn about z and then one about y, for which Wigner's matrices are real (D. A. Varshalovich et
-al., "Quantum Theory of Angular Momentum", 4.4, 4.8.2, 4.17). With a(m) = (c(l, m) - i c(l, -m)) / sqrt(2) and b(m) = (-i)^m a(m),
+That is the rotation by a quarter turn about z and then one about y, for which Wigner's matrices are real (D. A. Varshalovich
+et al., "Quantum Theory of Angular Momentum", chapter 4). With a(m) = (c(l, m) - i c(l, -m)) / sqrt(2) and b(m) = (-i)^m a(m),
     Re a'(m') = sum over m >= 0 of 2 d(m', m) Re b(m)  where l + m + m' is even,      Im a'(m') likewise where it is odd,
 m = 0 once, not twice. The d(l) of a quarter turn follow from those of the two degrees before,
     l sqrt(((l+1)^2 - m'^2) ((l+1)^2 - m^2)) d(l+1) = -(2l+1) m m' d(l) - (l+1) sqrt((l^2 - m'^2) (l^2 - m^2)) d(l-1),

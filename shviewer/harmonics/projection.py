@@ -39,16 +39,18 @@ def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tupl
     row_weights = rule.row_weights * (2 * np.pi / rule.n_columns)
     functions = RowFunctions(row_weights * np.cos(angle), row_weights * np.sin(angle))
     azimuth = azimuth_functions(n_bands, rule.n_columns)
-    return _from_row_sums(*row_sums(values, functions, np.float64), azimuth), channel_products(values, row_weights)
+    return _from_row_sums(*row_sums(values, functions, np.float64), azimuth), channel_products(
+        values, row_weights[:, None]
+    )
 
 
-def channel_products(values: NDArray[np.floating], row_weights: Array) -> Array:
-    """Integrals of f_i f_j over the sphere, (3, 3): values (rows, columns, 3), steradians of one value per row (rows,)."""
+def channel_products(values: NDArray[np.floating], weights: Array) -> Array:
+    """Integrals of f_i f_j over the sphere, (3, 3): values (rows, columns, 3), steradians of each (rows, columns or 1)."""
     products = np.zeros((3, 3))
     block = max(1, BLOCK_PRODUCTS // values.shape[1])
     for start in range(0, len(values), block):
         wide = values[start : start + block].astype(np.float64, copy=False)
-        weighted = row_weights[start : start + block, None, None] * wide
+        weighted = weights[start : start + block, :, None] * wide
         products += weighted.reshape(-1, 3).T @ wide.reshape(-1, 3)
     return products
 

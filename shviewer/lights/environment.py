@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from shviewer.files import naming
 from shviewer.harmonics.basis import Array, Indices, count_bands
 from shviewer.harmonics.extremes.raster import Raster
-from shviewer.harmonics.projection import BLOCK_VALUES, channel_products
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
+from shviewer.harmonics.projection import channel_products
 from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.lat_long import LatLongMap
@@ -118,13 +117,7 @@ class EnvironmentLight(RadianceLight):
         width = max(4, min(self.layout.raster_width, MAX_RASTER_WIDTH))
         height = min(len(self.pixels), MAX_RASTER_WIDTH // 2) if self._is_lat_long else width // 2
         self.limits.check_memory(RASTER_BYTES * width * height, f"{self.name}: a raster of {width} x {height} texels")
-        texels = np.empty((height, width, 3), dtype=np.float32)
-        theta, phi = row_angles(height), column_azimuths(width)
-        block = max(1, BLOCK_VALUES // (64 * width))
-        for start in range(0, height, block):
-            directions = directions_from_angles(theta[start : start + block, None], phi).reshape(-1, 3)
-            texels[start : start + block] = self.layout.sample(self.pixels, directions).reshape(-1, width, 3)
-        return LatLongMap(texels)
+        return LatLongMap(self.layout.raster(self.pixels, height, width))
 
     def radiance(self, directions: Array) -> Array:
         return self.map.sample(directions)
@@ -169,14 +162,7 @@ class EnvironmentLight(RadianceLight):
 
     @cached_property
     def _products(self) -> Array:
-        solid_angles = self.layout.solid_angles()
-        if solid_angles.shape[1] == 1:
-            return channel_products(self.pixels, solid_angles[:, 0])
-        products = np.zeros((3, 3))
-        for row, weights in zip(self.pixels, solid_angles, strict=True):
-            wide = row.astype(np.float64)
-            products += (wide.T * weights) @ wide
-        return products
+        return channel_products(self.pixels, self.layout.solid_angles())
 
     def irradiance_up(self) -> Array:
         """As in Light: Y(1, 0), which is z, times the texels of the upper half, by the layout's exact integrals."""

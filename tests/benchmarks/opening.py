@@ -22,6 +22,8 @@ import threading
 import time
 from pathlib import Path
 
+os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"  # as the command sets them for itself
+
 import numpy as np
 import OpenEXR
 from measure import machine

@@ -13,7 +13,7 @@ from PIL import Image
 from shviewer.errors import LightError
 from shviewer.harmonics.metrics import squared_error
 from shviewer.harmonics.projection import project_image
-from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, jittered, row_angles
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import MAX_TEXTURE_SIDE, EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
@@ -179,10 +179,17 @@ def test_the_raster_of_a_large_image_is_bounded(monkeypatch):
     assert random_light_of(AngularLayout(16)).map.texels.shape == (10, 20, 3)
 
 
-def test_blocks_of_the_raster_change_nothing(monkeypatch):
-    whole = random_light_of(AngularLayout(16)).map.texels
-    monkeypatch.setattr("shviewer.lights.environment.BLOCK_VALUES", 1)
-    assert_array_equal(random_light_of(AngularLayout(16)).map.texels, whole)
+@of_other_layouts
+@pytest.mark.parametrize("size", [(16, 32), (7, 13), (1, 1)])
+def test_a_raster_is_the_look_up_at_the_centres_of_its_texels_in_whatever_blocks(layout, size, monkeypatch):
+    pixels = random_light_of(layout).pixels
+    expected = layout.sample(
+        pixels, directions_from_angles(row_angles(size[0])[:, None], column_azimuths(size[1])).reshape(-1, 3)
+    )
+    for block in (2**15, 1):
+        for module in ("layout", "disc"):
+            monkeypatch.setattr(f"shviewer.lights.layouts.{module}.RASTER_BLOCK", block)
+        assert_allclose(layout.raster(pixels, *size).reshape(-1, 3), expected, rtol=1e-5, atol=1e-5)
 
 
 @of_other_layouts

@@ -4,8 +4,8 @@ By Green's theorem, for a function that is f(theta) times {cos, sin}(m phi),
     integral of it over an area = the integral of F(theta) {cos, sin}(m phi) d(phi) along its boundary,   F' = f sin(theta),
 counterclockwise as seen from outside. With F(pi) = 0 the south pole is no exception; the north pole must not be in the area,
 nor near it. The waves of theta_series.py are such functions, and their F are waves again, but for a constant:
-    f = cos(k theta):   F = cos((k-1) theta) / (2 (k-1)) - cos((k+1) theta) / (2 (k+1)),     for k = 1 the second term alone,
-    f = sin(k theta):   F = sin((k-1) theta) / (2 (k-1)) - sin((k+1) theta) / (2 (k+1)),     for k = 1, (theta - pi) / 2 for the first.
+    f = cos(k theta):   F = cos((k-1) theta) / (2 (k-1)) - cos((k+1) theta) / (2 (k+1)),   for k = 1 without the first,
+    f = sin(k theta):   F = sin((k-1) theta) / (2 (k-1)) - sin((k+1) theta) / (2 (k+1)),   for k = 1 (theta - pi) / 2 first.
 So one plain sum of waves over the boundary is all that is needed.
 """
 

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from shviewer.harmonics.areas.patches import four_quadrants, project_mirrored, quadrant_edges, quadrant_weights
 from shviewer.harmonics.basis import Array, Indices
 from shviewer.lights.layouts.bilinear import between_texels
+from shviewer.lights.layouts.layout import raster_of
 
 _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}
 
@@ -163,6 +164,9 @@ class CubeLayout:
         )
         at_row[beyond], at_column[beyond] = self.nearest(centre)
         return at_row, at_column
+
+    def raster(self, pixels: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:
+        return raster_of(self, pixels, height, width)
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         """As in Layout; from one quadrant of the front, left and upper face each, whose mirror images all others are."""

@@ -19,8 +19,10 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.areas.patches import four_quadrants, quadrant_edges
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.lights.layouts.bilinear import between_texels
-from shviewer.lights.layouts.rim import Disc, cut_areas, project_rim, quadrants
+from shviewer.lights.layouts.layout import RASTER_BLOCK
+from shviewer.lights.layouts.rim import Disc, cut_areas, project_rim
 
 ON_THE_RIM = 1e-14
 """Corners that are this near the rim do not cross it, on whichever side rounding puts them."""
@@ -115,7 +117,10 @@ class DiscLayout(Disc):
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
         """As in Layout. Texels whose centres are outside the disc do not count: beyond the rim comes the opposite side."""
-        below, beside, radius = self._places(directions)
+        return self._between(pixels, *self._places(directions))
+
+    def _between(self, pixels: NDArray[np.float32], below: Array, beside: Array, radius: Array) -> NDArray[np.float32]:
+        """Radiance (k, 3) at places and radii as in `_places`."""
         row, column = ((1 + place) / 2 * self.side - 0.5 for place in (below, beside))
         left, top = np.floor(column), np.floor(row)
         down, right = row - top, column - left
@@ -123,6 +128,20 @@ class DiscLayout(Disc):
         rim = np.flatnonzero(radius >= 1 - 3 / self.side)  # a texel's diagonal is 2.83 / side
         result[rim] = self._across_the_rim(pixels, top[rim], left[rim], down[rim], right[rim])
         return result
+
+    def raster(self, pixels: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:
+        """As in Layout: above and below, left and right are at the same places but for their signs."""
+        texels = np.empty((height, width, 3), dtype=np.float32)
+        theta, phi = row_angles(height)[: (height + 1) // 2], column_azimuths(width)[: (width + 1) // 2]
+        block = max(1, RASTER_BLOCK // len(phi))
+        for start in range(0, len(theta), block):
+            some = theta[start : start + block, None]
+            below, beside, radius = self._places(directions_from_angles(some, phi).reshape(-1, 3))
+            for part, down in ((texels, 1), (texels[::-1], -1)):
+                for view, right in ((part, 1), (part[:, ::-1], -1)):
+                    found = self._between(pixels, down * below, right * beside, radius)
+                    view[start : start + len(some), : len(phi)] = found.reshape(len(some), -1, 3)
+        return texels
 
     def _across_the_rim(self, pixels: NDArray[np.float32], top: Array, left: Array, down: Array, right: Array) -> Array:
         """Radiance (k, 3) where some of the four texels may have their centres outside."""

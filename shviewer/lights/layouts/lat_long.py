@@ -11,6 +11,7 @@ from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.projection import project_image, project_rows
 from shviewer.harmonics.quadrature import angles_from_directions, directions_from_angles, row_angles
 from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.layouts.layout import raster_of
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,9 @@ class LatLongLayout:
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> Array:
         return LatLongMap(pixels).sample(directions)
+
+    def raster(self, pixels: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:
+        return raster_of(self, pixels, height, width)
 
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         return project_image(pixels, n_bands)

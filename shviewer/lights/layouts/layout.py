@@ -13,6 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
+
+RASTER_BLOCK = 2**15
+"""About how many directions of a raster are sampled at a time."""
 
 
 class Layout(Protocol):
@@ -51,5 +55,19 @@ class Layout(Protocol):
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.floating]:
         """Bilinear radiance (k, 3) in unit directions (k, 3), from pixels (height, width, 3)."""
 
+    def raster(self, pixels: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:
+        """`sample` at the centres of a lat-long image's texels: (height, width, 3)."""
+
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         """Coefficients (n_bands**2, 3): the exact integrals of the texels as areas."""
+
+
+def raster_of(layout: Layout, pixels: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:
+    """`Layout.raster` of a layout that knows no better way."""
+    texels = np.empty((height, width, 3), dtype=np.float32)
+    theta, phi = row_angles(height), column_azimuths(width)
+    block = max(1, RASTER_BLOCK // width)
+    for start in range(0, height, block):
+        directions = directions_from_angles(theta[start : start + block, None], phi).reshape(-1, 3)
+        texels[start : start + block] = layout.sample(pixels, directions).reshape(-1, width, 3)
+    return texels

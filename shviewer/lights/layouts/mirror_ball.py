@@ -22,8 +22,8 @@ from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.rim import quadrants
 
 SMALLEST_TILE, LARGEST_TILE = 64, 4
-"""The side of the smallest tiles, in texels, in images in which that is an eighth of the radius or less; and of the largest ones
-in them. Smaller ones would have more points than the lines through them."""
+"""The side of the smallest tiles, in texels, where that is an eighth of the radius or less, and of the largest ones in them.
+Smaller ones would have more points than the lines through them."""
 
 ROOT_POINTS = 24
 """How many more Chebyshev points than radians of a wave a tile has along a side, for the sake of the root."""

@@ -13,7 +13,6 @@ A quadrant has X and Y from 0 to 1, in world directions +y and +z; the others ar
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray

@@ -365,7 +365,7 @@ def test_no_band_count_changes_the_lower_bands(layout):
 
 
 @pytest.mark.parametrize(
-    "layout, n_bands",
+    ("layout", "n_bands"),
     [
         (layout(side), n)
         for layout, side in ((MirrorBallLayout, 5), (MirrorBallLayout, 4), (AngularLayout, 5))
