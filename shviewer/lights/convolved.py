@@ -102,7 +102,11 @@ class ConvolvedLight(LightBase):
 
     @cached_property
     def map(self) -> LatLongMap:
-        return LatLongMap.pole_to_pole(self.rows, self.map_rows)
+        return self.map_of_bands(self.coefficients(self.bands))
+
+    def map_of_bands(self, coefficients: Array) -> LatLongMap:
+        texels = Synthesis(coefficients).pole_to_pole(self.map_rows, 2 * (self.map_rows - 1))
+        return LatLongMap(texels, rows_on_poles=True)
 
 
 class ConvolvedMap(ConvolvedLight):
@@ -127,11 +131,6 @@ class ConvolvedMap(ConvolvedLight):
         kept = self.source.coefficients(self.bands)
         beyond = (self.source.products().diagonal() - (kept**2).sum(axis=0)).max()
         return Bands(self.from_source(kept), self.kernel.norm_beyond(self.bands) * float(np.sqrt(max(beyond, 0.0))))
-
-    @cached_property
-    def map(self) -> LatLongMap:
-        synthesis = Synthesis(self.coefficients(self.bands))
-        return LatLongMap(synthesis.pole_to_pole(self.map_rows, 2 * (self.map_rows - 1)), rows_on_poles=True)
 
 
 class FiniteSum(LightBase):

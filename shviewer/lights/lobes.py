@@ -15,6 +15,7 @@ from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import Constant, Disc
 from shviewer.lights.convolved import UP, RadianceLight, convolved
 from shviewer.lights.convolved_lobes import ConvolvedLobes
+from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light, Split
 from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.limits import check_brightness
@@ -66,6 +67,11 @@ class LobeLight(RadianceLight):
 
     def through(self, quantity: str) -> Light:
         return convolved(self, quantity, ConvolvedLobes)
+
+    @cached_property
+    def shaded_map(self) -> LatLongMap:
+        """The map of its irradiance, exact in its points."""
+        return LatLongMap.pole_to_pole(self.irradiance().rows)
 
     def irradiance_up(self) -> Array:
         return np.asarray(self.irradiance().radiance(UP[None])[0])

@@ -197,6 +197,16 @@ def test_bands_that_a_roughness_needs_are_the_published_ones(name: str, roughnes
     assert {share: smallest_band_count(errors, float(share)) for share in wanted} == wanted
 
 
+@pytest.mark.parametrize(("quantity", "off"), [("irradiance", 1e-7), ("glossy:0.8", 1e-5), ("glossy:0.2", 1e-5)])
+def test_the_map_of_lobes_is_what_they_reflect_at_its_points(quantity: str, off: float) -> None:
+    """The kink where a small sun sets is no sum of 128 bands: those alone miss 2e-3 of the irradiance there."""
+    light = find_light("sun-sky").through(quantity)
+    texels = light.map.texels
+    rows = np.arange(0, len(texels), 37)
+    exact = light.rows(np.pi * rows / (len(texels) - 1), texels.shape[1]).swapaxes(1, 2)
+    assert_allclose(texels[rows], exact, rtol=0, atol=off * np.abs(exact).max())
+
+
 def test_the_map_of_a_narrow_kernel_has_the_bands_that_it_needs() -> None:
     texels = np.full((32, 64, 3), 0.01, np.float32)
     texels[9, 20] = 50
