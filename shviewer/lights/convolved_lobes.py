@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,9 +17,6 @@ from shviewer.harmonics.zonal import ClampedLinear, Profile, gegenbauer_ratios
 from shviewer.lights.convolved import ConvolvedLight
 from shviewer.lights.lat_long import MAP_ROWS, LatLongMap
 from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
-
-if TYPE_CHECKING:
-    from shviewer.lights.lobes import LobeLight
 
 SERIES_BANDS = 1024
 """Bands in the products of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of its norm.
@@ -36,13 +33,11 @@ SHADE_STEPS = 4096
 class ConvolvedLobes(ConvolvedLight):
     """`source` is a sum of lobes."""
 
-    source: LobeLight
-
     @cached_property
     def map(self) -> LatLongMap:
         """The kink that the kernel has at the horizon is exact, as the map of the irradiance has it; the rest is of bands."""
         if self.kernel.profile is None:
-            return self.source.shaded_map
+            return LatLongMap.pole_to_pole(self.rows)
         if self.map_rows > MAP_ROWS:
             return self.map_of_bands(
                 self.coefficients(self.bands)
@@ -50,7 +45,9 @@ class ConvolvedLobes(ConvolvedLight):
         slope = self.kernel.slope_at_horizon
         smooth = self.kernel.factors(self.bands) - slope * irradiance_factors(self.bands)
         rest = self.map_of_bands(self.source.coefficients(self.bands) * per_coefficient(smooth))
-        return LatLongMap(rest.texels + np.float32(slope) * self.source.shaded_map.texels, rows_on_poles=True)
+        cosine = self.source.irradiance().map
+        assert cosine is not None
+        return LatLongMap(rest.texels + np.float32(slope) * cosine.texels, rows_on_poles=True)
 
     def radiance(self, directions: Array) -> Array:
         return self.form.values(directions)

@@ -103,7 +103,7 @@ class Light(Protocol):
         """Coefficients (n**2, 3) of the source -> those of this light."""
 
     def through(self, quantity: str) -> Light:
-        """Another quantity of its source as a light, a new one at each call; itself, if it is that. ValueError if unknown."""
+        """Another quantity of its source as a light; itself, if it is that. ValueError if unknown."""
 
     def irradiance(self) -> Light:
         """`through("irradiance")`"""

@@ -12,10 +12,10 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.extremes.zonal_table import around_edge
 from shviewer.harmonics.overlap import inner_product
+from shviewer.harmonics.quantities.names import IRRADIANCE
 from shviewer.harmonics.zonal import Constant, Disc
 from shviewer.lights.convolved import UP, RadianceLight, convolved
 from shviewer.lights.convolved_lobes import ConvolvedLobes
-from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light, Split
 from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.limits import check_brightness
@@ -66,12 +66,12 @@ class LobeLight(RadianceLight):
         return lobes_form([lobe.profile for lobe in self.lobes], self.lobes)
 
     def through(self, quantity: str) -> Light:
-        return convolved(self, quantity, ConvolvedLobes)
+        return self._irradiance if quantity == IRRADIANCE else convolved(self, quantity, ConvolvedLobes)
 
     @cached_property
-    def shaded_map(self) -> LatLongMap:
-        """The map of its irradiance, exact in its points."""
-        return LatLongMap.pole_to_pole(self.irradiance().rows)
+    def _irradiance(self) -> Light:
+        """Kept, since the maps of glossy quantities are made of its map."""
+        return convolved(self, IRRADIANCE, ConvolvedLobes)
 
     def irradiance_up(self) -> Array:
         return np.asarray(self.irradiance().radiance(UP[None])[0])
