@@ -24,6 +24,7 @@ from shviewer.errors import UsageError
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.limits import check_brightness
+from shviewer.words import meant
 
 if TYPE_CHECKING:  # each function imports what it needs: mathematics alone loads no light, and a projection no OpenGL
     from shviewer.analysis.projected import Projected
@@ -136,7 +137,7 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
 
     known = [name for name in options_of(Recipe, *others) if name not in NAMED_ELSEWHERE] + ["compare"]
     if unknown := sorted(set(options) - set(known)):
-        raise UsageError(f"option {unknown[0]!r}: there is {', '.join(known)}")
+        raise UsageError(f"option {unknown[0]!r}: {meant(unknown[0], known)}")
     count = None if bands is None else whole(bands, "bands")
     found = find_light(light)
     if count is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 MOST_CHARACTERS = 1000
 """The longest line that is made of text from outside: names of files, descriptions, what a library says."""
@@ -15,6 +15,34 @@ def one_line(text: str, most: int = MOST_CHARACTERS) -> str:
     if not shown.isprintable():
         shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in shown)
     return shortened(shown, most)
+
+
+def near(text: str, choices: Iterable[str], most: int = 3) -> list[str]:
+    """The choices that a text nearly is, whatever its capitals, dots and dashes, the likeliest first.
+
+    They are it, begin with it or it with them, or have seven tenths of their letters in common, as difflib counts them.
+    """
+    import difflib  # only where something is refused
+
+    plain: dict[str, list[str]] = {}
+    for choice in choices:
+        plain.setdefault(_plain(choice), []).append(choice)
+    wanted = _plain(text)
+    begin = [
+        one for one in plain if min(len(one), len(wanted)) > 2 and (one.startswith(wanted) or wanted.startswith(one))
+    ]
+    found = [wanted] if wanted in plain else begin or difflib.get_close_matches(wanted, plain, n=most, cutoff=0.7)
+    return [choice for one in found for choice in plain[one]][:most]
+
+
+def meant(text: str, choices: Collection[str], otherwise: str = "") -> str:
+    """The advice where a text is none of the choices: "did you mean three?", or where none is near, `otherwise` or all."""
+    found = near(text, choices)
+    return f"did you mean {' or '.join(found)}?" if found else otherwise or f"it must be one of {', '.join(choices)}"
+
+
+def _plain(text: str) -> str:
+    return "".join(filter(str.isalnum, text.casefold()))
 
 
 def counted(count: int, noun: str) -> str:

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from shviewer.words import brief_percent, counted, grouped, grouped_number, shortened, theta_phi_degrees, three_digits
+from shviewer.words import (
+    brief_percent,
+    counted,
+    grouped,
+    grouped_number,
+    meant,
+    shortened,
+    theta_phi_degrees,
+    three_digits,
+)
 
 
 @pytest.mark.parametrize(
@@ -42,3 +51,24 @@ def test_theta_is_from_z_and_phi_from_x_towards_y(direction: tuple[int, int, int
 
 def test_an_azimuth_is_no_negative_zero() -> None:
     assert str(theta_phi_degrees((1.0, -0.0, 0.0))[1]) == "0.0"
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        *(
+            ("Three", "three?"),
+            ("threejs", "three?"),
+            ("three.js", "three?"),
+            ("Unity 3D", "unity?"),
+            ("tree", "three?"),
+        ),
+        *(("mirrorball", "mirror-ball?"), ("ARKit", "arkit-phase or arkit-no-phase?"), ("sined", "signed?")),
+    ],
+)
+def test_a_word_that_is_nearly_a_choice_is_asked_for(text: str, advice: str) -> None:
+    choices = ("three", "unity", "unreal", "mirror-ball", "arkit-phase", "arkit-no-phase", "signed")
+    assert meant(text, choices) == f"did you mean {advice}"
+    for other in ("", "xyz", "12", "blender"):
+        assert meant(other, choices) == f"it must be one of {', '.join(choices)}"
+        assert meant(other, choices, "none") == "none"

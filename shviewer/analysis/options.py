@@ -14,6 +14,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities import names
+from shviewer.words import meant
 
 T = TypeVar("T")
 
@@ -84,9 +85,8 @@ class Choice(NamedTuple):
     def check(self, name: str, value: Any) -> None:
         if value not in self.choices:
             empty = ", or empty" if "" in self.choices else ""
-            raise UsageError(
-                f"{_said(name)} {value!r}: it must be one of {', '.join(filter(None, self.choices))}{empty}"
-            )
+            known = [choice for choice in self.choices if choice]
+            raise UsageError(f"{_said(name)} {value!r}: {meant(str(value), known)}{empty}")
 
 
 class Whole(NamedTuple):
@@ -116,7 +116,8 @@ class WholeOr(NamedTuple):
 
     def check(self, name: str, value: Any) -> None:
         if value not in self.words and not (isinstance(value, int) and 1 <= value <= self.most):
-            raise UsageError(f"{_said(name)} {value}: it must be {', '.join(self.words)} or 1 to {self.most}")
+            rule = meant(str(value), self.words, f"it must be {', '.join(self.words)} or 1 to {self.most}")
+            raise UsageError(f"{_said(name)} {value}: {rule}")
 
 
 class Number(NamedTuple):

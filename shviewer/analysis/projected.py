@@ -71,6 +71,8 @@ class Projected(InNotebooks):
     """The files that the light, and coefficients compared with it, were read from."""
     notes: tuple[str, ...] = ()
     """The notes on the light, such as negative texels, and why no sun was found where one was asked for."""
+    below_zero: str = ""
+    """One line on what of it goes below zero, to be said once it is written."""
     searched: Figures | None = None
     """All figures, once they have been asked for."""
     turn: Array | None = None

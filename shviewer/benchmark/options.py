@@ -11,6 +11,7 @@ from time import perf_counter
 from shviewer.benchmark.measuring import experiments
 from shviewer.errors import UsageError
 from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.words import meant
 
 DEFAULT_BUDGET, QUICK_BUDGET = 120.0, 11.0
 """Seconds of measuring. Starting, reading lights, drawing plots and writing come on top: a quick report takes 15 s."""
@@ -62,7 +63,7 @@ class Options:
             experiments.method(name)
         for name in self.sections:
             if name not in SECTIONS:
-                raise UsageError(f"unknown section {name!r}; there is: {', '.join(SECTIONS)}")
+                raise UsageError(f"section {name!r}: {meant(name, SECTIONS)}")
 
     def seconds(self) -> dict[str, float]:
         """The seconds of every section that is wanted; projection gets the shares of those that are not."""

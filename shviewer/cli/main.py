@@ -15,6 +15,7 @@ from importlib import import_module
 from shviewer.children import follow_parent
 from shviewer.cli.options.modes import MODES, PARSERS
 from shviewer.errors import OutputError, ShviewerError, UsageError, within_memory
+from shviewer.words import near
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
@@ -64,8 +65,6 @@ def _silence_stdout() -> None:
 def _check_first(arguments: list[str]) -> None:
     """UsageError if the first argument is nearly the name of a mode, and no file."""
     first = arguments[0] if arguments else ""
-    if first and not first.startswith("-") and first not in MODES and not os.path.exists(first):
-        import difflib
-
-        if near := difflib.get_close_matches(first, MODES, n=1, cutoff=0.75):
-            raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {near[0]}?")
+    unknown = first and not first.startswith("-") and first not in MODES and not os.path.exists(first)
+    if unknown and (found := near(first, MODES, most=1)):
+        raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {found[0]}?")

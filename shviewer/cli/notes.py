@@ -5,20 +5,15 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from shviewer.analysis.comparison import verdict_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import subject
 from shviewer.coefficients.suns import sun_left_out
-from shviewer.words import counted, one_line
+from shviewer.words import one_line
 
 if TYPE_CHECKING:  # a picture loads nothing that writes files of coefficients
     from shviewer.analysis.projected import Projected
     from shviewer.coefficients.parts.axes import Axes
-
-ROUNDING = 1e-6
-"""A minimum below zero by no more than this share of the largest coefficient counts as zero."""
 
 
 def print_notes(recipe: Recipe) -> None:
@@ -38,13 +33,9 @@ def print_notes_on(projected: Projected, axes: Axes) -> None:
 
 
 def warn_below_zero(projected: Projected) -> None:
-    """Print that the reconstruction that was written is below zero, if it is by more than rounding."""
-    minimum = projected.lows.minimum
-    if minimum >= -ROUNDING * float(np.abs(projected.coefficients).max()):
-        return
-    says = f"the {projected.quantity} of its {counted(projected.n_bands, 'band')} goes to {minimum:.3g}"
-    remedy = "" if projected.about["window"] == "dering" else "; --window dering takes that away"
-    _say(f"note: {projected.name}: {says}{remedy}")
+    """Print what of the numbers that were written is shown below zero."""
+    if projected.below_zero:
+        _say(f"note: {projected.name}: {projected.below_zero}")
 
 
 def _say(text: str) -> None:

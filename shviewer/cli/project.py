@@ -16,6 +16,7 @@ from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.batch import error_in_percent, project_batch
+from shviewer.cli.below_zero import below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.options.inputs import lights_of, replacing_of
 from shviewer.cli.options.recipes import recipe_from
@@ -31,7 +32,7 @@ from shviewer.errors import OutputError, UsageError
 from shviewer.harmonics.quantities.names import in_words
 from shviewer.harmonics.rotation import turn
 from shviewer.outputs import Replacing, file_stem, write_atomically
-from shviewer.words import counted
+from shviewer.words import counted, meant
 
 STDOUT = "-"
 
@@ -48,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
 
     lights, out, kind = lights_of(options), options.output, options.format
     if kind is not None and kind not in FORMATS:
-        raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
+        raise UsageError(f"format {kind!r}: {meant(kind, FORMATS)}")
     projected_of, replacing = partial(_projected_of, options, convention), replacing_of(options)
     if len(lights) == 1:
         _project_one(lights[0], out, kind, convention, projected_of, replacing)
@@ -64,6 +65,7 @@ def _projected_of(options: argparse.Namespace, convention: Convention, light: st
     if options.tolerance is not None:
         check_tolerance(recipe, convention)
     projected, angles = project_recipe(recipe), turn_from(options)
+    projected = replace(projected, below_zero=below_zero(recipe, convention))
     return projected.turned(turn(*angles)) if angles else projected
 
 

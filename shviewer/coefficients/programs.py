@@ -230,3 +230,6 @@ READINGS = {
     name: tuple(one for one in CONVENTIONS if one.startswith(f"{name}-")) for name in ("webxr", "arcore", "arkit")
 }
 """Programs whose phase is documented nowhere -> the names of both readings."""
+
+SHADED_WITH = ("three", "unreal", "godot", *(reading for readings in READINGS.values() for reading in readings))
+"""Programs that hold radiance, and multiply it by A(l) before they show it: what they show is the irradiance."""

@@ -13,6 +13,7 @@ from shviewer.coefficients.parts.rows import ACN, ORDERS
 from shviewer.coefficients.parts.scales import POLYNOMIAL_BANDS, SCALES
 from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
 from shviewer.harmonics.quantities.names import GLOSSY, quantity_of
+from shviewer.words import meant
 
 SHIFTED = "shifted"
 """The modifier of a list whose mean is less by SHIFT, as 3D Gaussian splatting has it."""
@@ -45,13 +46,22 @@ def parse_convention(text: str) -> Convention:
             " overhead row 1 is negative with phase, positive without"
         )
     if name not in CONVENTIONS:
-        raise ValueError(f"convention {name!r}: it must be one of {', '.join(CONVENTIONS)}")
+        raise ValueError(f"convention {name!r}: {_advice(name, text)}")
     convention, said = CONVENTIONS[name], dict[str, str]()
     for modifier in modifiers:
         kind, convention = _modified(convention, modifier)
         if said.setdefault(kind, modifier) != modifier:
             raise ValueError(f"convention {text!r}: {said[kind]} and {modifier} contradict each other")
     return convention
+
+
+def _advice(name: str, text: str) -> str:
+    """What to write in place of a name that no convention has; a modifier wants a name before it."""
+    try:
+        _modified(OURS, name)
+    except ValueError:
+        return meant(name, CONVENTIONS)
+    return f"that differs from a convention, whose name comes first: {OURS.name},{text}"
 
 
 def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
@@ -83,10 +93,8 @@ def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
         if modifier == "polynomial":
             changed = replace(changed, most_bands=POLYNOMIAL_BANDS, phase=False)
         return "scale", _if_free(convention, modifier, changed)
-    raise ValueError(
-        f"convention modifier {modifier!r}: it must be one of {', '.join(MODIFIERS)}, times=2 or another factor, or axes such"
-        " as +x+z-y"
-    )
+    rule = f"it must be one of {', '.join(MODIFIERS)}, times=2 or another factor, or axes such as +x+z-y"
+    raise ValueError(f"convention modifier {modifier!r}: {meant(modifier, MODIFIERS, rule)}")
 
 
 def _factor(modifier: str) -> float:

@@ -21,6 +21,7 @@ from shviewer.coefficients.stamp import Stamp, Value
 from shviewer.coefficients.use import JAVASCRIPT, USES, unity_vectors, with_use
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import count_bands
+from shviewer.words import meant
 
 FORMATS = ("json", "csv", "npz", "h", "glsl", "js", "cs")
 
@@ -34,7 +35,7 @@ def encode(
     the format cannot hold.
     """
     if kind not in FORMATS:
-        raise UsageError(f"format {kind!r}: it must be one of {', '.join(FORMATS)}")
+        raise UsageError(f"format {kind!r}: {meant(kind, FORMATS)}")
     names = identifier(name), function_name(name, str(stamp["quantity"]))
     return _ENCODERS[kind](numbers, with_use(stamp, numbers, convention, kind, names), convention, name)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -14,6 +13,7 @@ from shviewer.files import FileVersion, version_of
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.resources import resource_folder
+from shviewer.words import meant
 
 if TYPE_CHECKING:  # each kind of light is imported when one is found
     from shviewer.lights.light import Light
@@ -144,6 +144,5 @@ def _what_the_colon_is(text: str) -> str:
 
 def _unknown(text: str) -> str:
     names = list(built_in_lights())
-    near = difflib.get_close_matches(text, names, n=3, cutoff=0.5)
-    offer = f"did you mean {' or '.join(near)}?" if near else f"there is: {', '.join(names)}"
+    offer = meant(text, names, f"there is: {', '.join(names)}")
     return f"unknown light {text!r}: {_what_it_is(text) or offer}"

@@ -29,7 +29,7 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Pr
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.limits import BRIGHTEST, DEFAULT_LIMITS, Limits
-from shviewer.words import one_line
+from shviewer.words import meant, one_line
 
 PROFILES: dict[str, tuple[tuple[str, ...], Callable[..., Profile]]] = {
     "clamped-linear": (("slope", "offset"), ClampedLinear),
@@ -87,7 +87,7 @@ class _Reader:
     def lobe(self, where: str, table: dict[str, Any]) -> Lobe:
         kind = table.get("profile")
         if not isinstance(kind, str) or kind not in PROFILES:
-            raise self.wrong(f"{where}: profile", kind, f"one of {', '.join(PROFILES)}")
+            raise self.wrong(f"{where}: profile", kind, meant(kind if isinstance(kind, str) else "", PROFILES))
         parameters, make = PROFILES[kind]
         self.only(where, table, ("profile", "radiance", *parameters, *(() if kind == "constant" else AXIS_KEYS)))
         numbers = [self.number(f"{where}: {key}", table.get(key)) for key in parameters]
@@ -137,11 +137,13 @@ class _Reader:
     def only(self, where: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
         for key in table:
             if key not in known:
-                raise LightError(f"{self.path}: {where}: unknown key {key!r}; known are {', '.join(known)}")
+                advice = meant(key, known, f"known are {', '.join(known)}")
+                raise LightError(f"{self.path}: {where}: unknown key {key!r}; {advice}")
 
     def wrong(self, key: str, value: Any, expected: str) -> LightError:
         found = "missing" if value is None else repr(value)
-        return LightError(f"{self.path}: {key} is {found}; it must be {expected}")
+        advice = expected if expected.startswith(("did you", "it must")) else f"it must be {expected}"
+        return LightError(f"{self.path}: {key} is {found}; {advice}")
 
 
 AXIS_KEYS = ("axis", "azimuth_degrees", "elevation_degrees")

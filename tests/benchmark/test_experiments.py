@@ -142,7 +142,7 @@ def test_the_best_way_starts_from_nothing_every_time() -> None:
 
 
 def test_a_method_that_is_not_in_the_table_is_refused_in_one_line() -> None:
-    with pytest.raises(UsageError, match="unknown method 'lebedev'; there is: best, gauss-legendre, fejer"):
+    with pytest.raises(UsageError, match="method 'lebedev': it must be one of best, gauss-legendre, fejer"):
         method("lebedev")
 
 

@@ -10,15 +10,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
 from places import ASSETS
 
 from shviewer.cli.main import main
 from shviewer.cli.status_line import StatusLine
 from shviewer.coefficients.programs import CONVENTIONS, READINGS
+from shviewer.coefficients.stamp import Stamp
+from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.rotation import turn
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
+from shviewer.words import percent
 
 Capture = pytest.CaptureFixture[str]
 
@@ -181,7 +185,7 @@ def test_a_batch_without_failures_is_done(tmp_path: Path, capsys: Capture) -> No
         (("-o", "x.json", "--convention", "three", "--for", "glossy:0.4"), 2, "which takes radiance"),
         (("-o", "x.json", "--for", "glossy:0.05"), 2, "a roughness R of 0.1 to 1"),
         (("-o", "x.json", "--convention", "unreal", "--no-phase"), 2, "not be what that program expects"),
-        (("-o", "x.json", "--axes", "up"), 2, "such as +x+z-y"),
+        (("-o", "x.json", "--axes", "up"), 2, "did you mean z-up or y-up?"),
         (("-o", "x.json", "--convention", "unity", "--bands", "4"), 2, "4 bands: unity takes 1 to 3"),
         (("-o", "x.json", "--convention", "unity", "--axes", "z-up"), 2, "unity expects x y z are our +x +z +y; y up"),
         (
@@ -291,12 +295,40 @@ def test_both_errors_are_said_whatever_is_written(quantity: str, tmp_path: Path,
     assert f"a.json: 3 bands, {errors}\n" in capsys.readouterr().out
 
 
-def test_a_reconstruction_below_zero_is_warned_of_with_the_remedy(tmp_path: Path, capsys: Capture) -> None:
-    assert project("green", "-o", tmp_path / "a.json") == 0
-    warning = "shviewer: note: green: the radiance of its 5 bands goes to -0.137; --window dering takes that away\n"
-    assert capsys.readouterr().err == warning
-    assert project("green", "--window", "dering", "-o", tmp_path / "a.json") == 0
-    assert capsys.readouterr().err == ""
+def test_a_reconstruction_below_zero_is_warned_of_with_the_remedies_and_their_price(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    """Each figure of the note is that of the file which the remedy makes."""
+
+    def written(*options: str) -> tuple[str, Stamp]:
+        assert project("venice_sunset", "--bands", "4", *options, "-o", tmp_path / "a.json") == 0
+        return capsys.readouterr().err, json.loads((tmp_path / "a.json").read_text())
+
+    note, plain = written()
+    _, apart = written("--split-sun")
+    silent, calm = written("--window", "dering")
+    assert f"the radiance of its 4 bands goes to {plain['minimum']:.3g}, {percent(plain['relative-l2'])} off" in note
+    assert f"; with --split-sun to {apart['minimum']:.3g}, the rest {percent(apart['relative-l2'])} off" in note
+    assert f"; with --window dering to 0, {percent(calm['relative-l2'])} off" in note
+    assert "goes to" not in silent
+
+
+@pytest.mark.parametrize(
+    "convention", ["three", "unreal", "godot", "webxr-phase", "unity", "filament", "shviewer,z-up"]
+)
+@pytest.mark.parametrize("light", ["venice_sunset", "studio", "green"])
+def test_what_a_program_shows_is_judged_and_not_what_its_numbers_hold(
+    light: str, convention: str, tmp_path: Path, capsys: Capture
+) -> None:
+    """three.js, Unreal and Godot multiply radiance by A(l): radiance below zero that is no darkness then is no fault."""
+    shows = "radiance" if convention.startswith("shviewer") else "irradiance"
+    numbers = find_light(light).coefficients(3)
+    if shows == "irradiance":
+        numbers = numbers * np.repeat([np.pi, 2 * np.pi / 3, np.pi / 4], [1, 3, 5])[:, None]
+    lowest = (evaluate_basis(random_directions(4000, seed=3), 3) @ numbers).min()
+    assert project(light, "--bands", "3", "--convention", convention, "-o", tmp_path / "a.json") == 0
+    note = capsys.readouterr().err
+    assert (f"the {shows} of its 3 bands goes to -" in note) == (lowest < 0), lowest
 
 
 def test_a_tolerance_that_a_program_cannot_reach_says_what_it_reaches(tmp_path: Path, capsys: Capture) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from coefficients.peer_cases import asymmetric
 
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
+from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError, UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
@@ -175,3 +177,19 @@ def test_rows_that_name_l_and_m_are_in_no_order_of_their_own(tmp_path: Path) -> 
     (tmp_path / "numbered.txt").write_text(numbered)
     light = find_light(str(tmp_path / "numbered.txt"), Reading(convention="shtools"))
     np.testing.assert_allclose(light.coefficients(3), asymmetric(3), rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("Unity", "convention 'Unity': did you mean unity?"),
+        ("threejs,z-up", "convention 'threejs': did you mean three?"),
+        ("three,yup", "convention modifier 'yup': did you mean y-up?"),
+        ("y-up,no-phase", "whose name comes first: shviewer,y-up,no-phase"),
+        ("times=2", "whose name comes first: shviewer,times=2"),
+        ("xyz", "convention 'xyz': it must be one of shviewer, filament"),
+    ],
+)
+def test_a_convention_that_is_nearly_right_is_told_what_is_right(text: str, advice: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(advice)):
+        parse_convention(text)

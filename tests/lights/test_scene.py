@@ -46,11 +46,11 @@ MISTAKES = {
     "description = 3\n" + lobe(CONSTANT): "description is 3; it must be a text",
     "title = 'x'\n" + lobe(CONSTANT): "the file: unknown key 'title'; known are description, lobe",
     '"a\\nb" = 1': "the file: unknown key 'a\\nb'; known are description, lobe",
-    "[[lobes]]\n": "the file: unknown key 'lobes'; known are description, lobe",
+    "[[lobes]]\n": "the file: unknown key 'lobes'; did you mean lobe?",
     lobe(CONSTANT) * 65: "65 lobes: there must be 1 to 64",
     lobe(CONSTANT, profile=None): "lobe 1: profile is missing; it must be one of clamped-linear, disc, gaussian, constant",
     lobe(CONSTANT, profile='"gausian"'): (
-        "lobe 1: profile is 'gausian'; it must be one of clamped-linear, disc, gaussian, constant"
+        "lobe 1: profile is 'gausian'; did you mean gaussian?"
     ),
     lobe(CONSTANT, profile="7"): "lobe 1: profile is 7; it must be one of clamped-linear, disc, gaussian, constant",
     lobe(CONSTANT, profile="['disc']"): (

@@ -28,6 +28,7 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.light import Light
 from shviewer.lights.lobes import LobeLight
+from shviewer.words import meant
 
 SAMPLES = (100, 1_000, 10_000, 100_000, 1_000_000)
 BANDS = (3, 5, 9, 16, 32)
@@ -210,5 +211,5 @@ def method(name: str) -> Method:
     """The method of a name. UsageError for a name that is not in the table."""
     found = {each.name: each for each in METHODS}
     if name not in found:
-        raise UsageError(f"unknown method {name!r}; there is: {', '.join(found)}")
+        raise UsageError(f"method {name!r}: {meant(name, found)}")
     return found[name]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from shviewer.errors import UsageError
 from shviewer.outputs import Replacing
+from shviewer.words import meant
 
 if TYPE_CHECKING:
     from shviewer.lights.reading import Reading
@@ -72,7 +73,7 @@ def reading_from(options: argparse.Namespace, start: Reading | None = None) -> R
 
     start = start or DEFAULT_READING
     if options.layout is not None and options.layout not in LAYOUT_CHOICES:
-        raise UsageError(f"layout {options.layout!r}: it must be one of {', '.join(LAYOUT_CHOICES)}")
+        raise UsageError(f"layout {options.layout!r}: {meant(options.layout, LAYOUT_CHOICES)}")
     chosen = {
         "side": options.max_side,
         "texels": _binary_millions(options.max_megatexels),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from shviewer.words import meant
+
 RADIANCE, IRRADIANCE = "radiance", "irradiance"
 GLOSSY = "glossy:"
 """The beginning of the name of a glossy quantity; its roughness follows."""
@@ -12,6 +14,9 @@ RULE = (
     f"it must be {RADIANCE}, {IRRADIANCE} or {GLOSSY}R with a roughness R of {LEAST_ROUGHNESS:g} to {MOST_ROUGHNESS:g}, "
     f"such as {GLOSSY}0.4, or of 0, which is {RADIANCE}"
 )
+
+NAMES = (RADIANCE, IRRADIANCE, f"{GLOSSY}0.4")
+"""Some of all names."""
 
 ENCODED_BANDS = {
     "l1": 2,
@@ -40,7 +45,7 @@ def quantity_of(text: str) -> str:
     except ValueError:
         roughness = -1.0
     if roughness != 0 and not LEAST_ROUGHNESS <= roughness <= MOST_ROUGHNESS:
-        raise ValueError(f"{text!r}: {RULE}")
+        raise ValueError(f"{text!r}: {RULE if text.startswith(GLOSSY) else meant(text, NAMES, RULE)}")
     return glossy(roughness)
 
 

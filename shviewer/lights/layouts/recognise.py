@@ -28,7 +28,8 @@ from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.layouts.seams import fit_together
-from shviewer.lights.reading import LAYOUTS
+from shviewer.lights.reading import LAYOUT_CHOICES
+from shviewer.words import meant
 
 TOLERANCE = 0.02
 """How far empty texels may be from one colour, as a share of how far the other texels are from it."""
@@ -97,7 +98,7 @@ def _fitting(name: str, height: int, width: int, stated: str | None) -> Layout:
                 f"{shown} is not square, as {name} must be: crop it to the disc or choose another --layout"
             )
         return AngularLayout(height) if name == "angular" else MirrorBallLayout(height)
-    raise LightError(f"unknown layout {name!r}; choose auto, {', '.join(LAYOUTS)}")
+    raise LightError(f"layout {name!r}: {meant(name, LAYOUT_CHOICES)}")
 
 
 def _by_shape(pixels: _Pixels, lossy: bool) -> Recognised:

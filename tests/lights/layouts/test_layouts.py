@@ -669,7 +669,7 @@ def test_a_full_image_is_neither_disc_nor_cross_however_dark_and_noisy(pixels, l
         ((13, 2), "cube", "2 x 13 is no cube"),
         ((8, 16), "angular", "16 x 8 is not square"),
         ((9, 8), "mirror-ball", "8 x 9 is not square"),
-        ((8, 16), "octahedral", "unknown layout 'octahedral'; choose auto, lat-long, cube, angular, mirror-ball"),
+        ((8, 16), "octahedral", "layout 'octahedral': it must be one of auto, lat-long, cube, angular, mirror-ball"),
     ],
 )
 def test_a_shape_that_the_layout_asked_for_has_not_is_refused(size, wanted, message):

@@ -1,0 +1,69 @@
+"""What goes below zero of what a program shows, and what each remedy makes of it and costs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from shviewer.analysis.figures import error_grid, grid_rows, irradiance_error
+from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.reconstruction import reconstruction_of
+from shviewer.analysis.subjects import subject, through
+from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.parts.quantities import IRRADIANCE, whole
+from shviewer.coefficients.programs import SHADED_WITH
+from shviewer.errors import UsageError
+from shviewer.harmonics.deringing import MAX_DERINGED_BANDS
+from shviewer.words import counted, percent
+
+ROUNDING = 1e-6
+"""A minimum below zero by no more than this share of the largest coefficient counts as zero."""
+
+
+class _Shown(NamedTuple):
+    """What a program shows of a recipe."""
+
+    minimum: float
+    negative: bool
+    """Whether it is below zero by more than rounding."""
+    error: float
+    """The relative L2 error."""
+
+
+def below_zero(recipe: Recipe, convention: Convention) -> str:
+    """One line on how far below zero what the convention's program shows is, and on the remedies; "" if it is not."""
+    shows = IRRADIANCE if convention.name in SHADED_WITH else whole(convention.quantity or recipe.quantity)
+    shown = _shown(recipe, shows)
+    if not shown.negative:
+        return ""
+    says = (
+        f"the {shows} of its {counted(recipe.n_bands, 'band')} goes to {shown.minimum:.3g}, {percent(shown.error)} off"
+    )
+    remedies = []
+    if not recipe.split_sun and subject(replace(recipe, split_sun=True)).suns:
+        remedies.append(("--split-sun", replace(recipe, split_sun=True)))
+    if recipe.window != "dering" and recipe.n_bands <= MAX_DERINGED_BANDS:
+        remedies.append(("--window dering", replace(recipe, window="dering", window_width=None)))
+    for flag, changed in remedies:
+        try:
+            found = _shown(changed, shows)
+        except UsageError:  # nothing to dering: its mean is not above zero
+            continue
+        if found.minimum > shown.minimum:
+            rest = "the rest " if changed.split_sun != recipe.split_sun else ""
+            says += f"; with {flag} to {found.minimum if found.negative else 0:.3g}, {rest}{percent(found.error)} off"
+    return says
+
+
+def _shown(recipe: Recipe, quantity: str) -> _Shown:
+    """The recipe's numbers as a program shows them that makes `quantity` of them."""
+    found = reconstruction_of(recipe)
+    light, coefficients, error = found.subject.light, found.coefficients, found.sums.relative_l2
+    if quantity != recipe.quantity:  # the irradiance of radiance
+        error = irradiance_error(light, found.projection, recipe.shown)
+        light = through(light, quantity)
+        coefficients = light.from_source(coefficients)
+    minimum = error_grid(light, grid_rows(recipe.n_bands)).lows(coefficients).minimum
+    return _Shown(minimum, minimum < -ROUNDING * float(np.abs(coefficients).max()), error)
