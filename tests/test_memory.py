@@ -14,6 +14,7 @@ import zlib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -29,8 +30,10 @@ from shviewer.cli.main import main
 from shviewer.errors import LightError
 from shviewer.files import read_bytes
 from shviewer.lights.find import find_light
-from shviewer.lights.images import openexr_headers
+from shviewer.lights.images import isolated as isolated_module
+from shviewer.lights.images import openexr, openexr_headers, radiance_files
 from shviewer.lights.images.openexr import decode_openexr
+from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.reading import Reading
 from shviewer.limits import TEXEL_BYTES, Limits
 from shviewer.viewer.desktop.session import Session
@@ -422,3 +425,34 @@ def test_a_stamp_from_elsewhere_does_not_lift_the_limit_of_memory() -> None:
     said["state"]["recipe"]["reading"]["limits"] |= {"memory_bytes": 2**60, "pipe_seconds": 10**9}
     limits = state_of_stamp(json.dumps(said)).recipe.reading.limits
     assert (limits.memory_bytes, limits.pipe_seconds) == (None, Limits().pipe_seconds)
+
+
+class Watched(bytes):
+    """The bytes of a file, which say when nobody holds them any more."""
+
+    gone: Event
+
+    def __del__(self) -> None:
+        self.gone.set()
+
+
+@pytest.mark.parametrize("isolated", [False, True])
+def test_a_file_is_let_go_before_its_pixels_take_memory(monkeypatch: pytest.MonkeyPatch, isolated: bool) -> None:
+    """A float32 file of 8192 x 4096 texels takes 300 MB, beside 400 of its planes and 400 of its pixels."""
+    gone, held = Event(), []
+
+    def read(path: Path, limits: Limits) -> bytes:
+        data = Watched(flat_exr(32, 16))
+        data.gone = gone
+        return data
+
+    def pixels(*arguments: Any) -> Any:
+        held.append(not gone.wait(20.0 if isolated else 0.0))  # another thread hands them to the child
+        return make(*arguments)
+
+    owner, name = (isolated_module, "_read_halves") if isolated else (openexr.Planes, "decoded")
+    make = getattr(owner, name)
+    monkeypatch.setattr(radiance_files, "read_bytes", read)
+    monkeypatch.setattr(owner, name, pixels)
+    assert read_radiance_image(Path("a.exr"), Reading(isolated=isolated)).pixels.shape == (16, 32, 3)
+    assert held == [False]

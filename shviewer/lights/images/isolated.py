@@ -61,20 +61,23 @@ def decode_isolated(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "
     kind: any other is decoded by `decode_openimageio`, whose temporary file is removed even if the child dies.
     Raises LightError, too, if the child ends without an answer, or has not answered after TIME_LIMIT.
     """
+    request = {"limits": asdict(limits), "layer": layer, "kind": kind, "bytes": len(data)}
+    file = [data]
+    del data
     if kind == OPENEXR:
-        return _decode({"limits": asdict(limits), "layer": layer, "kind": kind, "bytes": len(data)}, data, limits)
+        return _decode(request, file, limits)
     with temporary_folder() as folder:
-        request = {"limits": asdict(limits), "kind": kind, "folder": str(folder), "bytes": len(data)}
-        return _decode(request, data, limits)
+        return _decode(request | {"folder": str(folder)}, file, limits)
 
 
-def _decode(request: dict[str, Any], data: bytes, limits: Limits) -> Decoded:
+def _decode(request: dict[str, Any], file: list[bytes], limits: Limits) -> Decoded:
+    """The answer of a child. file: its bytes, which are taken out and let go once the child has them."""
     with _start() as child, at_the_end(child.kill):
         assert child.stdin is not None
         assert child.stdout is not None
         late = threading.Event()
         clock = threading.Timer(TIME_LIMIT, _stop, (child, late))
-        feeder = threading.Thread(target=_feed, args=(child.stdin, request, data))
+        feeder = threading.Thread(target=_feed, args=(child.stdin, request, file))
         status = None
         try:
             clock.start()
@@ -123,10 +126,10 @@ def _stop(child: subprocess.Popen[bytes], late: threading.Event) -> None:
     child.kill()
 
 
-def _feed(stdin: IO[bytes], request: dict[str, Any], data: bytes) -> None:
+def _feed(stdin: IO[bytes], request: dict[str, Any], file: list[bytes]) -> None:
     with contextlib.suppress(OSError):  # the child may end before it has read everything
         stdin.write(json.dumps(request).encode() + b"\n")
-        stdin.write(data)
+        stdin.write(file.pop())
         stdin.flush()  # and left open: a child whose stdin is closed ends itself, as when this process is killed
 
 

@@ -41,7 +41,9 @@ def decode_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = ""
     Raises LightError, without the name of the file, if it is damaged, too large, deep, or does not say which of its
     channels are the radiance. Raises MemoryError.
     """
-    return read_openexr(data, limits, layer).decoded()
+    planes = read_openexr(data, limits, layer)
+    del data  # before memory is taken for the pixels
+    return planes.decoded()
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,8 +123,8 @@ def read_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "") 
 def _check_size(part: Part, limits: Limits, file_bytes: int, source: Source) -> None:
     """LightError for a part that is too large, or would take too much memory."""
     window, display = (frame.width * frame.height for frame in (part.window, part.display))
-    decoding = part.plane_bytes + (28 if source.luminance_chroma else 12) * window
-    decoding += (12 * display if part.window != part.display else 0) + 4 * file_bytes
+    pixels = (28 if source.luminance_chroma else 12) * window + (12 * display if part.window != part.display else 0)
+    decoding = part.plane_bytes + max(pixels, 4 * file_bytes)  # the file is let go before the pixels are made
     limits.check_size(part.window.width, part.window.height, "data window")
     limits.check_image(part.display.width, part.display.height, decoding, "display window")
     most = _SAMPLES_PER_TEXEL * limits.texels

@@ -60,16 +60,15 @@ def read_radiance_image(path: Path, reading: Reading = DEFAULT_READING, layer: s
     layer: the layer of an OpenEXR file, such as "diffuse"; "" for the plain colours or the only layer.
     Raises LightError, one line with file, finding, rule and next step, for whatever is wrong with the file.
     """
-    with naming(str(path)):
-        data = read_bytes(path, reading.limits)
-    return decode_radiance_image(data, str(path), reading, layer)
+    return decode_radiance_image(_bytes_of(path, reading.limits), str(path), reading, layer)
 
 
 def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_READING, layer: str = "") -> Decoded:
     """`read_radiance_image` for a file that is in memory already; `name` is the path it has or might have."""
     with naming(name):
-        kind = _kind(data, Path(name).suffix.lower())
-        decoded = _decoded(kind, data, reading.limits, layer, reading.isolated)
+        kind, file = _kind(data, Path(name).suffix.lower()), [data]
+        del data  # held by nobody but its decoder, which lets it go before it takes memory for the pixels
+        decoded = _decoded(kind, file, reading.limits, layer, reading.isolated)
         notes = _repair(decoded.pixels) if reading.sanitize else ()
         smallest, largest = 0.0, decoded.largest or math.inf
         if largest > BRIGHTEST:  # else nothing needs a look
@@ -82,50 +81,55 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
     return replace(decoded, notes=decoded.notes + notes)
 
 
-def _decoded(kind: _Kind, data: bytes, limits: Limits, layer: str, isolated: bool | None) -> Decoded:
-    """Decode the file; the decoder is imported here, since most lights need none."""
+def _bytes_of(path: Path, limits: Limits) -> bytes:
+    with naming(str(path)):
+        return read_bytes(path, limits)
+
+
+def _decoded(kind: _Kind, file: list[bytes], limits: Limits, layer: str, isolated: bool | None) -> Decoded:
+    """Decode the file, which is taken out of the list; the decoder is imported here, since most lights need none."""
     if kind is _RGBE:
         from shviewer.lights.images.rgbe import decode_rgbe
 
-        return decode_rgbe(data, limits)
+        return decode_rgbe(file.pop(), limits)
     if kind is _OPENEXR:
         from shviewer.lights.images.isolated import decode_isolated
         from shviewer.lights.images.openexr import decode_openexr
 
-        return (decode_isolated if isolated else decode_openexr)(data, limits, layer)
+        return (decode_isolated if isolated else decode_openexr)(file.pop(), limits, layer)
     if kind is _PNG:
         from shviewer.lights.images.display.png import decode_png
 
-        return decode_png(data, limits)
+        return decode_png(file.pop(), limits)
     if kind is _JPEG:
         from shviewer.lights.images.display.jpeg import decode_jpeg
 
-        return decode_jpeg(data, limits)
-    return _of_another_kind(kind, data, limits, isolated)
+        return decode_jpeg(file.pop(), limits)
+    return _of_another_kind(kind, file, limits, isolated)
 
 
-def _of_another_kind(kind: _Kind, data: bytes, limits: Limits, isolated: bool | None) -> Decoded:
+def _of_another_kind(kind: _Kind, file: list[bytes], limits: Limits, isolated: bool | None) -> Decoded:
     if kind is _PFM:
         from shviewer.lights.images.others.pfm import decode_pfm
 
-        return decode_pfm(data, limits)
+        return decode_pfm(file.pop(), limits)
     if kind is _ARRAY:
         from shviewer.lights.images.others.arrays import decode_array
 
-        return decode_array(data, limits)
+        return decode_array(file.pop(), limits)
     if kind is _DDS:
         from shviewer.lights.images.others.dds import decode_float_dds
 
-        if (decoded := decode_float_dds(data, limits)) is not None:
+        if (decoded := decode_float_dds(file[0], limits)) is not None:
             return decoded
     from shviewer.lights.images.others.openimageio import check_installed, decode_openimageio
 
     check_installed(kind.name)  # before a process is started
     if isolated is False:
-        return decode_openimageio(data, limits, kind.name)
+        return decode_openimageio(file.pop(), limits, kind.name)
     from shviewer.lights.images.isolated import decode_isolated
 
-    return decode_isolated(data, limits, kind=kind.name)
+    return decode_isolated(file.pop(), limits, kind=kind.name)
 
 
 def _kind(data: bytes, suffix: str) -> _Kind:
