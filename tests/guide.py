@@ -9,20 +9,29 @@ In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT
     found lists             the same of coefficients
     programs                what programs show that are run in tests/clients/
     options MODE MODE ...   the options that all of these modes have and no other has; the window's mode is called "view"
+
+assets/report/ gets the page and the plots that the rows of its report.json make today; nothing is measured.
 """
 
 from __future__ import annotations
 
 import argparse
 import re
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from clients.measured import rendered
 from clients.measured import table as programs
 from coefficients.found_lists import table as found_lists
 from documents import PAGES
 from lights.found_images import table as found_images
+from places import ROOT
 from shell_files import write_shell_files
 
+from shviewer.benchmark.page import plots
+from shviewer.benchmark.page.section import Page
+from shviewer.benchmark.page.writing import as_markdown
+from shviewer.benchmark.rows.report import read_report
 from shviewer.cli.options.modes import EXIT_CODES, PARSERS, view_parser
 from shviewer.viewer.keys import key_table
 
@@ -83,7 +92,21 @@ def row(action: argparse.Action) -> str:
     return f"| {names} | {(action.help or '').replace('%%', '%').replace('|', chr(92) + '|')} |"
 
 
+def write_report_anew(folder: Path) -> None:
+    """The page and, with matplotlib, the plots of the report in a folder: .md and .svg alone."""
+    report = read_report(folder / "report.json")
+    with TemporaryDirectory() as made:
+        drawn, message = plots.make_plots(report, Path(made))
+        for path in drawn:
+            if path.suffix == ".svg":
+                (folder / path.name).write_bytes(path.read_bytes())
+    if not message:
+        page = Page(report, [path.name for path in drawn])
+        (folder / "report.md").write_text(as_markdown(page), encoding="utf-8")
+
+
 if __name__ == "__main__":
     for page in PAGES:
         page.write_text(written_anew(page.read_text(encoding="utf-8")), encoding="utf-8")
     write_shell_files()
+    write_report_anew(ROOT / "assets" / "report")

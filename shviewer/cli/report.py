@@ -42,5 +42,5 @@ def _hard_cases(options: argparse.Namespace) -> int:
 
     with status_line() as line:
         outcomes = table.run(progress=line.show if line else None, shader=not options.no_shader)
-    print(table.as_text(outcomes))
+    print(table.as_text(outcomes), end="")
     return 0 if all(outcome.passed for outcome in outcomes) else 1

@@ -124,7 +124,7 @@ def use_of(convention: Convention, kind: str, n_bands: int, symbol: str, functio
 
 
 def unity_vectors(numbers: NDArray[np.generic]) -> dict[str, tuple[float, float, float, float]]:
-    """The seven vectors of Unity's shaders, from sh[c, i] as PackCoefficients of HDRP has it. numbers: nine rows."""
+    """The seven vectors of Unity's shaders, from sh[c, i] as PackCoefficients of HDRP has it. numbers: (9, 3)."""
     sh = np.asarray(numbers, dtype=np.float64).T
     found: dict[str, tuple[float, float, float, float]] = {}
     for channel, c in zip("rgb", sh.tolist(), strict=True):
@@ -141,7 +141,10 @@ def with_use(
     kind: str,
     names: tuple[str, str],
 ) -> dict[str, str | int | float | None]:
-    """The stamp with what to type after `layout`, and for Unity its vectors. names: symbol and function, as for `use_of`."""
+    """The stamp with what to type after `layout`, and for Unity its vectors.
+
+    numbers: (n**2, 3), as they are written; names: symbol and function, as for `use_of`.
+    """
     added: dict[str, str | int | float | None] = {}
     if line := use_of(convention, kind, count_bands(numbers), *names):
         added["use"] = line

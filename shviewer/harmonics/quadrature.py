@@ -187,7 +187,7 @@ def check_samples(n_samples: int) -> None:
 
 
 def row_angles(n_rows: int) -> Array:
-    """theta of the row centres of a lat-long image, radians."""
+    """theta of the row centres of a lat-long image, radians from the top: (n_rows,)."""
     return np.asarray(np.pi * (np.arange(n_rows) + 0.5) / n_rows)
 
 

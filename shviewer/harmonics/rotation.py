@@ -66,7 +66,7 @@ def turn(azimuth: float, elevation: float, roll: float = 0.0) -> Array:
 
 
 def check_rotation(rotation: ArrayLike) -> Array:
-    """The nearest rotation to a 3 x 3 matrix. ValueError if it is not one to within ORTHONORMAL."""
+    """The nearest rotation, (3, 3), to a matrix of that shape. ValueError if it is not one to within ORTHONORMAL."""
     matrix = np.asarray(rotation, dtype=np.float64)
     if matrix.shape != (3, 3) or not np.isfinite(matrix).all():
         raise ValueError(f"a rotation is a finite 3 x 3 matrix, not {np.asarray(rotation).tolist()}")

@@ -46,7 +46,7 @@ Precision = type[np.float32] | type[np.float64]
 
 
 def by_parity(n_bands: int) -> NDArray[np.int64]:
-    """The values of k as they are stored: the even ones, then the odd ones."""
+    """The values of k as they are stored, (n_bands,): the even ones, then the odd ones."""
     return np.concatenate([np.arange(0, n_bands, 2), np.arange(1, n_bands, 2)])
 
 
@@ -59,7 +59,7 @@ class RowFunctions:
 
     @cached_property
     def exact(self) -> tuple[Array, Array]:
-        """Cosines and sines with the even k first."""
+        """Cosines and sines with the even k first, in the shapes that they have."""
         order = by_parity(len(self.cosines))
         return self.cosines[order], self.sines[order]
 

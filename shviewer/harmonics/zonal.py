@@ -45,7 +45,8 @@ class Profile(Protocol):
         """lambda(l) for l = 0 to n_bands-1, shape (n_bands,)."""
 
     def along(self, angle: Array) -> tuple[Array, Array, Array, Array]:
-        """Value, first and second derivative at angles to the axis in radians, and a bound of the fourth near each.
+        """Value, first and second derivative at angles to the axis in radians, and a bound of the fourth near each; all of the
+        angles' shape.
 
         The value never rises with the angle.
         """

@@ -176,7 +176,7 @@ class EnvironmentLight(RadianceLight):
         return np.asarray(self.layout.project(self.pixels * above, 2)[2] * np.sqrt(4 * np.pi / 3))
 
     def landmarks(self) -> Array:
-        """The centre of the brightest texel."""
+        """The centre of the brightest texel, (1, 3)."""
         return self._landmarks
 
     @cached_property

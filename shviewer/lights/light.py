@@ -62,7 +62,10 @@ class Light(Protocol):
         """The radiance on rows of a lat-long grid at angles theta (rows,) from +z: (rows, 3, n_columns)."""
 
     def integrand(self, directions: Array) -> Array:
-        """The function that `coefficients` integrates: the radiance, or for an image its texels as areas, not interpolated."""
+        """The function that `coefficients` integrates in directions (k, 3): (k, 3).
+
+        The radiance, or for an image its texels as areas, not interpolated.
+        """
 
     def texels(self) -> Iterator[tuple[NDArray[np.floating], Array]]:
         """The texels of an image in blocks: radiance (k, 3) and steradians (k,); nothing for other lights."""

@@ -57,7 +57,7 @@ class LobeLight(RadianceLight):
         )
 
     def landmarks(self) -> Array:
-        """The axes, and points just inside and outside the edge of every profile that has one."""
+        """The axes, and points just inside and outside the edge of every profile that has one: (j, 3)."""
         edges = ((lobe.axis[None], around_edge(lobe.profile, lobe.axis, 8)) for lobe in self.lobes)
         return np.concatenate([*chain.from_iterable(edges)])
 

@@ -25,7 +25,7 @@ from shviewer.cli.options.values import (
 from shviewer.words import one_line
 
 LIGHT_HELP = (
-    "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png or .jpg), "
+    "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png, .jpg and others), "
     "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl, .js, .cs)"
 )
 

@@ -111,8 +111,8 @@ def sweep_parser() -> OneLineParser:
     """shviewer sweep OUT [LIGHT]: an animation without a window."""
     parser = _parser(
         "shviewer sweep",
-        "Write an animation of more and more bands, or with --turntable of the camera going round. Every frame is "
-        "the screenshot of its state.",
+        "Write an animation: more and more bands, or the camera (--turntable) or the light (--turn-light) going round. "
+        "Every frame is the screenshot of its state.",
     )
     parser.add_argument(
         "out", metavar="OUT", type=Path, help="OUT.webp: lossless; OUT.gif: one palette of 255 colours for all frames"

@@ -27,7 +27,11 @@ ROUNDING = 1e-8
 
 
 def chance(errors: Array, told: NDArray[np.bool_], exact: Array) -> float:
-    """The probability that one random list fits so well. errors: relative to each degree's own; told: degrees that count."""
+    """The probability that one random list fits so well.
+
+    errors: of each degree, relative to its own norm, (n_bands,); told: whether a degree counts, (n_bands,); exact: the light's
+    coefficients, (n_bands**2, 3).
+    """
     starts = np.arange(len(errors)) ** 2
     norms = np.sqrt(np.add.reduceat((exact**2).sum(axis=1), starts))
     products = exact.T @ exact

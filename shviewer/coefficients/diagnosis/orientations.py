@@ -68,5 +68,6 @@ def between(meant: Axes, found: Axes) -> Axes:
 
 
 def axes_name(axes: Axes) -> str:
+    """The axes as --axes takes them, with their usual name if they have one: "+x+z-y (y-up)"."""
     name = USUAL_AXES.get(axes.text)
     return f"{axes.text} ({name})" if name else axes.text

@@ -74,8 +74,8 @@ class Explanation:
 def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Explanation | None:
     """The simplest convention in which the list fits about as well as in any; None if there is nothing to compare.
 
-    exact: the radiance of the light, our coefficients, with at least the bands of the list. named: the convention in which
-    it was read. LightError if the numbers are no table.
+    exact: the light's radiance in our coefficients, (n**2, 3), with at least the bands of the list. named: the convention in
+    which it was read. LightError if the numbers are no table.
     """
     found = list(ways(listed, named.sequence if named else ""))
     n_bands = min(count_bands(exact), count_bands(found[0].table), MOST_BANDS)

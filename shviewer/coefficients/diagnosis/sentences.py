@@ -79,5 +79,6 @@ def _scaled(convention: Convention, base: Convention) -> list[str]:
 
 
 def factor_words(factor: float) -> str:
+    """A factor by the name of a constant that it is within a millionth of, or as "times 1.02"."""
     near = [said for said, value in CONSTANTS.items() if abs(factor / value - 1) < 1e-6]
     return near[0] if near else f"times {factor:g}"

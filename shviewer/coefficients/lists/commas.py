@@ -15,7 +15,10 @@ _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}", re.ASCII)
 
 
 def with_points(text: str) -> str:
-    """The text with points for decimal commas: where cells are parted by semicolons or spaces, and are a list only so."""
+    """The text with points for decimal commas: where cells are parted by semicolons or spaces, and are a list only so.
+
+    LightError where commas could part the numbers as well.
+    """
     if "," not in text or "." in text:
         return text
     rows = [re.split(r"[;\s(){}\[\]]+", line.strip("; \t\r(){}[]")) for line in text.splitlines()]

@@ -32,6 +32,7 @@ def whole(quantity: str) -> str:
 
 
 def is_over_pi(quantity: str | None) -> bool:
+    """Whether numbers of this quantity are divided by pi; not for one that is unknown, None."""
     return bool(quantity) and str(quantity).endswith(_PER_PI)
 
 

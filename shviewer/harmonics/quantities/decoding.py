@@ -56,13 +56,13 @@ def lengths(vectors: Array) -> Array:
 
 
 def one_sidedness(numbers: Array, length: Array, ratio: float) -> Array:
-    """`ratio` |v|/c0 of each channel, 0 where c0 is not positive."""
+    """`ratio` |v|/c0 of each channel, (3,), 0 where c0 is not positive. length: |v|, (3,)."""
     positive = numbers[0] > 0
     return np.asarray(np.where(positive, ratio * length / np.where(positive, numbers[0], 1.0), 0.0))
 
 
 def hallucination(numbers: Array, shared: bool) -> Array:
-    """z of each channel as it is guessed from the other four numbers."""
+    """z of each channel, (3,), as it is guessed from the other four numbers."""
     along = np.abs((vectors(numbers) * axes(numbers, shared)[0]).sum(axis=1))
     s = one_sidedness(numbers, along, 1.0)
     return np.asarray(numbers[0] * s * (0.08 + 0.6 * s))

@@ -75,11 +75,15 @@ class Stored:
 
 
 def linear(radiance: Array, n_bands: int) -> Array:
+    """The first bands of irradiance as they are: coefficients of radiance -> of irradiance, (n_bands**2, 3)."""
     return np.asarray(radiance[: n_bands**2] * per_coefficient(irradiance_factors(n_bands)))
 
 
 def geomerics(numbers: Array, scale: float = 1.0, ratio: float = 1 / np.sqrt(3)) -> Array:
-    """scale, ratio: what is wrong with other variants: a factor of all, and |v|/c0 times `ratio` in place of r."""
+    """The bands of Geomerics' curve, (GEOMERICS_BANDS**2, 3), in closed form.
+
+    scale, ratio: what is wrong with other variants: a factor of all, and |v|/c0 times `ratio` in place of r.
+    """
     found = np.zeros((GEOMERICS_BANDS**2, 3))
     k = np.arange(1, GEOMERICS_BANDS)
     shares = np.minimum(one_sidedness(numbers, lengths(vectors(numbers)), ratio), 1.0)
@@ -103,10 +107,12 @@ def five_numbers(radiance: Array, shared: bool = False) -> Array:
 
 
 def zh3(numbers: Array, shared: bool = False) -> Array:
+    """The three bands of ZH3, (9, 3). shared: with one axis for all channels."""
     return _with_zonal(numbers, numbers[4], shared)
 
 
 def hallucinated(numbers: Array, shared: bool = False) -> Array:
+    """The three bands of ZH3 with its fifth number guessed from the other four, (9, 3)."""
     return _with_zonal(numbers, hallucination(numbers, shared), shared)
 
 

@@ -183,7 +183,10 @@ def _every_half() -> NDArray[np.float32]:
 def on_display_window(
     radiance: NDArray[np.float32], window: Window, display: Window
 ) -> tuple[NDArray[np.float32], tuple[str, ...]]:
-    """The radiance on the display window, which is the whole sphere: black where there are no data, cropped outside."""
+    """The radiance on the display window, (height, width, 3), which is the whole sphere, and notes on what was done.
+
+    Black where there are no data, cropped outside. LightError if the windows have nothing in common.
+    """
     if window == display:
         return radiance, ()
     left, right = max(window.left, display.left), min(window.right, display.right)

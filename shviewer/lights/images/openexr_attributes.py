@@ -24,6 +24,8 @@ _LONGEST_HEADERS = 2**24  # bytes; previews of a thousand texels a side are with
 
 
 class Attribute(NamedTuple):
+    """An attribute of a header, as its bytes."""
+
     kind: bytes
     """The name of its type, such as b"box2i"."""
     value: bytes
@@ -66,14 +68,14 @@ def read_attributes(data: bytes) -> list[RawHeader]:
 
 
 def count_in(field: bytes) -> int:
-    """Four bytes as an integer. Raises LightError if it is negative."""
+    """Four bytes as an integer. LightError if it is negative, or the bytes are not four."""
     if len(field) != 4 or field[3] > 127:
         raise broken("a count in a header is none")
     return int.from_bytes(field, "little")
 
 
 def channels_in(value: bytes) -> list[tuple[bytes, bytes]]:
-    """The name of each channel and what is said of it."""
+    """The name of each channel and what is said of it. LightError if the list does not end."""
     channels, at = [], 0
     while value[at : at + 1] not in (b"\0", b""):
         end = value.find(b"\0", at)

@@ -29,6 +29,8 @@ class Window(NamedTuple):
 
 
 class Channel(NamedTuple):
+    """One channel of a part."""
+
     name: str
     subsampling: tuple[int, int]
     """The steps in x and y between samples, counted from 0 in the file's coordinates."""
@@ -71,7 +73,7 @@ class Part(NamedTuple):
 
 
 def read_headers(openexr: ModuleType, data: bytes) -> tuple[Part, ...]:
-    """Every part, without its pixels. Raises LightError."""
+    """Every part, without its pixels. LightError if a header is damaged."""
     raw = read_attributes(data)
     windows = [(Window(*own.window(b"dataWindow")), Window(*own.window(b"displayWindow"))) for own in raw]
     file = open_openexr(openexr, data, header_only=True)

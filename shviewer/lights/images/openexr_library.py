@@ -25,7 +25,7 @@ _one_at_a_time = threading.Lock()
 
 
 def import_openexr() -> ModuleType:
-    """Import the library only when it is needed: other lights start faster and do without it."""
+    """Import the library only when it is needed: other lights start faster and do without it. LightError if it is missing."""
     try:
         import OpenEXR
     except ImportError as error:

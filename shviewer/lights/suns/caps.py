@@ -36,7 +36,7 @@ class Texels:
     """Steradians, (k,), all above 0."""
 
     def within(self, axis: Array, nearest: float, farthest: float) -> Texels:
-        """The texels with `nearest` < angle <= `farthest` between centre and `axis`, radians; `nearest` may be negative."""
+        """The texels with `nearest` < angle <= `farthest` between centre and `axis` (3,), radians; `nearest` may be below 0."""
         distance = chord(self.directions, axis)
         kept = (distance <= chord_of(farthest)) & (distance > chord_of(nearest))
         return Texels(self.rows[kept], self.columns[kept], self.directions[kept], self.solid_angles[kept])
@@ -74,11 +74,11 @@ class Caps:
         return Texels(rows, columns, self._layout.centres(rows, columns), solid_angles[seen])
 
     def touched(self, axis: Array, half_angle: float) -> NDArray[np.bool_]:
-        """The tiles, row by row, that may have texels within `half_angle` radians of `axis`; true for a NaN middle, too."""
+        """Whether each tile, row by row, may have texels within `half_angle` radians of `axis` (3,); true for a NaN middle."""
         return np.asarray(~(chord(self._middles, axis) > self._radii + chord_of(half_angle)))
 
     def cap(self, axis: Array, half_angle: float) -> Texels:
-        """Every texel whose centre is within `half_angle` radians of `axis`."""
+        """Every texel whose centre is within `half_angle` radians of `axis` (3,)."""
         touched = self.touched(axis, half_angle)
         inside = np.arange(TILE)
         rows = (self._top[touched, None, None] + inside[:, None] + 0 * inside).ravel()

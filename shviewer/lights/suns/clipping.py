@@ -23,7 +23,9 @@ BLOCK_VALUES = 2**18
 
 
 def highest(pixels: NDArray[np.float32], caps: Caps) -> Texels | None:
-    """The texels at the highest value of a channel, if there are so few and so many that they can be a clipped sun."""
+    """The texels of pixels (height, width, 3) at the highest value of a channel; None if they can be no clipped sun, being too
+    few or too many.
+    """
     height, width = pixels.shape[:2]
     flat = pixels.reshape(height, -1)
     ceiling = flat.max(axis=0).reshape(-1, 3).max(axis=0)
@@ -43,7 +45,9 @@ def highest(pixels: NDArray[np.float32], caps: Caps) -> Texels | None:
 
 
 def is_clipped(excess: Excess, plateau: Texels | None, caps: Caps, mean: NDArray[np.float32]) -> bool:
-    """As the module docstring has it. plateau: the `highest` texels. mean: of the three channels, 0 for what shows nothing."""
+    """As the module docstring has it. plateau: the `highest` texels. mean: of the three channels, (height, width), 0 for
+    what shows nothing.
+    """
     if plateau is None:
         return False
     here = plateau.within(excess.axis, -1, CAP)

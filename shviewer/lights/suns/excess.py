@@ -43,7 +43,10 @@ class Excess:
 
     @classmethod
     def around(cls, axis: Array, caps: Caps, pixels: NDArray[np.float32], mean: NDArray[np.float32]) -> Excess:
-        """The excess within CAP of `axis`. mean: of the three channels of `pixels`, 0 for texels that show nothing."""
+        """The excess within CAP of `axis` (3,).
+
+        mean: of the three channels of `pixels` (height, width, 3), 0 for texels that show nothing.
+        """
         near = caps.cap(axis, RING)
         cap, ring = near.within(axis, -1, CAP), near.within(axis, CAP, RING)
         around = pixels[ring.rows, ring.columns]

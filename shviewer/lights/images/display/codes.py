@@ -42,6 +42,8 @@ TURNS: dict[int, Callable[[NDArray[Any]], NDArray[Any]]] = {
 
 
 class Codes(NamedTuple):
+    """An image as it is encoded: integers, and what says how to read them."""
+
     values: NDArray[Any]  # (height, width), or (height, width, 2 to 4) with the colours first; integers
     bits: int
     alpha: bool
@@ -98,7 +100,7 @@ def linearised(kind: str, codes: Codes, colour: Colour, notes: Iterable[str] = (
 def decode(
     image_class: Callable[[io.BytesIO], Any], data: bytes, limits: Limits, most_texels: int | None = None
 ) -> Codes:
-    """Decode with Pillow, and turn its errors into LightErrors.
+    """Decode with Pillow. LightError for a file that it cannot decode or that is larger than the limits.
 
     most_texels: how many texels a file of this length can hold, if that is known.
     """

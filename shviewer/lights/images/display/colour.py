@@ -35,7 +35,7 @@ _HDR = {16: "PQ", 18: "HLG"}
 
 
 def linear_from_srgb(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The inverse of the curve [sRGB]; encoded and linear are in 0 to 1."""
+    """The inverse of the curve [sRGB]; encoded and linear are in 0 to 1, of any shape."""
     return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
@@ -63,6 +63,7 @@ def power(exponent: float) -> Curve:
 
 
 def power_name(exponent: float) -> str:
+    """What a curve of this exponent is called in notes: "gamma 2.2"."""
     return "linear" if exponent == 1.0 else f"gamma {exponent:g}"
 
 

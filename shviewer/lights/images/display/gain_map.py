@@ -45,6 +45,8 @@ class Metadata(NamedTuple):
 
 
 class GainMap(NamedTuple):
+    """A gain map of an Ultra HDR image: its picture, and how it is applied."""
+
     jpeg: Jpeg
     metadata: Metadata
 

@@ -31,7 +31,7 @@ _ADAM7 = ((0, 0, 8, 8), (0, 4, 8, 8), (4, 0, 8, 4), (0, 2, 4, 4), (2, 0, 4, 2), 
 def read_chunks(data: bytes) -> tuple[dict[bytes, bytes], list[memoryview]]:
     """Type -> content of the first chunk of that type, of text only XMP, and the pieces of the image.
 
-    Raises LightError if a checksum is wrong or the end is missing.
+    LightError if a checksum is wrong or the end is missing.
     """
     if not data.startswith(_SIGNATURE):
         raise damaged("its signature is not that of a PNG")
@@ -60,7 +60,7 @@ def read_chunks(data: bytes) -> tuple[dict[bytes, bytes], list[memoryview]]:
 
 
 def check_texels(header: bytes, compressed: list[memoryview], limits: Limits) -> None:
-    """LightError if the pieces inflate to fewer bytes than the image has: Pillow would leave the rest black."""
+    """LightError if the image is too large, or its pieces inflate to too few bytes: Pillow would leave the rest black."""
     if len(header) != 13 or header[9] not in _SAMPLES:
         raise damaged("its IHDR chunk is not that of an image")
     width, height, bits, colour_type, _, _, interlaced = struct.unpack(">IIBBBBB", header)
