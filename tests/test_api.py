@@ -142,14 +142,16 @@ def test_screenshot_is_the_picture_of_the_command(session_renderer: Renderer, tm
         np.testing.assert_array_equal(np.asarray(first), np.asarray(second))
 
 
-def test_report_is_a_function_although_there_is_a_package_of_that_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Importing shviewer.benchmark puts the package in the function's place; it can be called as well."""
+def test_report_is_given_names_as_they_are_and_everything_else_as_lights(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only what has a name can be measured in another process: `shviewer.report("cosine")` waited for pictures of green."""
     run = importlib.import_module("shviewer.benchmark.run")
     seen: list[Any] = []
     monkeypatch.setattr(run, "write_report", lambda *arguments: seen.append(arguments))
     shviewer.report("green", "somewhere", quick=True)
-    shviewer.report(["green", "cosine"], budget=3)
-    assert [[light.name for light in call[0]] for call in seen] == [["green"], ["green", "cosine"]]
+    shviewer.report(["green", Path("sky.exr"), np.ones((4, 3))], budget=3)
+    assert seen[0][0] == ["green"]
+    assert seen[1][0][:2] == ["green", "sky.exr"]
+    assert seen[1][0][2].coefficients(2).shape == (4, 3)
     assert seen[0][1] == Path("somewhere")
     assert seen[0][2].quick
     assert seen[1][2].budget == 3
