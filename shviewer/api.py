@@ -59,6 +59,8 @@ def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
     ShviewerError if n**2 is no square or a row has not three numbers, or for a direction that is zero or not finite.
     """
     try:
+        if hasattr(coefficients, "coefficients"):
+            raise UsageError(f"{type(coefficients).__name__} holds more than numbers: give its .coefficients")
         numbers = np.asarray(coefficients, dtype=np.float64)
         if numbers.ndim != 2 or numbers.shape[1] != 3:
             raise UsageError(f"coefficients of shape {numbers.shape}: they are (n**2, 3), rows of red, green and blue")

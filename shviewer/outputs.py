@@ -90,7 +90,7 @@ class Replacing:
         """OutputError if writing `path` would destroy what must stay: a check to make before it is written."""
         if _identity(path) in self._read:
             raise OutputError(f"{path}: the light or a comparison is read from this file; write another one")
-        if not (self.force or _may_go(path)):
+        if not (self.force or may_be_replaced(path)):
             raise OutputError(
                 f"{path}: exists, and shviewer did not write it; write another file, or --force (in Python force=True)"
             )
@@ -128,7 +128,7 @@ OURS = (
 OURS_BYTES = 2**16
 
 
-def _may_go(path: Path) -> bool:
+def may_be_replaced(path: Path) -> bool:
     """Whether there is nothing at `path` to be lost: no file, an empty one, a pipe or device, or one of this program."""
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):

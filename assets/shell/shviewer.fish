@@ -10,7 +10,7 @@ complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l for -x 
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l split-sun -d 'take suns out of the light as discs of their own and project the rest'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l suns -x -a 'auto all' -d 'what --split-sun takes: auto (default), one or two suns; or so many of the compact sources, lamps among them; or all'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l window -x -a 'none hann lanczos gauss dering' -d 'none, hann, lanczos, gauss (WIDTH in bands, default N) or dering'
-complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l mute -r -d 'bands to leave out, such as 1,3'
+complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l mute -r -d 'bands to leave out, such as 1,3 or 2-4'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l method -x -a 'best jittered gauss-legendre' -d 'best (of this light), jittered (the paper\'s) or gauss-legendre'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l samples -r -d 'number of samples of the sampled methods (default 10000)'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l seed -r -d 'seed of the jittered samples (default 0)'

@@ -80,6 +80,10 @@ class Projected(InNotebooks):
     recipe: Recipe | None = None
     """What was asked for: a notebook draws it. It may hold an image, so that it is not pickled."""
 
+    def __repr__(self) -> str:
+        bands, error = counted(self.n_bands, "band"), self.sums.relative_l2
+        return f"<{self.name}: {self.quantity} in {bands}, relative L2 error {error:.3g}>"
+
     def __getstate__(self) -> dict[str, object]:
         return vars(self) | {"recipe": None, "searched": self._all_figures()}
 

@@ -93,7 +93,9 @@ class Recipe:
         Number(0, float("inf"), "it must be positive and finite, in bands", closed=False, optional=True),
         "width of the window in bands; as many as are shown unless given",
     )
-    muted: frozenset[int] = option(frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3", "--mute", "L,L")
+    muted: frozenset[int] = option(
+        frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3 or 2-4", "--mute", "L,L"
+    )
     method: str = option(
         "best", Choice(METHODS), "best (of this light), jittered (the paper's) or gauss-legendre", "--method", "M"
     )

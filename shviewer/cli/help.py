@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 from shviewer.cli.options.modes import PARSERS
 from shviewer.errors import UsageError
 from shviewer.resources import resource_folder
+from shviewer.words import near
 
 
 def run(topics: Sequence[str]) -> int:
@@ -21,7 +23,8 @@ def run(topics: Sequence[str]) -> int:
         return 0
     (topic, *others) = topics
     if others or (topic not in pages and topic not in modes):
-        raise UsageError(f"no help on {' '.join(topics)!r}; {listed}")
+        words = " ".join(topics)
+        raise UsageError(f"no help on {words!r}{_hint(words, pages)}; {listed}")
     text = PARSERS[topic]().format_help() if topic in modes else pages[topic].read_text(encoding="utf-8")
     if sys.stdout is not None and sys.stdout.isatty():
         import pydoc
@@ -30,6 +33,20 @@ def run(topics: Sequence[str]) -> int:
     else:
         print(text, end="")
     return 0
+
+
+def _hint(words: str, pages: dict[str, Path]) -> str:
+    """Which topic is meant, or which pages have these words in a heading or as code, those that have them most often first."""
+    if found := near(words, [*pages, *PARSERS], most=1):
+        return f"; did you mean shviewer help {found[0]}?"
+    counts = {topic: _told(path).count(words.casefold()) for topic, path in pages.items()}
+    found = sorted(filter(counts.get, counts), key=lambda topic: -counts[topic])[:3]
+    return f"; it is spoken of in {', '.join(found)}" if found else ""
+
+
+def _told(page: Path) -> str:
+    """The headings of a page and what stands in it as code."""
+    return "\n".join(re.findall(r"^#.*|`[^`]+`", page.read_text(encoding="utf-8"), re.MULTILINE)).casefold()
 
 
 def guide_pages() -> dict[str, Path]:

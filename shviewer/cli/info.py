@@ -17,7 +17,7 @@ from shviewer.analysis.information import (
 )
 from shviewer.analysis.values import DARK_PERCENTILE, Values
 from shviewer.cli.jobs import in_order
-from shviewer.cli.options.inputs import reading_from
+from shviewer.cli.options.inputs import lights_within, reading_from
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError, ShviewerError
@@ -32,8 +32,9 @@ def run(options: argparse.Namespace) -> int:
     reading = reading_from(options)
     exit_code = 0
     objects: list[dict[str, object]] = []
-    described = in_order(partial(describe, reading=reading), options.lights, options.jobs)
-    for number, text in enumerate(options.lights):
+    lights = lights_within(options)
+    described = in_order(partial(describe, reading=reading), lights, options.jobs)
+    for number, text in enumerate(lights):
         refused: str | None = None
         with speaking():
             found = next(described)
@@ -56,7 +57,8 @@ def run(options: argparse.Namespace) -> int:
 def as_text(information: Information) -> str:
     """The information as aligned lines, one screen at most."""
     values, size, peak = information.values, information.size, information.peak_direction
-    rows = [("file", f"{information.file}, {_bytes(information.file_bytes)}")]
+    size_read = _bytes(information.file_bytes) if information.file_bytes else "of unknown size"  # a pipe
+    rows = [("file", f"{information.file}, {size_read}")]
     if information.encoding:
         rows.append(("encoding", information.encoding))
     if size and information.layout:
@@ -103,15 +105,12 @@ def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:
 
 def _roughness(information: Information) -> list[tuple[str, str]]:
     """What glossy surfaces some numbers of bands serve, up to the first that serves a mirror."""
-    told = []
+    told: list[str] = []
     for served in information.roughness_served:
-        words = served.words.removeprefix("roughness ").replace("no roughness", "none")
-        told.append(
-            f"{served.bands} for {words}".replace(" and rougher", " on").replace("for every roughness from", "from")
-        )
+        told.append(f"{served.bands}{',' if told else ' serve'} {served.words.removeprefix('roughness ')}")
         if not served.words.startswith(("roughness", "no")):
             break
-    return [("bands, roughness", f"{', '.join(told)}; for 5 %")] if told else []
+    return [("bands, roughness", f"for 5 %: {'; '.join(told)}")] if told else []
 
 
 def _suns(information: Information) -> list[tuple[str, str]]:

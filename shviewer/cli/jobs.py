@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from functools import partial
 from time import perf_counter
 from typing import TypeVar
@@ -90,7 +91,8 @@ def _pool(work: Callable[[str], T], lights: deque[str], jobs: int) -> Generator[
     try:
         while lights:
             while len(given) < min(AHEAD * jobs, len(lights)):
-                given.append(executor.submit(work, lights[len(given)]))
+                with _no_interrupt():
+                    given.append(executor.submit(work, lights[len(given)]))
             found = given[0].result()
             given.popleft()
             lights.popleft()
@@ -102,6 +104,19 @@ def _pool(work: Callable[[str], T], lights: deque[str], jobs: int) -> Generator[
         executor.shutdown(wait=not lights, cancel_futures=True)
         for process in processes:
             process.kill()
+
+
+@contextmanager
+def _no_interrupt() -> Iterator[None]:
+    """Ctrl-C waits for the end of the block, and processes that are started in it never see it, not even while they import."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin(jobs: int) -> None:

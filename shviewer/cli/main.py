@@ -66,5 +66,5 @@ def _check_first(arguments: list[str]) -> None:
     """UsageError if the first argument is nearly the name of a mode, and no file."""
     first = arguments[0] if arguments else ""
     unknown = first and not first.startswith("-") and first not in MODES and not os.path.exists(first)
-    if unknown and (found := near(first, MODES, most=1)):
+    if unknown and (found := near(first, [*MODES, "help"], most=1)):
         raise UsageError(f"{first!r} is neither a mode nor a light; did you mean shviewer {found[0]}?")

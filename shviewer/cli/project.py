@@ -18,7 +18,7 @@ from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.batch import error_in_percent, project_batch
 from shviewer.cli.below_zero import below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
-from shviewer.cli.options.inputs import lights_of, replacing_of
+from shviewer.cli.options.inputs import lights_of, lights_within, replacing_of
 from shviewer.cli.options.recipes import recipe_from
 from shviewer.cli.options.states import turn_from
 from shviewer.cli.status_line import speaking
@@ -47,11 +47,12 @@ def run(options: argparse.Namespace) -> int:
     if options.n_bands is None and options.tolerance is None and convention.most_bands:
         options.n_bands = min(Recipe.n_bands, convention.most_bands)
 
-    lights, out, kind = lights_of(options), options.output, options.format
+    given, out, kind = lights_of(options), options.output, options.format
+    lights = options.lights = lights_within(options)
     if kind is not None and kind not in FORMATS:
         raise UsageError(f"format {kind!r}: {meant(kind, FORMATS)}")
     projected_of, replacing = partial(_projected_of, options, convention), replacing_of(options)
-    if len(lights) == 1:
+    if lights == given and len(lights) == 1:
         _project_one(lights[0], out, kind, convention, projected_of, replacing)
         return 0
     if out == STDOUT or Path(out).suffix[1:] in FORMATS:

@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from shviewer.cli.notes import print_notes
-from shviewer.cli.options.inputs import check_ending, replacing_of
+from shviewer.cli.options.inputs import check_out, replacing_of
 from shviewer.cli.options.states import state_from
 from shviewer.cli.status_line import speaking
 from shviewer.errors import UsageError
@@ -18,7 +18,7 @@ from shviewer.viewer.screenshot import save_picture
 
 
 def run(options: argparse.Namespace) -> int:
-    check_ending(options, "screenshot", (".png", ".exr"))
+    check_out(options, "screenshot", (".png", ".exr"))
     kind = options.out.suffix.lower()
     if options.reference and kind != ".png":
         raise UsageError(f"{options.out}: --reference compares PNG pictures; let OUT end in .png")

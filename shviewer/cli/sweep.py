@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from shviewer.cli.notes import print_notes
-from shviewer.cli.options.inputs import check_ending, replacing_of
+from shviewer.cli.options.inputs import check_out, replacing_of
 from shviewer.cli.options.modes import DEFAULT_SWEEP
 from shviewer.cli.options.states import state_from
 from shviewer.cli.status_line import status_line
@@ -25,7 +25,7 @@ from shviewer.viewer.composing.composition import frame_for
 
 def run(options: argparse.Namespace) -> int:
     _check_sweep(options)
-    check_ending(options, "sweep", ENCODERS)
+    check_out(options, "sweep", tuple(ENCODERS))
     state = state_from(options, all_lights=False)
     if options.turntable:
         frames = TURN_FRAMES if options.frames is None else options.frames

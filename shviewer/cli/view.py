@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from shviewer.cli.options.inputs import lights_of
+from shviewer.cli.options.inputs import lights_of, lights_within
+from shviewer.cli.options.modes import MODES
 from shviewer.cli.options.states import state_from
-from shviewer.errors import LightError
+from shviewer.errors import LightError, UsageError
 
 if TYPE_CHECKING:
     from shviewer.viewer.picture import Picture
@@ -64,29 +66,26 @@ def run(options: argparse.Namespace) -> int:
 
 def _opened(options: argparse.Namespace) -> tuple[State, list[str]]:
     """The state of the first light that can be opened, and those to go on to if it turns out that it cannot."""
-    from shviewer.lights.several import several
-
     given = lights_of(options)
-    found = several(given, code=True)
-    for line in found.said:
-        print(f"shviewer: note: {line}", file=sys.stderr)
-    if len(given) == 1 and found.lights == tuple(given):
+    for mode in MODES:
+        if mode in given and not os.path.exists(mode):
+            raise UsageError(f"{mode!r} is a mode, and comes first: shviewer {mode}, then options and what it reads")
+    lights = list(dict.fromkeys(lights_within(options)))
+    if lights == given and len(given) == 1:
         return state_from(options, all_lights=True), []
-    if not found.lights:
-        raise LightError(f"{given[0]}: no light in it; name a file")
     bad: list[str] = []
-    for light in found.lights:
+    for light in lights:
         options.lights = [light]
         vars(options).pop("pictured", None)
         try:
             state = state_from(options, all_lights=True)
         except LightError as error:
             bad.append(light)
-            if len(bad) == len(found.lights):
+            if len(bad) == len(lights):
                 raise
             print(f"shviewer: {error}; skipped", file=sys.stderr)
             continue
-        left = tuple(one for one in found.lights if one not in bad)
+        left = tuple(one for one in lights if one not in bad)
         return replace(state, lights=left), list(left[1:])
     raise AssertionError
 

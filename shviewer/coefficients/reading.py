@@ -107,8 +107,8 @@ def interpreted(listed: Listed, named: str, *, overrule: bool = False) -> Coeffi
         notes = notes if named else (*notes, listed.implied_by)
     else:
         raise LightError(
-            "a bare list of numbers; name its convention, such as --convention three (in Python convention='three'; shviewer "
-            "project --help names them all); "
+            "a bare list of numbers; name its convention, such as --convention three (--input-convention of shviewer project, "
+            "whose --help names them all; convention='three' in Python); "
             "if the light is at hand, --compare finds it out: shviewer LIGHT --compare FILE"
         )
     sequence = convention.sequence if not stamp else ""

@@ -142,7 +142,16 @@ def _what_the_colon_is(text: str) -> str:
     return ""
 
 
+def _neighbours(text: str) -> list[str]:
+    """The files of the folder in which `text` would be one, as it would name them."""
+    folder = os.path.dirname(text)
+    try:
+        return [os.path.join(folder, name) for name in os.listdir(folder or ".")]
+    except (OSError, ValueError):
+        return []
+
+
 def _unknown(text: str) -> str:
     names = list(built_in_lights())
-    offer = meant(text, names, f"there is: {', '.join(names)}")
+    offer = meant(text, [*names, *_neighbours(text)], f"there is: {', '.join(names)}")
     return f"unknown light {text!r}: {_what_it_is(text) or offer}"

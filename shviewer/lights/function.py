@@ -91,14 +91,15 @@ class FunctionLight(RadianceLight):
     def radiance(self, directions: Array) -> Array:
         try:
             with np.errstate(all="ignore"):  # what is not finite is refused below
-                found = np.asarray(self.function(directions.copy()))  # it may write into its argument
-            if found.dtype.kind in "cMm" or isinstance(found, np.ma.MaskedArray):
-                raise TypeError(f"radiance is plain real numbers, and these values are of type {found.dtype}")
-            values = found.astype(np.float64)
+                returned = self.function(directions.copy())  # it may write into its argument
         except (Exception, SystemExit) as error:
             last = traceback.extract_tb(error.__traceback__)[-1]
-            where = f"{Path(last.filename).name}:{last.lineno}"
-            raise LightError(f"{self.name}: the function raised {type(error).__name__} at {where}: {error}") from error
+            where = "" if last.filename == __file__ else f" at {Path(last.filename).name}:{last.lineno}"
+            said = f"{self.name}: the function raised {type(error).__name__}{where}: {error}"
+            if isinstance(error, TypeError | ValueError | IndexError):  # as code for a single direction does
+                said += f"; it is called with all directions at once, an array {directions.shape}"
+            raise LightError(said) from error
+        values = self._plain(returned)
         if values.shape == (len(directions),):
             values = np.repeat(values[:, None], 3, axis=1)
         if values.shape != (len(directions), 3):
@@ -118,6 +119,20 @@ class FunctionLight(RadianceLight):
         if known is not None and max(-least, most) > NEWS * known.peak:
             self._note_news(directions, values, known)
         return values
+
+    def _plain(self, returned: ArrayLike) -> Array:
+        """What the function returned as float64. LightError if it is not plain real numbers."""
+        if returned is None:
+            raise LightError(f"{self.name}: the function returned None; end it with return radiance")
+        try:
+            found = np.asarray(returned)
+            masked = isinstance(returned, np.ma.MaskedArray)
+            if found.dtype.kind not in "cMm" and not masked:
+                return found.astype(np.float64)
+            fault = "a masked array" if masked else f"values of type {found.dtype}"
+        except (TypeError, ValueError) as error:
+            fault = f"what is no array of numbers ({error})"
+        raise LightError(f"{self.name}: the function returned {fault}; radiance is plain real numbers")
 
     def _note_news(self, directions: Array, values: Array, known: Sampled) -> None:
         size = np.abs(values).max(axis=1)

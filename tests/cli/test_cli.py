@@ -18,7 +18,7 @@ import pytest
 from PIL import Image
 
 from shviewer.cli.main import main
-from shviewer.cli.options.modes import view_parser
+from shviewer.cli.options.modes import PARSERS, view_parser
 from shviewer.errors import (
     GraphicsError,
     LightError,
@@ -183,7 +183,9 @@ def test_a_bad_argument_is_one_line_with_its_value_and_the_rule(
     [
         (["screenshot", "a.jpg"], ["a.jpg", ".png or .exr"]),
         (["screenshot", "a"], ["a: OUT must end in .png or .exr"]),
-        (["screenshot", "green", "a.png"], ["OUT comes first: shviewer screenshot a.png green"]),
+        (["screenshot", "green"], ["OUT comes before LIGHT: shviewer screenshot green.png green"]),
+        (["screenshot", "a.jpg", "sky.exr"], ["a.jpg: OUT must end in .png or .exr, such as a.png"]),
+        (["screenshot", "green", "a.png"], ["OUT comes before LIGHT: shviewer screenshot a.png green"]),
         (["screenshot", "a.exr", "--reference", "b.png"], ["a.exr", "PNG"]),
         (["screenshot", "a.png", "--threshold", "2"], ["'2'", "0 to 1"]),
         (["screenshot"], ["OUT"]),
@@ -202,7 +204,7 @@ def test_a_bad_screenshot_argument_exits_2(
     [
         (["a.mp4"], 2, ["a.mp4", ".gif or .webp"]),
         (["a"], 2, ["a: OUT must end in .gif or .webp"]),
-        (["sky.hdr", "a.webp"], 2, ["OUT comes first: shviewer sweep a.webp sky.hdr"]),
+        (["sky.hdr", "a.webp"], 2, ["sky.hdr: OUT must end in .gif or .webp, such as sky.gif"]),
         ([], 2, ["OUT"]),
         (["a.gif", "--from", "5", "--to", "4"], 2, ["--from 5 --to 4", "at most --to"]),
         (["a.gif", "--basis", "2", "0"], 2, ["--basis", "--turntable, or --lobes"]),
@@ -667,3 +669,58 @@ def test_several_lights_and_folders_are_opened_and_bad_ones_are_named_and_skippe
     (tmp_path / "empty").mkdir()
     empty = run("empty", **WITHOUT_DISPLAY)
     assert (empty.returncode, "no light in it" in empty.stderr) == (3, True)
+
+
+def test_a_light_in_the_place_of_out_is_never_offered_to_be_overwritten(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """OUT is a map that somebody made and LIGHT a picture of ours: both names could be either."""
+    light, picture = tmp_path / "my probe.exr", tmp_path / "ref.png"
+    light.write_bytes(b"somebody's map")
+    picture.write_bytes(b"shviewer\0")  # what `may_be_replaced` goes by
+    code, line = failing(capsys, "screenshot", str(light), str(picture))
+    assert code == 2
+    assert line.endswith(f"OUT comes before LIGHT: shviewer screenshot {picture} '{light}'")
+    assert "--force" not in line
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--bands", "5", "info", "green"], ["--for", "irradiance", "screenshot", "a.png"], ["green", "report"]],
+)
+def test_a_mode_behind_options_or_lights_is_no_light(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> None:
+    code, line = failing(capsys, *arguments)
+    assert code == 2
+    assert "is a mode, and comes first: shviewer " in line
+
+
+@pytest.mark.parametrize(
+    ("text", "bands"), [("1,3", {1, 3}), ("2-4", {2, 3, 4}), ("0,2-3,7", {0, 2, 3, 7}), ("5-5", {5})]
+)
+def test_muted_bands_are_numbers_and_ranges_as_pictures_write_them(text: str, bands: set[int]) -> None:
+    assert PARSERS["screenshot"]().parse_args(["a.png", "--mute", text]).muted == bands
+
+
+@pytest.mark.parametrize("text", ["3-1", "-2", "2-", "a-b"])
+def test_a_range_of_bands_that_is_none_is_refused(capsys: pytest.CaptureFixture[str], text: str) -> None:
+    code, line = failing(capsys, "screenshot", "a.png", f"--mute={text}")
+    assert code == 2
+    assert f"'{text}'" in line
+    assert "1,3 or 2-4" in line
+
+
+def test_info_and_project_take_the_lights_of_a_folder(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "probes").mkdir()
+    (tmp_path / "probes" / "notes.txt").write_text("no light")
+    code, line = failing(capsys, "info", "probes")
+    assert (code, line) == (3, "shviewer: probes: no light in it; name a file")
+    for name in ("a", "b"):
+        (tmp_path / "probes" / f"{name}.toml").write_text('[[lobe]]\nprofile = "constant"\nradiance = [1, 2, 3]\n')
+    assert main(["info", "probes", "--jobs", "1"]) == 0
+    assert [line[0] for line in capsys.readouterr().out.splitlines() if line[:1].strip()] == ["a", "b"]
+    assert main(["project", "probes", "-o", "out", "--jobs", "1"]) == 0
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["a.json", "b.json"]
+    assert main(["project", "out", "-o", "out", "--jobs", "1"]) == 1, "its own inputs are never replaced"

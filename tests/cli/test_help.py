@@ -49,13 +49,21 @@ def test_a_page_is_paged_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: 
     assert capsys.readouterr().out == ""
 
 
-@pytest.mark.parametrize("topics", [["nothing"], ["bands", "lights"], ["--bands"]])
+@pytest.mark.parametrize(
+    ("topics", "hint"),
+    [
+        (["qqq"], ""),
+        (["bands", "lights"], ""),
+        (["band"], "did you mean shviewer help bands?; "),
+        (["Godot"], "it is spoken of in command-line, programs; "),
+    ],
+)
 def test_a_topic_that_is_none_is_answered_by_those_there_are(
-    topics: list[str], capsys: pytest.CaptureFixture[str]
+    topics: list[str], hint: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["help", *topics]) == 2
     told = capsys.readouterr().err
-    assert told.startswith(f"shviewer: no help on {' '.join(topics)!r}; topics of shviewer help: guide, ")
+    assert told.startswith(f"shviewer: no help on {' '.join(topics)!r}; {hint}topics of shviewer help: guide, ")
     assert told.count("\n") == 1
 
 

@@ -134,7 +134,6 @@ def test_an_exception_of_two_lines_is_one_line_too():
     ("function", "shape"),
     [
         (lambda d: 1.0, "()"),
-        (lambda d: None, "()"),
         (lambda d: d[:, :2], "(7, 2)"),
         (lambda d: d.T, "(3, 7)"),
         (lambda d: d[:, :1], "(7, 1)"),
@@ -145,6 +144,31 @@ def test_an_exception_of_two_lines_is_one_line_too():
 def test_another_shape_is_refused_with_both_shapes(function, shape):
     expected = f"for directions of shape (7, 3) the function returned shape {shape}; it must be (7, 3) or (7,)"
     assert error_of(function) == f"sky: {expected}"
+
+
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [
+        (lambda d: None, "returned None; end it with return radiance"),
+        (lambda d: 1j * d, "returned values of type complex128; radiance is plain real numbers"),
+        (lambda d: np.ma.masked_less(d, 0), "returned a masked array; radiance is plain real numbers"),
+        (lambda d: ["bright"] * len(d), "returned what is no array of numbers ("),
+        (
+            lambda: 1.0,
+            "raised TypeError: <lambda>() takes 0 positional arguments but 1 was given; it is called with all",
+        ),
+    ],
+    ids=["none", "complex", "masked", "text", "no parameter"],
+)
+def test_what_is_no_radiance_is_said_without_a_place_in_this_program(function, said):
+    line = error_of(function)
+    assert line.startswith(f"sky: the function {said}")
+    assert "function.py" not in line
+
+
+def test_a_function_of_a_single_direction_is_told_that_it_gets_all_at_once():
+    line = error_of(lambda d: max(0.0, d[2]))
+    assert line.endswith("; it is called with all directions at once, an array (7, 3)")
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])

@@ -3,33 +3,65 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Collection
+import os
+import shlex
+import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shviewer.errors import UsageError
-from shviewer.outputs import Replacing
+from shviewer.errors import LightError, UsageError
+from shviewer.outputs import Replacing, may_be_replaced
 from shviewer.words import meant
 
 if TYPE_CHECKING:
     from shviewer.lights.reading import Reading
     from shviewer.viewer.saving.restoring import Restored
 
+LIGHT = "green"
+"""The light that stands for none."""
+
 
 def lights_of(options: argparse.Namespace) -> list[str]:
     """What is given as LIGHT, or what stands for it."""
     given = vars(options)
-    return given.get("lights") or [given.get("light", "green")]
+    return given.get("lights") or [given.get("light", LIGHT)]
 
 
-def check_ending(options: argparse.Namespace, mode: str, endings: Collection[str]) -> None:
-    """UsageError if OUT is no file of a kind that the command writes. It says so when OUT and LIGHT changed places."""
-    if options.out.suffix.lower() in endings:
+def lights_within(options: argparse.Namespace) -> list[str]:
+    """What is given as LIGHT, folders replaced by the lights that they hold. LightError if they hold none."""
+    from shviewer.lights.several import several
+
+    given = lights_of(options)
+    if not any(map(os.path.isdir, given)):
+        return given
+    found = several(given, code=True)
+    if not found.lights:
+        raise LightError(f"{given[0]}: no light in it; name a file")
+    for line in found.said:
+        print(f"shviewer: note: {line}", file=sys.stderr)
+    return list(found.lights)
+
+
+def check_out(options: argparse.Namespace, mode: str, endings: Sequence[str]) -> None:
+    """UsageError if OUT is no file of a kind that the command writes. It says the command if OUT and LIGHT changed places."""
+    out, light = options.out, lights_of(options)[0]
+    fits = out.suffix.lower() in endings
+    if fits and (options.force or may_be_replaced(out)):
         return
-    swapped = Path(options.light).suffix.lower() in endings
-    advice = f"; OUT comes first: shviewer {mode} {options.light} {options.out}" if swapped else ""
-    raise UsageError(f"{options.out}: OUT must end in {' or '.join(endings)}{advice}")
+    meant = out.with_suffix(endings[0]) if light == LIGHT and not fits else Path(light)
+    if _names_light(out) and meant.suffix.lower() in endings and may_be_replaced(meant):
+        raise UsageError(f"{out}: OUT comes before LIGHT: {shlex.join(['shviewer', mode, str(meant), str(out)])}")
+    if not fits:
+        such = f", such as {out.with_suffix(endings[0])}" if out.name else ""
+        raise UsageError(f"{out}: OUT must end in {' or '.join(endings)}{such}")
+
+
+def _names_light(path: Path) -> bool:
+    from shviewer.lights.find import built_in_lights
+
+    return path.is_file() or str(path) in built_in_lights()
 
 
 def pictured_by(options: argparse.Namespace) -> Restored | None:
