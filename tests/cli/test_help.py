@@ -53,7 +53,7 @@ def test_a_page_is_paged_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: 
     ("topics", "hint"),
     [
         (["qqq"], ""),
-        (["bands", "lights"], ""),
+        (["bands", "lights"], "did you mean shviewer help bands?; "),
         (["band"], "did you mean shviewer help bands?; "),
         (["Godot"], "it is spoken of in command-line, programs; "),
     ],
