@@ -187,6 +187,8 @@ def test_a_bad_argument_is_one_line_with_its_value_and_the_rule(
         (["screenshot", "a.jpg", "sky.exr"], ["a.jpg: OUT must end in .png or .exr, such as a.png"]),
         (["screenshot", "green", "a.png"], ["OUT comes before LIGHT: shviewer screenshot a.png green"]),
         (["screenshot", "a.exr", "--reference", "b.png"], ["a.exr", "PNG"]),
+        (["screenshot", "a.png", "--size", "1920x960"], ["expected 2 arguments, as in --size W H"]),
+        (["screenshot", "a.png", "--bands"], ["expected one argument, as in --bands N"]),
         (["screenshot", "a.png", "--threshold", "2"], ["'2'", "0 to 1"]),
         (["screenshot"], ["OUT"]),
     ],

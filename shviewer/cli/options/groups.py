@@ -37,9 +37,13 @@ LARGE = ("samples",)
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """An argparse parser that reports a mistake in one line on stderr, without the usage."""
+    """An argparse parser that reports a mistake in one line on stderr, without the usage, and says how many values are what."""
 
     def error(self, message: str) -> NoReturn:
+        for action in self._actions:
+            if action.metavar and message.startswith(f"argument {'/'.join(action.option_strings)}: expected "):
+                values = (action.metavar,) if isinstance(action.metavar, str) else action.metavar
+                message += f", as in {action.option_strings[0]} {' '.join(values)}"
         self.exit(2, f"shviewer: {one_line(message)}; see {self.prog} --help\n")
 
 
