@@ -7,6 +7,7 @@ In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT
     exit codes
     found images            which program writes what
     found lists             the same of coefficients
+    bands needed            how many bands the lights of assets/report/ need
     programs                what programs show that are run in tests/clients/
     options MODE MODE ...   the options that all of these modes have and no other has; the window's mode is called "view"
 
@@ -28,7 +29,9 @@ from lights.found_images import table as found_images
 from places import ROOT
 from shell_files import write_shell_files
 
+from shviewer.benchmark.measuring.bands import BANDS_KEY
 from shviewer.benchmark.page import plots
+from shviewer.benchmark.page.bands_page import needed_table
 from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.writing import as_markdown
 from shviewer.benchmark.rows.report import read_report
@@ -37,6 +40,8 @@ from shviewer.viewer.keys import key_table
 
 MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 
+
+REPORT = ROOT / "assets" / "report"
 
 CONVENTION = re.compile(r"^(\| `([\w-]+)` \| (?:kept|none) \|.*\|)[^|\n]*\|$", re.MULTILINE)
 """A row of the table of conventions, whose last cell is how far off the program shows it."""
@@ -57,6 +62,9 @@ def generated(what: str) -> str:
         return found_images()
     if what == "programs":
         return programs()
+    if what == "bands needed":
+        found = read_report(REPORT / "report.json").extra[BANDS_KEY]
+        return "\n".join(["", *needed_table(found), "", ""])
     if what == "found lists":
         return found_lists()
     texts = {"keys": key_table(), "usage": usage(), "exit codes": exit_codes()}
@@ -109,4 +117,4 @@ if __name__ == "__main__":
     for page in PAGES:
         page.write_text(written_anew(page.read_text(encoding="utf-8")), encoding="utf-8")
     write_shell_files()
-    write_report_anew(ROOT / "assets" / "report")
+    write_report_anew(REPORT)

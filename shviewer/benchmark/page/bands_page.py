@@ -36,10 +36,18 @@ on the way."""
 
 
 def needed_lines(page: Page) -> list[str]:
-    """A line per light, and one more for what is left of it without its suns."""
+    """The answer, the table and the plot."""
     found = page.report.extra.get(BANDS_KEY)
     if not found:
         return []
+    leave = "*3 leave* and its neighbours: the error of the light as seen, with so many bands."
+    picture = page.picture(BANDS_STEM, "Relative L2 error of the first 1, 2, 3, ... bands of each light")
+    answer = textwrap.fill(f"**{_answer(found)}**", MOST_COLUMNS, break_on_hyphens=False)
+    return [answer, "", NEEDED, "", *needed_table(found), "", leave, "", *picture]
+
+
+def needed_table(found: Mapping[str, Any]) -> list[str]:
+    """A row per light, and one more for what is left of it without its suns. found: the report's `extra` on bands."""
     tolerances = list(next(iter(found.values()))["whole"][QUANTITIES[0]]["within"])
     within = [
         f"{seen} within {100 * float(tolerance):g} %" if number == 0 else f"{100 * float(tolerance):g} %"
@@ -48,10 +56,7 @@ def needed_lines(page: Page) -> list[str]:
     ]
     leave = [f"{n} leave" for n in LEAVE]
     rows = [_needed_row(name, needs) for name, needs in _with_and_without_suns(found)]
-    picture = page.picture(BANDS_STEM, "Relative L2 error of the first 1, 2, 3, ... bands of each light")
-    after = f"*{leave[0]}* and its neighbours: the error of the light as seen, with so many bands."
-    answer = textwrap.fill(f"**{_answer(found)}**", MOST_COLUMNS, break_on_hyphens=False)
-    return [answer, "", NEEDED, "", *table(("light", *within, *leave), rows), "", after, "", *picture]
+    return table(("light", *within, *leave), rows)
 
 
 def _answer(found: Mapping[str, Any]) -> str:
