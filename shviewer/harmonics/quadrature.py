@@ -17,7 +17,7 @@ from math import isqrt
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.evaluation.indices import Array
 from shviewer.limits import MAX_SAMPLES
 
 NEWTON_STEPS = 8

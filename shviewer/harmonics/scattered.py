@@ -6,24 +6,21 @@ table, applied once at the end. There are two pairs of functions:
 
     few bands   {Re, Im} (x + iy)^m and z^k (scattered_powers.py): the cheapest, but the sums of powers lose a third of a digit
                 per band;
-    more        {cos, sin}(m phi), for odd m times sin(theta), and T(k)(z) = cos(k theta), into which theta_series.py expands
-                the Legendre functions. No value is much larger than 1, so that nothing cancels.
-
-No angle is computed: sin(theta) {cos, sin}(phi) are x and y, and those of 2 phi are (x^2 - y^2) and 2xy over x^2 + y^2.
+    more        {cos, sin}(m phi) and T(k)(z) = cos(k theta) (evaluation/waves.py), which do not cancel.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, check_bands, evaluate_basis, normalise
+from shviewer.harmonics.basis import Array, check_bands, evaluate_basis
+from shviewer.harmonics.evaluation.waves import Waves, wave_table
 from shviewer.harmonics.quadrature import DirectionSet, Radiance
-from shviewer.harmonics.scattered_powers import NOT_UNIT, POWER_BANDS, PowerSums
-from shviewer.harmonics.theta_series import degrees_and_orders, theta_series
+from shviewer.harmonics.scattered_powers import POWER_BANDS, PowerSums
+from shviewer.harmonics.theta_series import degrees_and_orders
 from shviewer.harmonics.workspace import borrowed
 from shviewer.progress import tell
 
@@ -44,9 +41,6 @@ SMALL_PRODUCT, SLICED_BANDS = 900_000, 20
 
 KEPT_VALUES = 100_000
 """Samples times bands up to which the memory of a projection, up to 7 MiB, is kept for the next: fetching it takes as long."""
-
-AT_A_POLE = 1e-200
-"""Where x^2 + y^2 is less than this it has lost its digits, and the azimuth cannot matter."""
 
 
 def project_samples(radiance: Radiance, samples: DirectionSet, n_bands: int) -> Array:
@@ -120,113 +114,29 @@ class _WaveSums:
         self.n_bands = n_bands
         self.slices = 1 if n_bands >= SLICED_BANDS else 1 + 6 * n_bands**2 * block // SMALL_PRODUCT
         length = -(-block // (8 * self.slices)) * 8 * self.slices
-        self.points = np.empty((3, length))
-        self.squares = np.empty((3, length))
-        self.azimuth = np.empty((2, n_bands, length))  # {cos, sin}, m
-        self.azimuth[0, 0], self.azimuth[1, 0] = 1, 0
+        self.waves = Waves(n_bands, length)
         self.weighted = np.empty((n_bands, 3, length))  # function k of z times each channel
-        self.scratch = np.empty((3, length))
         self.values = np.empty((2, 3, length))  # as they are, and with the sign of z
-        self.waves = np.empty((n_bands, length))
         self.sums = np.zeros((2 * n_bands, 3 * n_bands))
 
     def restart(self) -> None:
         self.sums[:] = 0
 
     def add(self, directions: Array, values: Array, weights: Array | float) -> None:
-        self.points[:, : len(directions)] = directions.T
+        """As in _Sums. T(k)(|z|) serves both hemispheres: for odd k the values take the sign of z."""
         np.multiply(values.T, weights, out=self.values[0, :, : len(directions)])
-        self.points[:, len(directions) :] = [[0], [0], [1]]
         self.values[0, :, len(directions) :] = 0
-        if not self._square():
-            self.points[...] = normalise(self.points.T).T
-            self._square()
-        self._fill_waves()
-        left = self.azimuth.reshape(2 * self.n_bands, self.slices, -1).transpose(1, 0, 2)
+        self.waves.take(directions)
+        np.multiply(self.values[0], self.waves.south(), out=self.values[1])
+        for parity in (0, 1):
+            np.multiply(self.waves.chebyshev[parity::2, None], self.values[parity], out=self.weighted[parity::2])
+        left = self.waves.azimuth.reshape(2 * self.n_bands, self.slices, -1).transpose(1, 0, 2)
         right = self.weighted.reshape(3 * self.n_bands, self.slices, -1).transpose(1, 2, 0)
         self.sums += np.matmul(left, right).sum(axis=0)
 
     def coefficients(self) -> Array:
         n = self.n_bands
         sums = self.sums.reshape(2, n, n, 3).transpose(1, 2, 0, 3).reshape(n, n, 6)
-        by_order = np.matmul(_wave_table(n), sums).reshape(n, n, 2, 3)
+        by_order = np.matmul(wave_table(n), sums).reshape(n, n, 2, 3)
         degree, order, sine = degrees_and_orders(n)
         return np.asarray(by_order[order, degree, sine])
-
-    def _square(self) -> bool:
-        """Fill the squares, and the first row of scratch with x^2 + y^2; whether all directions are unit."""
-        with np.errstate(over="ignore"):
-            np.multiply(self.points, self.points, out=self.squares)
-        np.add(self.squares[0], self.squares[1], out=self.scratch[0])
-        norms = np.add(self.scratch[0], self.squares[2], out=self.scratch[1])
-        return bool(norms.min() > 1 - NOT_UNIT and norms.max() < 1 + NOT_UNIT)  # NaN is not
-
-    def _fill_waves(self) -> None:
-        """Fill with waves. T(k)(|z|) serves both hemispheres: for odd k the values take the sign of z."""
-        self._fill_azimuth()
-        self._fill_chebyshev()
-        sign = np.copysign(1, self.points[2], out=self.scratch[1])
-        np.multiply(self.values[0], sign, out=self.values[1])
-        for parity in (0, 1):
-            np.multiply(self.waves[parity::2, None], self.values[parity], out=self.weighted[parity::2])
-
-    def _fill_azimuth(self) -> None:
-        """Fill in e^(im phi), for odd m times sin(theta): e^(i(b+a)) = e^(i(a-b)) + 2i sin(b) e^(ia), for b = 2, 4, 8, ...
-
-        The step is a rotation that has no cancellation where sin(b) is small, as cos(b+a) = 2 cos(b) cos(a) - cos(b-a) has.
-        """
-        x, y, _ = self.points
-        cosines, sines = self.azimuth
-        cosines[1], sines[1] = x, y
-        squared = self.scratch[0]
-        if squared.min() < AT_A_POLE:
-            squared = np.where(squared < AT_A_POLE, 1, squared)
-        np.divide(np.subtract(self.squares[0], self.squares[1], out=cosines[2]), squared, out=cosines[2])
-        np.divide(np.multiply(2 * x, y, out=sines[2]), squared, out=sines[2])
-        b = 2
-        while b < self.n_bands:
-            twice = np.multiply(2, sines[b], out=self.scratch[1])
-            count = min(b, self.n_bands - b)
-            real = np.multiply(sines[1:count], twice, out=cosines[b + 1 : b + count])
-            np.subtract(cosines[b - 1 : b - count : -1], real, out=real)
-            imaginary = np.multiply(cosines[1:count], twice, out=sines[b + 1 : b + count])
-            imaginary -= sines[b - 1 : b - count : -1]
-            if 2 * b < self.n_bands:
-                np.multiply(twice, cosines[b], out=sines[2 * b])
-                np.subtract(1, np.multiply(twice, sines[b], out=twice), out=cosines[2 * b])
-            b *= 2
-
-    def _fill_chebyshev(self) -> None:
-        """Fill in T(k) by W(k) = 1 - T(k)(|z|), which keeps its digits next to the poles: for b = 1, 2, 4, ...
-
-        W(b+a) = 2 W(b) + (2 - 2 W(b)) W(a) - W(b-a).
-        """
-        waves = self.waves
-        np.divide(self.scratch[0], np.add(np.abs(self.points[2]), 1, out=waves[1]), out=waves[1])
-        waves[0] = 0
-        b = 1
-        while b < self.n_bands - 1:
-            count = min(b, self.n_bands - 1 - b)
-            twice = np.multiply(2, waves[b], out=self.scratch[1])
-            factor = np.subtract(2, twice, out=self.scratch[2])
-            new = np.multiply(waves[1 : count + 1], factor, out=waves[b + 1 : b + count + 1])
-            new += twice
-            new -= waves[b - 1 :: -1][:count]
-            b *= 2
-        np.subtract(1, waves, out=waves)
-
-
-@lru_cache(maxsize=8)
-def _wave_table(n_bands: int) -> Array:
-    """The coefficient of T(k)(z) in Y(l, m) over {cos, sin}(m phi), and for odd m over sin(theta), too: (m, l, k).
-
-    sin(k theta) / sin(theta) = 2 T(k-1) + 2 T(k-3) + ..., with T(0) once.
-    """
-    table = theta_series(n_bands).copy()
-    odd = table[1::2]
-    odd[..., :-1], odd[..., -1] = 2 * odd[..., 1:], 0
-    for k in range(n_bands - 3, -1, -1):
-        odd[..., k] += odd[..., k + 2]
-    odd[..., 0] /= 2
-    table.flags.writeable = False
-    return table

@@ -10,13 +10,11 @@ from functools import lru_cache
 import numpy as np
 
 from shviewer.harmonics.basis import Array, normalisation, normalise
+from shviewer.harmonics.evaluation.waves import NOT_UNIT
 from shviewer.harmonics.theta_series import degrees_and_orders
 
 POWER_BANDS = 6
 """The most bands for which powers are used; the magnitudes in their table add up to 18, for an error of 1e-14."""
-
-NOT_UNIT = 1e-14
-"""Directions are normalised if x^2 + y^2 + z^2 is further from 1 than this."""
 
 SLICE = 2500
 """Samples in one product: below a million multiplications, OpenBLAS reads operands in place."""

@@ -17,7 +17,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from shviewer.harmonics.basis import Array, Indices, check_bands, evaluate_basis, normalisation
+from shviewer.harmonics.evaluation.indices import Array, Indices, check_bands
+from shviewer.harmonics.evaluation.recurrence import evaluate_by_recurrence, normalisation
 from shviewer.harmonics.quadrature import column_azimuths
 
 MAX_SEPARABLE_BANDS = 512
@@ -43,7 +44,7 @@ def theta_series(n_bands: int) -> Array:
     check_bands(n_bands, TABLE_BANDS)
     angle, weights = _quarter(n_bands)
     circle = np.stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)], axis=-1)
-    basis = evaluate_basis(circle, n_bands).T
+    basis = evaluate_by_recurrence(circle, n_bands)
     wave = angle[:, None] * np.arange(n_bands)
     series = np.zeros((n_bands, n_bands, n_bands))
     for m in range(n_bands):

@@ -26,8 +26,8 @@ from shviewer.harmonics.areas.chebyshev import (
     point_count,
     points_from_series,
 )
+from shviewer.harmonics.areas.cycling import cycled
 from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.cycling import cycled
 
 GROUPS = 4
 """Groups of neighbouring lines, over equal angles, that share their points: directions are smooth across lines, too."""

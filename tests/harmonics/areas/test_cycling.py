@@ -1,11 +1,11 @@
-"""What shviewer.harmonics.cycling promises: a function whose axes are exchanged cyclically."""
+"""What shviewer.harmonics.areas.cycling promises: a function whose axes are exchanged cyclically."""
 
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
 
+from shviewer.harmonics.areas.cycling import cycled
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.cycling import cycled
 
 
 @pytest.mark.parametrize("n_bands", [1, 2, 3, 9, 40])
