@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 
 MOST_CHARACTERS = 1000
 """The longest line that is made of text from outside: names of files, descriptions, what a library says."""
@@ -48,6 +48,11 @@ def _plain(text: str) -> str:
 def counted(count: int, noun: str) -> str:
     """ "1 band", "5 bands" """
     return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def all_of(words: Sequence[str]) -> str:
+    """ "a", "a and b", "a, b and c"; "" for none"""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 def theta_phi_degrees(direction: Iterable[float]) -> tuple[float, float]:

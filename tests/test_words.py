@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from shviewer.words import (
+    all_of,
     brief_percent,
     counted,
     grouped,
@@ -72,3 +73,8 @@ def test_a_word_that_is_nearly_a_choice_is_asked_for(text: str, advice: str) -> 
     for other in ("", "xyz", "12", "blender"):
         assert meant(other, choices) == f"it must be one of {', '.join(choices)}"
         assert meant(other, choices, "none") == "none"
+
+
+def test_words_in_a_row_end_on_an_and() -> None:
+    said = [all_of(list("abc")[:count]) for count in range(4)]
+    assert said == ["", "a", "a and b", "a, b and c"]

@@ -17,7 +17,7 @@ from shviewer.coefficients.reading import CoefficientFile, interpreted
 from shviewer.coefficients.texts import convention_text
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
-from shviewer.words import brief_percent
+from shviewer.words import all_of, brief_percent
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ def recognise(listed: Listed, exact: Array) -> Recognised:
 
 def _alike(best: _Fit, plain: list[_Fit]) -> str:
     same = [fit.text for fit in plain if fit.text != best.text and fit.error <= max(ALIKE * best.error, TINY)]
-    alike = " and ".join(filter(None, [", ".join(same[:-1]), *same[-1:]]))
+    alike = all_of(same)
     return f", as {alike} would" if alike else ""
 
 

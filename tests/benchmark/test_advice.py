@@ -133,3 +133,10 @@ def test_a_tolerance_that_no_row_reaches_is_not_made_up(record: LightRecord) -> 
     assert sentences(record, [row("best", 9, 0.1, 0.11)]) == [
         "for a total error of 5 %: 15 bands, but nothing measured is within it; give it a larger --budget."
     ]
+
+
+def test_tolerances_of_which_the_same_can_be_said_share_a_sentence(record: LightRecord) -> None:
+    """Of coefficients, which their own bands hold whole, the same sentence stood there three times."""
+    given = replace(record, bands_within={"0.1": 3, "0.05": 3, "0.01": 3}, error_by_bands=[0.9, 0.5, 0.0])
+    (said,) = sentences(given, [row("best", 3, 0.1, 0.0)])
+    assert said.startswith("for a total error of 10 %, 5 % and 1 %: 3 bands, fastest by closed form")

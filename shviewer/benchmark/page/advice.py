@@ -12,7 +12,7 @@ from shviewer.benchmark.page.tables import error, milliseconds
 from shviewer.benchmark.rows.report import LightRecord
 from shviewer.benchmark.rows.row import Row, alike
 from shviewer.harmonics.metrics import PARSEVAL_FLOOR, pareto_front
-from shviewer.words import counted, grouped
+from shviewer.words import all_of, counted, grouped
 
 
 def front_of(rows: Sequence[Row], accuracy: float = 0.0) -> list[Row]:
@@ -34,29 +34,26 @@ def front_of(rows: Sequence[Row], accuracy: float = 0.0) -> list[Row]:
 def sentences(record: LightRecord, rows: Sequence[Row]) -> list[str]:
     """One sentence per tolerance: the method that reaches it in the least time, and how the paper's samples do there.
 
-    rows: the projections of this light. Tolerances that no number of bands reaches share a sentence.
+    rows: the projections of this light. Tolerances of which the same can be said share a sentence.
     """
-    found = []
+    found: dict[str, list[str]] = {}
     needs = {float(tolerance): count for tolerance, count in record.bands_within.items()}
     for tolerance in sorted(needs, reverse=True):
         needed = needs[tolerance]
         if needed is None:
             less = "" if tolerance == min(needs) else " or less"
             most = len(record.error_by_bands)
-            found.append(
-                f"for a total error of {100 * tolerance:g} %{less}: more than {most} bands, whatever the method, since the"
-                f" exact first {most} leave {error(record.error_by_bands[-1])}."
-            )
+            words = f"more than {most} bands, whatever the method, since the exact first {most} leave"
+            found[f"{words} {error(record.error_by_bands[-1])}."] = [f"{100 * tolerance:g} %{less}"]
             break
-        found.append(_sentence(record, tolerance, needed, rows))
-    return found
+        found.setdefault(_what_reaches(record, tolerance, needed, rows), []).append(f"{100 * tolerance:g} %")
+    return [f"for a total error of {all_of(goals)}: {said}" for said, goals in found.items()]
 
 
-def _sentence(record: LightRecord, tolerance: float, needed: int, rows: Sequence[Row]) -> str:
-    goal = f"for a total error of {100 * tolerance:g} %: "
+def _what_reaches(record: LightRecord, tolerance: float, needed: int, rows: Sequence[Row]) -> str:
     good = [row for row in rows if row.measured and _number(row.total_error, math.inf) <= tolerance * (1 + 1e-12)]
     if not good:
-        return f"{goal}{counted(needed, 'band')}, but nothing measured is within it; give it a larger --budget."
+        return f"{counted(needed, 'band')}, but nothing measured is within it; give it a larger --budget."
     fewest = min(row.n_bands or 0 for row in good)
     good = [row for row in good if row.n_bands == fewest]
     winner = min(good, key=lambda row: (row.milliseconds, row.total_error))
@@ -64,7 +61,7 @@ def _sentence(record: LightRecord, tolerance: float, needed: int, rows: Sequence
     name = words_for(winner, record)
     samples = "" if winner.samples is None else f", {grouped(winner.samples)} samples,"
     parts = [
-        f"{goal}{counted(fewest, 'band')}, fastest by {name}{samples} in {milliseconds(winner.milliseconds)} ms, which"
+        f"{counted(fewest, 'band')}, fastest by {name}{samples} in {milliseconds(winner.milliseconds)} ms, which"
         f" leaves {error(winner.total_error)}"
     ]
     rivals = [row for row in rows if row.n_bands == winner.n_bands and row is not winner and row.measured]

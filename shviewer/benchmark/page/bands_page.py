@@ -12,7 +12,7 @@ from shviewer.benchmark.measuring.bands import BANDS_KEY, LEAVE, QUANTITIES, ROU
 from shviewer.benchmark.measuring.measured_lights import MOST_BANDS
 from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, bullet, error, table
-from shviewer.words import counted
+from shviewer.words import all_of, counted
 
 BANDS_STEM, ROUGHNESS_STEM = "error-bands", "roughness-bands"
 """The file stems of the plots in the two sections."""
@@ -74,16 +74,12 @@ def _answer(found: Mapping[str, Any]) -> str:
     counts: dict[str, list[str]] = {}
     for name, count in sorted(seen.items(), key=lambda light: _infinite(light[1])):
         counts.setdefault(f"more than {MOST_BANDS}" if count is None else str(count), []).append(name)
-    parts = [f"{count} for {_all_of(names)}" for count, names in counts.items()]
-    return f"Within {100 * float(ASKED):g} %: {shading} with {lights}; to be seen it takes {_all_of(parts)}."
+    parts = [f"{count} for {all_of(names)}" for count, names in counts.items()]
+    return f"Within {100 * float(ASKED):g} %: {shading} with {lights}; to be seen it takes {all_of(parts)}."
 
 
 def _infinite(count: int | None) -> float:
     return math.inf if count is None else count
-
-
-def _all_of(words: Sequence[str]) -> str:
-    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
 
 
 def _with_and_without_suns(found: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -112,7 +113,7 @@ def as_markdown(page: Page) -> str:
     if report.left_out:
         lines += ["", "Not measured for want of time; a larger --budget measures more:", ""]
         lines += [bullet(line) for line in report.left_out]
-    return "\n".join([*lines, "", *_made_with(report)]) + "\n"
+    return re.sub(r"\n{3,}", "\n\n", "\n".join([*lines, "", *_made_with(report)])) + "\n"
 
 
 def _made_with(report: Report) -> list[str]:

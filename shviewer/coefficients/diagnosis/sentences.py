@@ -13,6 +13,7 @@ from shviewer.coefficients.parts.channels import BY_CHANNEL, INTERLEAVED
 from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, is_over_pi, whole
 from shviewer.coefficients.parts.rows import ORDERS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
+from shviewer.words import all_of
 
 NO_PHASE = "without the Condon-Shortley phase"
 HALF_TURN = f"{NO_PHASE}, or of the map turned by half a turn, which is the same"
@@ -25,7 +26,7 @@ def words(convention: Convention, named: Convention | None = None) -> str:
     plain = named == replace(CONVENTIONS[named.name], quantity=named.quantity)
     if base.name != named.name or not plain or not found:
         found.insert(0, f"in the convention of {base.name}")
-    return " and ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found)
+    return all_of(found)
 
 
 def differences(convention: Convention) -> list[str]:
