@@ -107,7 +107,10 @@ def _roughness(information: Information) -> list[tuple[str, str]]:
     """What glossy surfaces some numbers of bands serve, up to the first that serves a mirror."""
     told: list[str] = []
     for served in information.roughness_served:
-        told.append(f"{served.bands}{',' if told else ' serve'} {served.words.removeprefix('roughness ')}")
+        words = served.words.removeprefix("roughness ")
+        told.append(
+            f"{served.bands}, {words.replace('and rougher', 'on')}" if told else f"{served.bands} serve {words}"
+        )
         if not served.words.startswith(("roughness", "no")):
             break
     return [("bands, roughness", f"for 5 %: {'; '.join(told)}")] if told else []
