@@ -270,6 +270,25 @@ def test_the_bound_of_the_largest_error_of_a_shipped_image_is_close(name: str, n
     closely_bounded(name, n_bands)
 
 
+@pytest.mark.parametrize("n_bands", [64, 128])
+def test_the_noise_of_an_image_of_few_texels_does_not_open_the_bound_of_many_bands(n_bands: int) -> None:
+    """256 x 128 texels: in cells that do not begin at texels, the bend of their noise left 1.9 times the error."""
+    closely_bounded("mud_road_puresky", n_bands)
+
+
+@pytest.mark.parametrize(("height", "rows"), [(5, 15), (12, 12), (12, 36)])
+def test_a_raster_is_bilinear_in_the_cells_of_a_grid_that_is_aligned(height: int, rows: int) -> None:
+    raster = Raster(np.random.default_rng(height).random((height, 2 * height, 3)).astype(np.float32))
+    assert raster.aligned_rows(rows) == rows
+    down, across = ((np.arange(count) + 0.5) * height / rows - 0.5 for count in (rows, 2 * rows))
+    values = raster.on_grid(rows)
+    np.testing.assert_allclose(values.swapaxes(1, 2), raster.at(down[:, None], across), rtol=0, atol=1e-12)
+    middles = raster.at(down[:-1, None] + 0.5 * height / rows, across[:-1] + 0.5 * height / rows)
+    corners = [values[i : i + rows - 1, :, j : j + 2 * rows - 1] for i in (0, 1) for j in (0, 1)]
+    np.testing.assert_allclose(middles, np.mean(corners, axis=0).swapaxes(1, 2), rtol=0, atol=1e-12)
+    assert raster.aligned_rows(height // 2) is None  # texels are finer than that
+
+
 def test_a_hemisphere_misses_just_half_of_its_step() -> None:
     """A reconstruction is odd about the horizon, up to its mean, so that both sides of the step are missed by 1/2."""
     light = find_light("hemisphere")

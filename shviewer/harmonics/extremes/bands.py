@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
-from shviewer.harmonics.extremes.waves import Waves
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
+from shviewer.harmonics.extremes.both_sides import Found, largest_magnitude
+from shviewer.harmonics.quadrature import row_angles
 from shviewer.harmonics.synthesis import Synthesis
 
 SPARSE_BANDS = 128
@@ -36,10 +35,8 @@ class Bands:
         kept = max(1, int(np.argmax(tails <= most)))
         return difference[: kept**2], self.room + float(tails[kept])
 
-    def largest_error(
-        self, shown: Array, n_rows: int, least: float, share: float, negligible: float
-    ) -> tuple[float, Array, float]:
-        """The largest error of a reconstruction (n**2, 3) that is found, its direction (3,), and a bound.
+    def largest_error(self, shown: Array, n_rows: int, least: float, share: float, negligible: float) -> Found:
+        """The largest error of a reconstruction (n**2, 3).
 
         n_rows: at least so many rows are looked at. least: about the error there is on some grid; bands that hold less than a
         quarter of its `share` are left out. The bound ends above what is found by about `share` of it, or by `negligible`.
@@ -47,25 +44,11 @@ class Bands:
         difference, left_out = self.less(shown, share / 4 * least)
         synthesis, heights = Synthesis(difference), band_heights(difference)
         n_rows = max(n_rows, (4 if len(heights) <= SPARSE_BANDS else 2) * len(heights))
-        theta, phi = row_angles(n_rows), column_azimuths(2 * n_rows)
-        values = synthesis.on_rows(theta, len(phi))
-        ends = [int(values.argmin()), int(values.argmax())]
-        row, _, column = np.unravel_index(max(ends, key=lambda at: abs(values.flat[at])), values.shape)
-
-        def climbed(theta: float, phi: float) -> tuple[float, Array]:
-            start = directions_from_angles(np.array([theta]), np.array([phi]))
-            found, places = climb(
-                lambda d: np.abs(synthesis.in_directions(d)).max(axis=1), start, np.pi / n_rows / 2, DISPLAY_ROUNDS
-            )
-            return float(found[0]), places[0]
-
-        found, place = climbed(theta[row], phi[column])
-        tolerance = max(share * found, negligible)
-        sides = [Waves(signed, heights).lowest(-found, tolerance) for signed in (values, -values)]
-        deepest = min(sides, key=lambda side: side.lowest)
-        if -deepest.lowest > found + tolerance / 2:
-            found, place = max((found, place), climbed(deepest.theta, deepest.phi), key=lambda pair: pair[0])
-        return found, place, left_out - min(side.bound for side in sides)
+        values = synthesis.on_rows(row_angles(n_rows), 2 * n_rows)
+        found = largest_magnitude(
+            values, None, heights, lambda d: np.abs(synthesis.in_directions(d)).max(axis=1), share, negligible
+        )
+        return found._replace(bound=found.bound + left_out)
 
 
 def band_heights(coefficients: Array) -> Array:

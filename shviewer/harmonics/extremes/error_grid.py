@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.bands import Bands, band_heights
+from shviewer.harmonics.extremes.both_sides import Found, largest_magnitude
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, Objective, climb
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.extremes.raster_error import Search
@@ -26,9 +27,6 @@ TOLERANCE = 8e-4
 
 RING_POINTS = 32
 """Points a band along the edge of a lobe, where the tables do not say where the largest error is."""
-
-MOST_OPEN = 1500
-"""With more cells than this in which the minimum could be, the tables of lobes find it sooner than the grid."""
 
 BLOCKS = 6
 """The blocks of the grid from whose highest cells the largest error is climbed to."""
@@ -79,17 +77,6 @@ class _Seen(NamedTuple):
     synthesis: Synthesis
     values: Array
     waves: Waves
-
-
-class _Found(NamedTuple):
-    """An extreme value, its direction (3,), and a bound on the far side of it."""
-
-    value: float
-    direction: Array
-    bound: float = np.inf
-
-    def or_larger(self, other: _Found) -> _Found:
-        return other if other.value > self.value else self
 
 
 class ErrorGrid:
@@ -168,42 +155,42 @@ class ErrorGrid:
         """What is no longer told apart in a reconstruction."""
         return NEGLIGIBLE * float(max(seen.waves.high.max(), -seen.waves.low.min()))
 
-    def _best(self, objective: Objective, starts: Array) -> _Found:
+    def _best(self, objective: Objective, starts: Array) -> Found:
         """The best of directions (k, 3), climbed from."""
         values, places = climb(objective, starts[[int(objective(starts).argmax())]], self._step / 2, DISPLAY_ROUNDS)
-        return _Found(float(values[0]), places[0])
+        return Found(float(values[0]), places[0])
 
-    def _lowest(self, seen: _Seen) -> _Found:
+    def _lowest(self, seen: _Seen) -> Found:
         def depth(directions: Array) -> Array:
             return np.asarray(-seen.synthesis.in_directions(directions).min(axis=1))
 
         row, _, column = (int(i) for i in np.unravel_index(int(seen.values.argmin()), seen.values.shape))
         start = directions_from_angles(self.theta[[row]], self.phi[[column]])
         values, places = climb(depth, start, self._step, DISPLAY_ROUNDS)
-        found = _Found(-float(values[0]), places[0], -np.inf)
+        found = Found(-float(values[0]), places[0], -np.inf)
         tolerance = max(TOLERANCE * abs(found.value), self._negligible(seen))
         bounded = seen.waves.lowest(found.value, tolerance)
         if bounded.lowest < found.value - tolerance / 2:
             deeper = self._best(depth, directions_from_angles(np.array([bounded.theta]), np.array([bounded.phi])))
-            found = min(found, _Found(-deeper.value, deeper.direction, -np.inf), key=lambda place: place.value)
+            found = min(found, Found(-deeper.value, deeper.direction, -np.inf), key=lambda place: place.value)
         return found._replace(bound=bounded.bound)
 
-    def _lowest_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> _Found:
-        negligible, low = self._negligible(seen), float(seen.waves.low.min())
-        if rest > negligible or seen.waves.open_cells(low, TOLERANCE * abs(low)) < MOST_OPEN:
-            return self._lowest(
-                seen
-            )  # the coefficients are those of samples, and not the light's own; or this is quicker
+    def _lowest_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> Found:
+        negligible = self._negligible(seen)
+        if rest > negligible or not lobes.on_one_axis:  # coefficients of samples are not the light's own
+            found = self._lowest(seen)
+            if rest > negligible or found.bound >= found.value - 2 * max(TOLERANCE * abs(found.value), negligible):
+                return found
         places, bound = lobes.shade(zonal).largest(TOLERANCE, negligible, magnitude=False)
         found = self._best(lambda d: -seen.synthesis.in_directions(d).min(axis=1), places)
-        return _Found(-found.value, found.direction, -bound - rest)
+        return Found(-found.value, found.direction, -bound - rest)
 
-    def _error_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> _Found:
+    def _error_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> Found:
         negligible = NEGLIGIBLE * self.peak
         places, bound = lobes.error(zonal).largest(TOLERANCE, negligible, magnitude=True)
         errors = self._error(seen, places)
         best = int(errors.argmax())
-        found = _Found(float(errors[best]), places[best], bound + rest)
+        found = Found(float(errors[best]), places[best], bound + rest)
         if rest <= negligible and bound <= found.value * (1 + 2 * TOLERANCE) + negligible:
             return found
         around = lobes.rings(RING_POINTS * seen.synthesis.n_bands)
@@ -211,23 +198,27 @@ class ErrorGrid:
         starts = starts[np.argsort(-self._error(seen, starts))[:BLOCKS]]
         return found.or_larger(self._climbed(seen, starts))._replace(bound=found.bound)
 
-    def _error_of_raster(self, seen: _Seen, raster: Raster) -> _Found:
-        negligible = NEGLIGIBLE * self.peak
+    def _error_of_raster(self, seen: _Seen, raster: Raster) -> Found:
+        negligible, rows = NEGLIGIBLE * self.peak, raster.aligned_rows(len(self.theta))
+        if rows is not None:
+            values = seen.values if rows == len(self.theta) else seen.synthesis.on_rows(row_angles(rows), 2 * rows)
+            heights, magnitude = seen.waves.heights, partial(self._error, seen)
+            return largest_magnitude(values, raster.on_grid(rows), heights, magnitude, TOLERANCE, negligible)
         error = Search(raster, seen.waves, self.original, seen.synthesis, TOLERANCE, negligible).run()
         direction = directions_from_angles(np.array([error.theta]), np.array([error.phi]))
-        found = _Found(float(self._error(seen, direction)[0]), direction[0], error.bound)
+        found = Found(float(self._error(seen, direction)[0]), direction[0], error.bound)
         if error.bound <= found.value * (1 + 2 * TOLERANCE):
             return found
         return found.or_larger(self._climbed(seen))._replace(bound=error.bound)
 
-    def _error_of_bands(self, seen: _Seen, bands: Bands) -> _Found:
+    def _error_of_bands(self, seen: _Seen, bands: Bands) -> Found:
         least = float(np.abs(seen.values - self.original).max())
-        return _Found(*bands.largest_error(seen.shown, len(self.theta), least, TOLERANCE, NEGLIGIBLE * self.peak))
+        return bands.largest_error(seen.shown, len(self.theta), least, TOLERANCE, NEGLIGIBLE * self.peak)
 
     def _error(self, seen: _Seen, directions: Array) -> Array:
         return np.asarray(np.abs(seen.synthesis.in_directions(directions) - self.radiance(directions)).max(axis=1))
 
-    def _climbed(self, seen: _Seen, others: Array | None = None) -> _Found:
+    def _climbed(self, seen: _Seen, others: Array | None = None) -> Found:
         """The largest error that is found from the grid, the landmarks and other directions (k, 3), without a bound."""
         difference = seen.values - self.original
         rows, columns = _highest_in_blocks(np.abs(difference, out=difference).max(axis=1))
@@ -235,11 +226,11 @@ class ErrorGrid:
         if others is not None:
             starts = np.concatenate([starts, others])
         errors, places = climb(partial(self._error, seen), starts, self._step, DISPLAY_ROUNDS)
-        best = _Found(float(errors.max()), places[int(errors.argmax())])
+        best = Found(float(errors.max()), places[int(errors.argmax())])
         if len(self.landmarks):
             there = np.abs(seen.synthesis.in_directions(self.landmarks) - self.landmark_radiance).max(axis=1)
             highest = int(there.argmax())
-            best = best.or_larger(_Found(float(there[highest]), self.landmarks[highest]))
+            best = best.or_larger(Found(float(there[highest]), self.landmarks[highest]))
         return best
 
     def _negative_energy(self, values: Array, shown: Array) -> float:

@@ -11,6 +11,9 @@ from shviewer.harmonics.basis import Array, Indices
 
 Texels = NDArray[np.float32]
 
+COARSE, ALMOST = 1.5, 0.9
+"""A raster is coarse for a grid that has at least the first part of its rows; another may have the second part of a grid's."""
+
 
 @dataclass(frozen=True, eq=False)
 class Raster:
@@ -20,6 +23,7 @@ class Raster:
     rows_on_poles: bool = False
     _ranges: dict[int, tuple[Texels, Texels]] = field(default_factory=dict, init=False, repr=False)
     _bends: dict[int, Texels] = field(default_factory=dict, init=False, repr=False)
+    _finer: dict[int, Array] = field(default_factory=dict, init=False, repr=False)
     """What was computed for grids, by their rows."""
 
     @property
@@ -57,6 +61,25 @@ class Raster:
     def units(self) -> tuple[float, float]:
         """Rows and columns between lines where it bends: beyond a pole, an odd row has its texels between the columns."""
         return 1.0, 0.5 if self.texels.shape[1] % 2 else 1.0
+
+    def aligned_rows(self, grid_rows: int) -> int | None:
+        """The rows of a grid, about as fine or finer, in whose cells it is bilinear; None if none is near.
+
+        An odd number of such rows to a row of texels has one through their centres; columns likewise.
+        """
+        height, width = self.texels.shape[:2]
+        if self.rows_on_poles or width != 2 * height or height > COARSE * grid_rows:
+            return None
+        parts = int(np.ceil(ALMOST * grid_rows / height))
+        return int(height * (parts + 1 - parts % 2))
+
+    def on_grid(self, rows: int) -> Array:
+        """Its values on the points of such a grid, (rows, 3, 2 rows)."""
+        if rows not in self._finer:
+            height = len(self.texels)
+            row, column = ((np.arange(count) + 0.5) * height / rows - 0.5 for count in (rows, 2 * rows))
+            self._finer[rows] = np.ascontiguousarray(self.at(row[:, None], column).swapaxes(1, 2), dtype=np.float64)
+        return self._finer[rows]
 
     def ranges(self, grid_rows: int) -> tuple[Texels, Texels]:
         """The lowest and the highest texel that bears on each cell of a grid (waves.py), (grid_rows + 1, 3, columns)."""

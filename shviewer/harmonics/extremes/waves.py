@@ -48,11 +48,13 @@ class Bounded(NamedTuple):
 class Waves:
     """A function of bands by its values (rows, channels, columns) on a lat-long grid of 2 rows columns.
 
-    heights: what each of its bands stays within in any channel, (n_bands,), or (n_bands, channels).
+    heights: what each of its bands stays within, (n_bands, channels). less: values like those of another function, which is
+    bilinear in each cell; `lowest` then bounds the difference, `values` and all else are those of the bands alone.
     """
 
-    def __init__(self, values: Array, heights: Array) -> None:
-        self.values = values
+    def __init__(self, values: Array, heights: Array, less: Array | None = None) -> None:
+        self.values, self.less = values, less
+        self.difference = values if less is None else values - less
         self.rows, self.columns = len(values), values.shape[2]
         self.step = float(np.pi / self.rows)
         self.reach = (len(heights) - 1) * self.step
@@ -75,7 +77,7 @@ class Waves:
 
         The first and the last row of cells lie across the poles.
         """
-        return self.corners(np.minimum, self.values)
+        return self.corners(np.minimum, self.difference)
 
     @cached_property
     def corners_high(self) -> Array:
@@ -99,10 +101,6 @@ class Waves:
         better(by_row[..., -1], by_row[..., 0], out=corners[..., -1])
         return corners
 
-    def open_cells(self, found: float, tolerance: float) -> int:
-        """The number of cells, times channels, that may be lower by their corners alone."""
-        return int(np.count_nonzero(self.corners_low < (found - tolerance + self.slack)[:, None]))
-
     def lowest(self, found: float, tolerance: float, effort: int = 1) -> Bounded:
         """A lower bound of all channels, not far below found - tolerance; found: a value that the function takes.
 
@@ -110,7 +108,7 @@ class Waves:
         """
         best = Bounded(found - tolerance, found, 0.0, 0.0)
         most = effort * min(self.values.size // SIEVED_SHARE, MOST_SIEVED)
-        cells = self._around(np.flatnonzero((self.values < (best.bound + self.slack)[:, None]).reshape(-1)), most)
+        cells = self._around(np.flatnonzero((self.difference < (best.bound + self.slack)[:, None]).reshape(-1)), most)
         if cells is None:
             low = self.corners_low - self.bends(below=True)
             cells = np.flatnonzero(low.reshape(-1) < best.bound)
@@ -199,7 +197,7 @@ class Waves:
         """The largest |second derivative| along theta and along phi in cells (k,), per radian squared: (k, 2, channels)."""
         channels = np.arange(self.values.shape[1])
         every = np.broadcast_arrays(row[:, None], channels, column[:, None])
-        points = self._points(every[0].ravel(), every[1].ravel(), every[2].ravel(), 4)
+        points = self._points(self.values, every[0].ravel(), every[1].ravel(), every[2].ravel(), 4)
         found = [np.abs(np.diff(points, 2, axis=axis)) for axis in (1, 2)]
         seen = np.stack([found[0][:, :, 1:3].max(axis=(1, 2)), found[1][:, 1:3].max(axis=(1, 2))], axis=1)
         seen = seen.reshape(len(row), len(channels), 2).swapaxes(1, 2)
@@ -219,16 +217,21 @@ class Waves:
 
     def _control(self, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
         """Bernstein coefficients (k, size, size) of the polynomials through the size x size points about cells (k,)."""
-        points = self._points(row, channel, column, size)
-        return np.asarray(points.reshape(-1, size**2) @ stencil(size)[2]).reshape(-1, size, size)
+        points = self._points(self.values, row, channel, column, size)
+        found = np.asarray(points.reshape(-1, size**2) @ stencil(size)[2]).reshape(-1, size, size)
+        if self.less is not None:  # those of a bilinear function are its values
+            corners, share = self._points(self.less, row, channel, column, 2), np.linspace(0, 1, size)
+            by_row = corners[:, :1] + np.diff(corners, axis=1) * share[:, None]
+            found -= by_row[..., :1] + np.diff(by_row, axis=2) * share
+        return found
 
-    def _points(self, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
-        """The size x size points about cells (k,), (k, size, size)."""
+    def _points(self, values: Array, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
+        """The size x size points of values like ours about cells (k,), (k, size, size)."""
         about = np.arange(size) - size // 2 + 1
         rows, turned = _mirrored(row[:, None] - 1 + about, self.rows)
         columns = column[:, None, None] + about + np.where(turned, self.columns // 2, 0)[:, :, None]
         start = (rows * self.values.shape[1] + channel[:, None]) * self.columns
-        return np.asarray(self.values.reshape(-1).take(start[:, :, None] + columns % self.columns))
+        return np.asarray(values.reshape(-1).take(start[:, :, None] + columns % self.columns))
 
 
 def _mirrored(rows: Indices, count: int) -> tuple[Indices, NDArray[np.bool_]]:

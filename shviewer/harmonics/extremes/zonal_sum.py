@@ -71,7 +71,7 @@ class Lobes:
         power, along = (np.add.reduceat((exact * other).sum(axis=1), first) for other in (exact, shown))
         kept = power > NOTHING * power.sum()
         factors = np.where(kept, along / np.where(kept, power, 1), 0)
-        return zonal * factors, float(band_heights(shown - per_coefficient(factors) * exact).sum())
+        return zonal * factors, float(band_heights(shown - per_coefficient(factors) * exact).max(axis=1).sum())
 
     def error(self, zonal: Array) -> ZonalSum:
         """The light minus the reconstruction of lambda(l), (lobes, n)."""
@@ -90,10 +90,19 @@ class Lobes:
                 found += _crossings(axis, second, np.cos(beside(profile.half_angle)), np.cos(beside(other.half_angle)))
         return np.concatenate(found)
 
-    def _sum(self, profiles: Sequence[Profile | None], zonal: Array) -> ZonalSum:
+    @property
+    def on_one_axis(self) -> bool:
+        return bool((np.abs(self._axes @ self._axes[0]) > 1 - 1e-15).all())
+
+    @property
+    def _axes(self) -> Array:
+        """The axes; constants, of which any axis is one, have that of another lobe."""
         constant = np.array([isinstance(profile, Constant) for profile in self.profiles])
-        axes = np.where(constant[:, None], self.axes[int(constant.argmin())], self.axes)  # any axis is theirs
-        return ZonalSum([Table.make(*lobe) for lobe in zip(profiles, zonal, strict=True)], axes, self.radiance)
+        return np.where(constant[:, None], self.axes[int(constant.argmin())], self.axes)
+
+    def _sum(self, profiles: Sequence[Profile | None], zonal: Array) -> ZonalSum:
+        tables = [Table.make(*lobe) for lobe in zip(profiles, zonal, strict=True)]
+        return ZonalSum(tables, self._axes, self.radiance, self.on_one_axis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,13 +112,14 @@ class ZonalSum:
     tables: Sequence[Table]
     axes: Array
     radiance: Array
+    on_one_axis: bool
 
     def largest(self, tolerance: float, negligible: float, *, magnitude: bool) -> tuple[Array, float]:
         """Directions (j, 3) near which the largest value of a channel is, or the largest magnitude, and a bound of it.
 
         The bound ends above what is found by about `tolerance`, relative to it, or by `negligible`.
         """
-        if (np.abs(self.axes @ self.axes[0]) > 1 - 1e-15).all():
+        if self.on_one_axis:
             return self._along_the_axis(magnitude)
         rows = (np.arange(ROOT_ROWS) + 0.5) * np.pi / ROOT_ROWS
         theta, phi = (a.ravel() for a in np.meshgrid(rows, rows[0] * (2 * np.arange(2 * ROOT_ROWS) + 1), indexing="ij"))

@@ -1,0 +1,51 @@
+"""The largest magnitude of a function that is known on a grid: how high it goes, and how low."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, Objective, climb
+from shviewer.harmonics.extremes.waves import Waves
+from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
+
+
+class Found(NamedTuple):
+    """An extreme value, its direction (3,), and a bound on the far side of it."""
+
+    value: float
+    direction: Array
+    bound: float = np.inf
+
+    def or_larger(self, other: Found) -> Found:
+        return other if other.value > self.value else self
+
+
+def largest_magnitude(
+    values: Array, less: Array | None, heights: Array, magnitude: Objective, share: float, negligible: float
+) -> Found:
+    """The largest magnitude of waves, less a function that is bilinear in their cells, as in `Waves`.
+
+    magnitude: unit directions (k, 3) -> (k,), largest over the channels. The bound ends above what is found by about `share` of
+    it, or by `negligible`.
+    """
+    signed = [Waves(values, heights, less), Waves(-values, heights, None if less is None else -less)]
+    rows, columns = len(values), values.shape[2]
+
+    def climbed(theta: float, phi: float) -> Found:
+        start = directions_from_angles(np.array([theta]), np.array([phi]))
+        found, places = climb(magnitude, start, np.pi / rows / 2, DISPLAY_ROUNDS)
+        return Found(float(found[0]), places[0])
+
+    lows = [int(side.difference.argmin()) for side in signed]
+    lowest = min(lows[0], lows[1], key=lambda at: -abs(signed[0].difference.flat[at]))
+    row, _, column = np.unravel_index(lowest, values.shape)
+    best = climbed(float(row_angles(rows)[row]), float(column_azimuths(columns)[column]))
+    tolerance = max(share * best.value, negligible)
+    sides = [side.lowest(-best.value, tolerance) for side in signed]
+    deepest = min(sides, key=lambda side: side.lowest)
+    if -deepest.lowest > best.value + tolerance / 2:
+        best = best.or_larger(climbed(deepest.theta, deepest.phi))
+    return best._replace(bound=-min(side.bound for side in sides))
