@@ -95,6 +95,8 @@ class SideContext:
 
     def enter(self) -> None:
         glfw.make_context_current(self._handle)
+        if not glfw.get_current_context():
+            raise GraphicsError(f"no second context of OpenGL ({_last_error()})")
 
     def leave(self) -> None:
         glfw.make_context_current(None)  # type: ignore[arg-type]  # None: no window

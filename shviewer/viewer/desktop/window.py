@@ -18,7 +18,7 @@ import moderngl
 from shviewer.errors import ShviewerError
 from shviewer.viewer.actions import Command
 from shviewer.viewer.composing.composition import Composition, compose, frame_for
-from shviewer.viewer.desktop.canvas import Canvas
+from shviewer.viewer.desktop.canvas import UPLOADING, Canvas
 from shviewer.viewer.desktop.errands import coefficients_text
 from shviewer.viewer.desktop.glfw_window import key_name, open_window, side_context
 from shviewer.viewer.desktop.mouse import Mouse
@@ -211,7 +211,7 @@ class Window:
                 f"{'frame' if ready else 'meanwhile'} {self.frame_count}: {session.picture.light.name}, "
                 f"{session.picture.state.recipe.n_bands} bands, "
                 f"{composition.width} x {composition.height}, {milliseconds:.1f} ms"
-                + (f", {session.status}" if session.status else ""),
+                + (f", {said}" if (said := session.status or (UPLOADING if self.canvas.uploading else "")) else ""),
                 file=sys.stderr,
                 flush=True,
             )

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from contextlib import suppress
 from queue import SimpleQueue
 from threading import Event, Thread
 from typing import Any, Protocol
@@ -50,7 +51,7 @@ class Side(Protocol):
     """A second context that shares its textures with the one that draws."""
 
     def enter(self) -> None:
-        """Make it current in the calling thread."""
+        """Make it current in the calling thread. GraphicsError if that cannot be."""
 
     def leave(self) -> None:
         """Make it current nowhere."""
@@ -103,14 +104,20 @@ class Carrier:
     """The thread. Its methods are for the thread that draws; end() before either context goes."""
 
     def __init__(self, context: moderngl.Context, side: Side, arrived: Callable[[], None] | None = None) -> None:
-        """arrived: called from the other thread when a texture is there, or cannot be."""
+        """arrived: called from the other thread when a texture is there, or cannot be.
+
+        GraphicsError if the thread cannot have the context.
+        """
         self.context = context
         self._side, self._arrived = side, arrived
         self._retired: list[Load] = []
         self._works: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._calls = _functions(context, side)
-        self._thread = Thread(target=self._run, name="textures", daemon=True)
+        refused: SimpleQueue[str] = SimpleQueue()
+        self._thread = Thread(target=self._run, args=(refused,), name="textures", daemon=True)
         self._thread.start()
+        if reason := refused.get():
+            raise GraphicsError(reason)
 
     @classmethod
     def beside(
@@ -118,12 +125,11 @@ class Carrier:
     ) -> Carrier | None:
         """A carrier, if there is a second context and this OpenGL can take the memory of a texture by itself."""
         able = context.version_code >= 420 or "GL_ARB_texture_storage" in context.extensions
-        return cls(context, side, arrived) if side is not None and able else None
-
-    @property
-    def retiring(self) -> bool:
-        """Whether memory is given back when the next frame has been drawn."""
-        return bool(self._retired)
+        if side is None or not able:
+            return None
+        with suppress(GraphicsError):
+            return cls(context, side, arrived)
+        return None
 
     def carry(self, array: NDArray[np.generic], dtype: str) -> Load:
         """Begin with the texture of an array, as half floats ("f2") or as it is ("f4")."""
@@ -150,8 +156,14 @@ class Carrier:
         self._works.put(None)
         self._thread.join()
 
-    def _run(self) -> None:
-        self._side.enter()
+    def _run(self, refused: SimpleQueue[str]) -> None:
+        """Do what is asked for, once it is told that there was no reason to refuse."""
+        try:
+            self._side.enter()
+        except GraphicsError as error:
+            refused.put(str(error))
+            return
+        refused.put("")
         try:
             while (work := self._works.get()) is not None:
                 work()

@@ -147,7 +147,6 @@ def test_the_memory_of_a_map_is_held_until_a_frame_was_drawn_without_it(renderer
     texture.follow(LARGE + 1)
     texture.follow(LARGE + 2)  # the thread has done all there was to do
     assert (load.names[0], bool(load.names[1])) == (0, True)
-    assert thread.retiring
     thread.drawn()
     texture.follow(LARGE + 3)
     assert tuple(load.names) == (0, 0)
@@ -178,3 +177,14 @@ def test_the_end_waits_for_no_map_that_is_on_its_way(renderer: Renderer, thread:
     thread.drawn()
     assert load.over.wait(60)
     assert load.share < 1
+
+
+def test_without_a_second_context_maps_go_up_in_the_thread_that_draws(renderer: Renderer) -> None:
+    class NoSide(EglSide):
+        def enter(self) -> None:
+            raise GraphicsError("no second context")
+
+    side = NoSide()
+    assert Carrier.beside(renderer.context, None) is None
+    assert Carrier.beside(renderer.context, side) is None
+    side.end()
