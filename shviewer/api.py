@@ -54,9 +54,9 @@ def with_options(*holders: type) -> Callable[[_Function], _Function]:
 
 
 def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
-    """The function with the coefficients (n**2, 3) of harmonics/basis.py in directions (..., 3) of any length: (..., 3).
+    """The radiance with coefficients (n**2, 3) of harmonics/basis.py in directions (..., 3) of any length: (..., 3) float64.
 
-    ShviewerError if n**2 is no square or a row has not three numbers, or for a direction that is zero or not finite.
+    ShviewerError if the rows are not n**2 of three numbers, or for a direction that is zero or not finite.
     """
     try:
         if hasattr(coefficients, "coefficients"):
@@ -87,13 +87,17 @@ def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False,
     (k,) for grey, linear RGB. An array (n**2, 3) holds coefficients in our convention, an array (height, width, 3) a lat-long
     image of linear radiance with +z on top and +x in the middle.
     convention: that of a coefficient file that does not name one, such as "three". sanitize: repair bad values of an image.
-    layout: how an image covers the sphere.
-    LightError if there is no such light or its file is bad.
+    layout: how an image covers the sphere: "auto", "lat-long", "cube", "angular" or "mirror-ball".
+    LightError if there is no such light or its file is bad, UsageError for what is no light and for an option out of range.
     """
     from shviewer.lights import find
     from shviewer.lights.function import FunctionLight
-    from shviewer.lights.reading import Reading
+    from shviewer.lights.reading import LAYOUT_CHOICES, Reading
 
+    if layout not in LAYOUT_CHOICES:
+        raise UsageError(f"layout {layout!r}: {meant(str(layout), LAYOUT_CHOICES)}")
+    if convention:
+        _check_convention(convention)
     if isinstance(what, str | os.PathLike):
         return find.find_light(os.fspath(what), Reading(sanitize=sanitize, layout=layout, convention=convention))
     if isinstance(what, np.ndarray):
@@ -103,6 +107,15 @@ def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False,
     if callable(what):
         return FunctionLight(what, getattr(what, "__name__", "function"))
     raise UsageError(f"a light of type {type(what).__name__}: give a name, a path, a function, an array or a Light")
+
+
+def _check_convention(text: str) -> None:
+    from shviewer.coefficients.texts import parse_convention
+
+    try:
+        parse_convention(text)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
 def _array_light(array: NDArray[np.generic]) -> Light:

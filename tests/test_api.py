@@ -255,3 +255,17 @@ def test_lamps_are_taken_where_they_are_asked_for() -> None:
             shviewer.project("film_studio", 3, split_sun=True, suns=wrong)
     with pytest.raises(shviewer.ShviewerError, match="give split_sun=True, too"):
         shviewer.project("film_studio", 3, suns=1)
+
+
+@pytest.mark.parametrize("what", ["green", "sh.txt", "venice_sunset"])
+@pytest.mark.parametrize(
+    ("option", "says"),
+    [({"layout": "mirrorball"}, "mean mirror-ball"), ({"convention": "tree"}, "three"), ({"convention": "x"}, "'x'")],
+)
+def test_a_layout_or_a_convention_that_is_none_is_refused_whatever_the_light_is(
+    what: str, option: dict[str, Any], says: str, tmp_path: Path
+) -> None:
+    """A list of numbers raised a ValueError, and a light that needed neither took any."""
+    (tmp_path / "sh.txt").write_text("1 1 1")
+    with pytest.raises(shviewer.ShviewerError, match=says):
+        shviewer.find_light(tmp_path / what if what == "sh.txt" else what, **option)
