@@ -96,14 +96,17 @@ def percent(share: float, digits: int = 3, floor: float = 0.0) -> str:
     return f"{value:.{decimals}f} %"
 
 
-def radiance(value: float, peak: float) -> str:
-    """A radiance in three digits, with a power of ten where that is shorter; "0" below a millionth of the light's peak."""
+def radiance(value: float, peak: float, digits: int = 3) -> str:
+    """A radiance in three digits, with a power of ten where that is shorter; "0" below a millionth of the light's peak.
+
+    digits: fewer, where there is no room for three.
+    """
     if abs(value) <= 1e-6 * peak:
         return "0"
-    value = float(f"{value:.2e}") if abs(value) < 100 else value  # 0.9999 is 1.00
-    if 1e-3 <= abs(value) < 1e5:
-        return f"{value:.{max(0, 2 - math.floor(math.log10(abs(value))))}f}"
-    mantissa, exponent = f"{value:.2e}".split("e")
+    value = float(f"{value:.{digits - 1}e}") if abs(value) < 10 ** (digits - 1) else value  # 0.9999 is 1.00
+    if 1e-3 <= abs(value) < (1e5 if digits == 3 else 1e4):
+        return f"{value:.{max(0, digits - 1 - math.floor(math.log10(abs(value))))}f}"
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     return f"{mantissa}e{int(exponent)}"
 
 

@@ -243,6 +243,14 @@ def _source(light: Light) -> Source:
     return Source(light.lobes, light.map)
 
 
+def error_end(state: State) -> float:
+    """The end of the error's colours in the picture of a state, up to what the search for the largest error adds."""
+    found = reconstruction_of(state.recipe, 0, state.view.encode)
+    scale = _scale(state, found.subject.light, found.projection)
+    assert scale is not None, "the state shows no error"
+    return scale.end
+
+
 def _scale(state: State, light: Light, projection: Projection, found: Extremes | None = None) -> ErrorScale | None:
     """The scale of the error, if it is shown; found: as in `error_scale`."""
     if state.view.error == "off":

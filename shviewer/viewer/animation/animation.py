@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import UsageError
-from shviewer.limits import MAX_BANDS
+from shviewer.limits import BRIGHTEST, MAX_BANDS
 from shviewer.outputs import ANYTHING, Replacing, check_place, write_atomically
 from shviewer.viewer.actions import step_sweep, with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
 from shviewer.viewer.composing.composition import Composition
-from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.picture import Picture, error_end, prepare
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import headless_renderer, render_rgb
 from shviewer.viewer.state import State, changed
@@ -76,9 +76,23 @@ def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECON
     while step.view.sweep_to is not None:
         step = step_sweep(step)
         states.append(step)
+    states = with_one_range(states)
     shown = in_milliseconds(seconds)
     about = {"kind": "bands", "from": first, "to": last}
     return checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
+
+
+def with_one_range(states: list[State]) -> list[State]:
+    """The states with one range of the error's colours, the largest of them: an error that grows or falls is seen to.
+
+    Unless no error is shown, or its range is given.
+    """
+    if states[0].view.error == "off" or states[0].view.error_range is not None:
+        return states
+    end = max(error_end(state) for state in states)
+    digit = 10.0 ** (math.floor(math.log10(end)) - 1)
+    error_range = min(float(f"{digit * math.ceil(end / digit - 1e-9):.2g}"), BRIGHTEST)
+    return [changed(state, error_range=error_range) for state in states]
 
 
 def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SECONDS) -> Animation:

@@ -13,7 +13,7 @@ import numpy as np
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
-from shviewer.viewer.animation.animation import MAX_FRAMES, Animation, checked, in_milliseconds
+from shviewer.viewer.animation.animation import MAX_FRAMES, Animation, checked, in_milliseconds, with_one_range
 from shviewer.viewer.camera import about_axis, compose, light_from_world
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import State, changed
@@ -62,6 +62,7 @@ def light_turn(state: State, frames: int, seconds: float, *, fresh: bool) -> Ani
         raise UsageError(f"--frames {frames}: a turn has 2 to {MAX_FRAMES}")
     if state.recipe.compare is not None:
         raise UsageError("--turn-light projects the light in every frame; leave out --compare")
+    (state,) = with_one_range([state])
     states = tuple(
         changed(
             state,

@@ -188,7 +188,8 @@ class _Placed:
         if self.rows * design.columns(self.rows) > design.n_panes:
             cell, top = self.pane(design.n_panes)
             free = self.picture(design.n_panes) if design.maps else cell._replace(top=top)
-        numbers = numbers_area(self.mode, area, compact=design.compact, third=third, cell=free)
+        feet = self._foot(0) is not None
+        numbers = numbers_area(self.mode, area, compact=design.compact, third=third, cell=free, exposed=feet)
         if free is not None and self.mode in (Mode.CELL, Mode.COLUMN):
             numbers = replace(numbers, curve_head=self._head(design.n_panes))
         bar = None
@@ -216,12 +217,16 @@ class _Placed:
         )
 
     def _sphere(self, number: int, box: Box, scale: float, zoom: float) -> Sphere:
-        """A sphere in its square; enlarged, it is cut to its cell and the gaps around."""
+        """A sphere in its square; enlarged, it is cut half-way to the other panes, at the hairline, and at the edges."""
         cell, design = self.pane(number)[0], self.design
-        side = design.gap(self.rows) / 2 - 1
-        last = number // design.columns(self.rows) == self.rows - 1
-        under = self.hairline if last and design.n_panes == 2 else cell.bottom + 4
-        clip = Box(max(cell.left - side, 0.0), cell.top - min(design.top, 14), cell.right + side, under).scaled(scale)
+        side, columns = design.gap(self.rows) / 2 - 1, design.columns(self.rows)
+        row, column = divmod(number, columns)
+        last = self.mode is not Mode.COLUMN and column == columns - 1
+        left = 0.0 if column == 0 else cell.left - side
+        right = design.width if last else cell.right + side
+        over = 0.0 if row == 0 else cell.top - min(design.top, 14)
+        under = self.hairline if row == self.rows - 1 and design.n_panes == 2 else cell.bottom + 4
+        clip = Box(left, over, right, under).scaled(scale)
         radius = box.width / 2
         return Sphere(box.left + radius, box.top + radius, radius * zoom, clip)
 
@@ -232,17 +237,21 @@ class _Placed:
         baseline = shape_top - (6 if self.design.compact else 13) if self.design.maps else cell.top + 14
         return Line(left, right, baseline - 2 if self.design.compact and not self.design.maps else baseline)
 
+    def _foot(self, number: int) -> Line | None:
+        """The line at the foot of the original and of the reconstruction, where no pane stands under them."""
+        design, columns = self.design, self.design.columns(self.rows)
+        if design.maps or number // columns < self.rows - 1 or number > 1:
+            return None
+        below = 12 if design.n_panes == 3 and number + columns >= 3 else -2
+        return self._head(number)._replace(baseline=self.pane(number)[0].bottom + below)
+
     def _caption(self, number: int, scale: float, sphere: Sphere | None) -> Caption:
         """The lines of a pane, each ending before the sphere; None where there is no sphere to keep clear of."""
         design, head = self.design, self._head(number)
         pitch = 18 if not design.maps else 0
         count = 0 if design.compact else 1 if design.maps else MOST_LINES
         lines = [head._replace(baseline=head.baseline + (number + 1) * pitch) for number in range(count)]
-        columns = design.columns(self.rows)
-        foot = None
-        if not design.maps and number // columns == self.rows - 1 and number < 2:
-            below = 12 if design.n_panes == 3 and number + columns >= 3 else -2
-            foot = head._replace(baseline=self.pane(number)[0].bottom + below)
+        foot = self._foot(number)
         return Caption(
             _clear(
                 head.scaled(scale),

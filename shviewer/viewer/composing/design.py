@@ -125,12 +125,12 @@ class Design:
         """How far a sphere is pushed down in its row, so that the head in the corner is clear of it."""
         if self.maps or self.tiny:
             return 0.0
-        words, deep, clear = (
-            (80.0, 14.0, 8.0) if self.compact else (140.0 if self.margin == 24 else 96.0, 36.0, CLEARANCE)
+        words, deep, clear, below = (
+            (80.0, 14.0, 8.0, 6.0) if self.compact else (140.0 if self.margin == 24 else 96.0, 36.0, CLEARANCE, 8.0)
         )
         radius, across = size / 2, self.pane_width(rows, mode) / 2 - words
         reach = radius + clear
         if across >= reach:
             return 0.0
         down = sqrt(reach * reach - across * across) if across > 0 else reach
-        return min(max(deep + down - radius, 0.0), deep + 6)
+        return min(max(deep + down - radius, 0.0), deep + below)

@@ -133,17 +133,20 @@ def fits(mode: Mode, width: float, *, compact: bool, cell: float | None) -> bool
     }[mode]
 
 
-def numbers_area(mode: Mode, area: Box, *, compact: bool, third: Box | None, cell: Box | None) -> Numbers:
+def numbers_area(
+    mode: Mode, area: Box, *, compact: bool, third: Box | None, cell: Box | None, exposed: bool = False
+) -> Numbers:
     """Lay the numbers out.
 
     area: from the hairline down to the frame's lower edge, between the margins; for COLUMN the column at the right.
     third: the first of three panes in a row; cell: the fourth cell of the panes, the shape's rectangle.
+    exposed: whether the exposure stands at the foot of a pane.
     """
     if mode is Mode.NONE:
         return Numbers()
     if mode is Mode.COLUMN:
         assert cell is not None
-        return _column(area, cell)
+        return _column(area, cell, exposed=exposed)
     roomy = not compact and area.height >= ROOMY
     left, right = area, None
     if mode is Mode.HALVES:
@@ -168,12 +171,12 @@ def numbers_area(mode: Mode, area: Box, *, compact: bool, third: Box | None, cel
     found = replace(found, curve=curve, legend=legend, foot=foot)
     if cell is not None and mode is Mode.CELL:
         found = _in_cell(found, cell)
-    if mode is Mode.STACK and foot:  # no room for keys: the exposure, and where the help is
-        found = replace(found, exposure=foot)
-    elif roomy and found.figures and area.bottom - found.figures[-1].label > 60:
+    if exposed:
+        return found
+    if mode is not Mode.STACK and roomy and found.figures and area.bottom - found.figures[-1].label > 60:
         last = found.figures[-1].label
-        found = replace(found, exposure=Line(left.left, left.right, last + 28))
-    return found
+        return replace(found, exposure=Line(left.left, left.right, last + 28))
+    return replace(found, exposure=foot)  # before as many keys as have room there
 
 
 def _answers_and_figures(area: Box, *, compact: bool, roomy: bool) -> Numbers:
@@ -217,7 +220,7 @@ def _in_cell(found: Numbers, cell: Box) -> Numbers:
     return replace(found, curve=curve, legend=legend)
 
 
-def _column(area: Box, cell: Box) -> Numbers:
+def _column(area: Box, cell: Box, *, exposed: bool) -> Numbers:
     """Answers and figures under each other, the foot under the panes."""
     top = area.top
     answers = [Cell(area.left, area.right, top + 46 + 66 * n, top + 66 + 66 * n) for n in (0, 1)]
@@ -225,5 +228,5 @@ def _column(area: Box, cell: Box) -> Numbers:
     pitch = min(56.0, (area.bottom - 60 - start) / 4.5)
     figures = [Cell(area.left, area.right, start + pitch * n, start + pitch * n + 20) for n in range(5)]
     foot = Line(24, area.left - 36, area.bottom - FOOT)
-    exposure = Line(area.left, area.right, area.bottom - 44)
+    exposure = None if exposed else Line(area.left, area.right, area.bottom - 44)
     return _in_cell(Numbers(tuple(answers), tuple(figures), foot=foot, exposure=exposure, figure_size=20), cell)

@@ -17,7 +17,7 @@ from shviewer.outputs import file_stem, write_atomically
 from shviewer.progress import Stopped, tell
 from shviewer.viewer import camera
 from shviewer.viewer.composing.composition import Composition
-from shviewer.viewer.desktop.task import QUIET, Task
+from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
@@ -61,7 +61,7 @@ class Errands:
     def work(self) -> Work | None:
         """What is being done and how far it is, once it has taken a while."""
         task = self._begun[0][0] if self._begun else None
-        return task.work if task is not None and task.seconds > QUIET and task.status else None
+        return task.work if task is not None and not task.quiet and task.status else None
 
     def take(self) -> None:
         """Hand over what has been done."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from threading import Event
 
 from shviewer.analysis.subjects import read_again
-from shviewer.viewer.desktop.task import QUIET, Task
+from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, stages, still
@@ -37,13 +37,13 @@ class Making:
     @property
     def doing(self) -> str:
         """What the task does, in words without figures."""
-        return self._task.status.rstrip("0123456789 %") if self._task is not None else ""
+        return self._task.status.partition(";")[0].rstrip("0123456789 %") if self._task is not None else ""
 
     @property
     def status(self) -> str:
         """What the task does, once it has taken a while; "" while nothing is at work."""
         task = self._task
-        return task.status if task is not None and task.seconds > QUIET else ""
+        return task.status if task is not None and not task.quiet else ""
 
     @property
     def work(self) -> Work | None:

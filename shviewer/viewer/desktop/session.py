@@ -36,6 +36,7 @@ from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.screenshot import render_rgb
 from shviewer.viewer.state import State, changed, started
+from shviewer.viewer.view import View
 from shviewer.words import one_line
 
 P = ParamSpec("P")
@@ -98,6 +99,11 @@ class Session:
     def placed(self) -> State:
         """The state, with the camera where the picture has it."""
         return self.picture.placed(self.state)
+
+    @property
+    def view(self) -> View:
+        """The view of the picture that there is, as the state has turned and moved it."""
+        return self.picture.seen(self.state).state.view
 
     @property
     def title(self) -> str:
@@ -241,10 +247,19 @@ class Session:
             self.state = step_sweep(self.state)
         if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
             self._looked_at = now
-            recipe = self.state.recipe
-            if isinstance(recipe.light, str) and self._watch.changed(recipe.light, version_read(recipe)):
-                self.do(Command.RELOAD)
+            self._look()
         return self._making.news or self.state is not last or self._reading is not reading or self._said != said
+
+    def _look(self) -> None:
+        """Look at the watched file: read it again if it has changed, and say once that it is gone."""
+        recipe, watch = self.state.recipe, self._watch
+        if watch is None or not isinstance(recipe.light, str):
+            return
+        before = watch.gone
+        if watch.changed(recipe.light, version_read(recipe)):
+            self.do(Command.RELOAD)
+        elif watch.gone and not before:
+            self.say(f"{light_name(recipe.light)} is gone: shown as it was read, and waited for", WARNING)
 
     def wait(self, now: float, most: float) -> float:
         """The seconds until the next tick is due, at most `most`."""

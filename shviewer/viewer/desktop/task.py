@@ -15,6 +15,8 @@ T = TypeVar("T")
 QUIET = 0.3
 """Seconds after which a task is spoken of."""
 
+COMES_AFTER = "; what was asked for since comes after it"
+
 LEAST_DONE = 0.03
 """The share of a work that must be done before the rest is estimated from it."""
 
@@ -27,9 +29,8 @@ class Task(Generic[T]):
     ) -> None:
         """make: gives the results, at least one. done: called from the thread at every result, and at the end in any case."""
         self.started = perf_counter()
-        self.status = ""
-        """What it is doing, in words."""
-        self._words = ""
+        self._before = after
+        self._status, self._words = "", ""
         self._share: float | None = None
         self._begun = (self.started, 0.0)
         """When it began with that, and the share that was done by then."""
@@ -47,8 +48,28 @@ class Task(Generic[T]):
         return perf_counter() - self.started
 
     @property
+    def _ahead(self) -> Task[T] | None:
+        """The task at work that has to end before this one begins: a step of it may take long."""
+        before = self._before
+        return None if before is None or before.finished else before._ahead or before
+
+    @property
+    def quiet(self) -> bool:
+        """Whether neither it nor the task that it waits for has taken long enough to be spoken of."""
+        ahead = self._ahead
+        return self.seconds <= QUIET and (ahead is None or ahead.seconds <= QUIET)
+
+    @property
+    def status(self) -> str:
+        """What it is doing, in words; or what it waits for."""
+        ahead = self._ahead
+        return self._status if ahead is None or not ahead._words else f"{ahead._words}{COMES_AFTER}"
+
+    @property
     def work(self) -> Work:
         """What it is doing and how far it is; how long it will take as soon as a part of it is done."""
+        if (ahead := self._ahead) is not None:
+            return Work(self.status, seconds=round(ahead.seconds, 1))
         share, (begun, before) = self._share, self._begun
         if share is None:
             return Work(self._words, seconds=round(self.seconds, 1))
@@ -78,6 +99,7 @@ class Task(Generic[T]):
     def _run(self, make: Callable[[], Iterable[T]], before: Thread | None, done: Callable[[], None] | None) -> None:
         if before is not None:
             before.join()
+        self._before = None
         try:
             with listening(self._hear):
                 self._hear("", None)
@@ -98,4 +120,4 @@ class Task(Generic[T]):
             self._words, self._begun = what, (perf_counter(), share or 0.0)
         self._share = share
         if what:
-            self.status = in_words(what, share)
+            self._status = in_words(what, share)

@@ -10,18 +10,21 @@ class Watch:
     """A watch on one file. A change counts after two equal looks, so that a file still being written is not read too early.
 
     A version is reported once, so that a file that cannot be read is not tried again until it has changed. Editors replace
-    files: a file that is gone is waited for.
+    files: a file that is gone is waited for; `gone` tells of one that stays away.
     """
 
     def __init__(self) -> None:
         self._seen: tuple[str, FileVersion | None] | None = None
         self._reported: tuple[str, FileVersion | None] | None = None
+        self.gone = False
+        """Whether the file that was read is no longer there."""
 
     def changed(self, text: str, read: FileVersion | None) -> bool:
         """Whether the file of the light `text` is no longer the version `read`, and has come to rest."""
         now = file_version(text)
         look = (text, now)
         at_rest, self._seen = look == self._seen, look
+        self.gone = at_rest and now is None and read is not None
         if now is None or now == read or not at_rest or look == self._reported:
             return False
         self._reported = look

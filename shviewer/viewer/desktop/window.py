@@ -32,6 +32,7 @@ from shviewer.viewer.overlay.probe import direction_at
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.state import State
+from shviewer.viewer.view import View
 
 IDLE_SECONDS = 0.25
 OUTSIDE = (-1.0, -1.0)
@@ -163,8 +164,8 @@ class Window:
             self._toggle_fullscreen()
         elif command in (Command.CLOSE, Command.LEAVE):
             glfw.set_window_should_close(self.handle, True)
-        elif command is Command.SAVE and composition is not None:
-            self.session.save(self.canvas.renderer, composition)
+        elif command is Command.SAVE and (asked := self._framed(self.session.state.view)) is not None:
+            self.session.save(self.canvas.renderer, asked)
         elif command is Command.COPY and composition is not None:
             size = composition.width, composition.height
             self._copy("the command of this picture", lambda: command_line(self.session.picture, size))
@@ -225,12 +226,13 @@ class Window:
         return round(width / _scale(self.handle)), round(height / _scale(self.handle))
 
     def composition(self) -> Composition | None:
-        """The layout of the framebuffer, which may be larger than the window (HiDPI); None while minimised."""
+        """The layout of the picture in the framebuffer; None while minimised."""
+        return self._framed(self.session.view)
+
+    def _framed(self, view: View) -> Composition | None:
+        """The layout of a view in the framebuffer, which may be larger than the window (HiDPI)."""
         width, height = glfw.get_framebuffer_size(self.handle)
-        if width * height == 0:
-            return None
-        view = self.session.state.view
-        return frame_for(view, width, height, _scale(self.handle))
+        return frame_for(view, width, height, _scale(self.handle)) if width * height else None
 
     def _due(self) -> None:
         """Note that a frame has to be drawn."""

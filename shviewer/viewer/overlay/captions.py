@@ -31,26 +31,34 @@ ZEBRA = 11.0
 Part: TypeAlias = tuple[str, ...]
 """Something to be said, in wordings of which the longest that has room is taken; "" and what has none is left out."""
 
+Words: TypeAlias = tuple[str, list[Part], list[Part]]
+"""A head, the parts of what is said about it in their order, and those among them that no picture may hide."""
 
-def caption_blocks(picture: Picture, at: Composition, timing: bool) -> tuple[list[list[Piece]], list[list[Piece]]]:
-    """The pieces of each pane's head, and those of each foot."""
-    heads = [_original_words(picture), _reconstruction_words(picture, at)]
+
+def caption_blocks(
+    picture: Picture, at: Composition, timing: bool
+) -> tuple[list[list[Piece]], list[list[Piece]], list[Part]]:
+    """The pieces of each pane's head, those of each foot, and what no picture may hide but no pane has room for."""
+    heads = [_original_words(picture, at), _reconstruction_words(picture, at)]
     if picture.error_scale is not None:
-        heads.append(_error_words(picture))
+        heads.append((*_error_words(picture), []))
     elif picture.beside is not None:
-        heads.append(_beside_words(picture, picture.beside))
-    blocks = []
-    for name, (head, parts), places in zip(("original", "reconstruction", "error"), heads, at.captions, strict=False):
-        blocks.append(_head(name, head, parts, places, at))
+        heads.append((*_beside_words(picture, picture.beside), []))
+    names = ("original", "reconstruction", "error")
+    blocks = [_head(name, *words, places, at) for name, words, places in zip(names, heads, at.captions, strict=False)]
+    unsaid = [part for _, parts in blocks[1:2] for part in parts]
     feet = [exposure_pieces(picture, at, places.foot) for places in at.captions[:1] if places.foot]
     for foot in (places.foot for places in at.captions[1:2] if places.foot):
-        unsaid = not any("missed" in piece.text for piece in blocks[1] if isinstance(piece, Text))
-        feet.append(_foot(picture, foot, at, timing, unsaid=unsaid))
-    return blocks, feet
+        feet.append(_foot(picture, foot, at, timing, unsaid))
+        unsaid = []
+    return [pieces for pieces, _ in blocks], feet, unsaid
 
 
-def exposure_pieces(picture: Picture, at: Composition, line: Line) -> list[Piece]:
-    """The exposure, and what means beyond white, in as many words as have room; surfaces have none."""
+def exposure_pieces(picture: Picture, at: Composition, line: Line, unsaid: Sequence[Part] = ()) -> list[Piece]:
+    """The exposure, and what means beyond white, in as many words as have room; surfaces have none.
+
+    unsaid: what stands before it, in its shortest wording, as it has no room elsewhere.
+    """
     if isinstance(picture.drawn, Surfaces):
         return []
     view, stops = picture.state.view, typeset(f"{picture.exposure_stops:+z.1f} stops")
@@ -59,10 +67,11 @@ def exposure_pieces(picture: Picture, at: Composition, line: Line) -> list[Piece
     fixed = "" if view.exposure_stops is None else ", fixed"
     white = view.tone == "none" and picture.figures.peak * 2.0**picture.exposure_stops > 1.0 and view.marks
     ink = INK if at.over else FAINT
-    notes = ", ".join(_notes(picture)) if at.compact else ""  # elsewhere the second line tells them
-    choices = (f"exposure {stops}{curve}{fixed}", f"exposure {stops}", stops)
+    others = [next(words for words in reversed(part) if words) for part in unsaid]
+    notes = typeset(", ".join([*_notes(picture) * at.compact, *others]))  # elsewhere the second line has the light's
+    choices: tuple[str, ...] = (f"exposure {stops}{curve}{fixed}", f"exposure {stops}", stops)
     if notes:
-        choices = (f"{notes}, {stops}", notes, notes.partition(",")[0])
+        choices = (f"{notes}, {choices[0]}", f"{notes}, {stops}", notes, notes.partition(",")[0])
     for words in choices:
         length = width_of(words, size)
         if line.left + length <= line.right:
@@ -100,26 +109,43 @@ def _text(
     return Text(name, x, baseline, text, size, ink, weight, at.px(1.6) if at.over else 0.0)
 
 
-def _head(name: str, head: str, parts: Sequence[Part], places: Caption, at: Composition) -> list[Piece]:
-    """A head, shortened in the middle, and the parts of what is said about it on the lines after it."""
+def _head(
+    name: str, head: str, parts: list[Part], must: list[Part], places: Caption, at: Composition
+) -> tuple[list[Piece], list[Part]]:
+    """A head, shortened in the middle, and the parts of what is said about it on the lines after it.
+
+    Return those of `must`, too, that have no room: not even where the others give way, or after the head.
+    """
     size = at.px(12.0 if at.compact else HEAD)
     shown = shortened_to(head, places.head.right - places.head.left, size, SEMIBOLD)
     if not shown:
-        return []
+        return [], must
     pieces: list[Piece] = [_text(name, places.head.left, places.head.baseline, shown, size, INK, at, SEMIBOLD)]
     lines = list(places.lines)
+    after = places.head._replace(left=pieces[0].box.right + at.px(10))
     if lines and lines[0].baseline == places.head.baseline:
-        lines[0] = lines[0]._replace(left=pieces[0].box.right + at.px(10))
-    size, ink = at.px(SECOND), INK if at.over else GREY
-    for number, (line, words) in enumerate(_set(parts, lines, size)):
+        lines[0] = after
+    size, ink = at.px(SMALL if at.compact else SECOND), INK if at.over else GREY
+    found, unsaid = _set(parts, lines, size)
+    if any(part in unsaid for part in must):
+        found, unsaid = _set([*must, *(part for part in parts if part not in must)], lines, size)
+    unsaid = [part for part in must if part in unsaid]
+    if unsaid and after not in lines:
+        beside, unsaid = _set(unsaid, [after], size)
+        found += beside
+    for number, (line, words) in enumerate(found):
         called = f"{name}_about" if number == 0 else f"{name}_about_{number}"
         pieces.append(_text(called, line.left, line.baseline, words, size, ink, at))
-    return pieces
+    return pieces, unsaid
 
 
-def _set(parts: Sequence[Part], lines: Sequence[Line], size: float) -> list[tuple[Line, str]]:
-    """Set parts on lines, with commas between those on one; of each the longest wording that has room, or none."""
+def _set(parts: Sequence[Part], lines: Sequence[Line], size: float) -> tuple[list[tuple[Line, str]], list[Part]]:
+    """Set parts on lines, with commas between those on one; of each the longest wording that has room.
+
+    Return the parts, too, that have none.
+    """
     found: list[tuple[Line, str]] = []
+    unsaid: list[Part] = []
     for part in parts:
         for words in (typeset(wording) for wording in part if wording):
             line, said = found[-1] if found else (None, "")
@@ -130,10 +156,12 @@ def _set(parts: Sequence[Part], lines: Sequence[Line], size: float) -> list[tupl
             if free and free[0].left + width_of(words, size) <= free[0].right:
                 found.append((free[0], words))
                 break
-    return found
+        else:
+            unsaid += [part] if any(part) else []
+    return found, unsaid
 
 
-def _original_words(picture: Picture) -> tuple[str, list[Part]]:
+def _original_words(picture: Picture, at: Composition) -> Words:
     light = picture.subject.whole
     size = light.about.size
     asked = picture.state.recipe.quantity
@@ -142,9 +170,10 @@ def _original_words(picture: Picture) -> tuple[str, list[Part]]:
     if isinstance(picture.drawn, Surfaces):
         suns = len(picture.subject.suns)
         without = f"without sun{'s' if suns > 1 else ''}" if suns else ""
-        return picture.light.name, [(quantity,), (without,), *_radius(picture.drawn.shown[0].clipped)]
-    notes = [(note,) for note in _notes(picture)]
-    return picture.light.name, [(quantity,), (what, what.partition(" (")[0]), *notes]
+        return picture.light.name, [(quantity,), (without,), *_radius(picture.drawn.shown[0].clipped)], []
+    notes: list[Part] = [(note,) for note in _notes(picture)]
+    parts = [] if at.compact else [(quantity,), (what, what.partition(" (")[0]), *notes]
+    return picture.light.name, parts, [] if at.compact else notes  # there they stand beside the exposure
 
 
 def _notes(picture: Picture) -> list[str]:
@@ -159,26 +188,29 @@ def _changes(picture: Picture) -> list[Part]:
     recipe, suns = picture.state.recipe, len(picture.subject.suns)
     apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
     muted, count = describe_muted(recipe), len(recipe.muted_shown)
-    return [(muted, f"{counted(count, 'band')} muted" if muted else ""), (describe_window(recipe),), (apart,)]
+    fewer = (f"{counted(count, 'band')} muted", f"{count} muted") if muted else ()
+    window = describe_window(recipe)
+    return [(muted, *fewer), (window, window.partition(" of ")[0], window.partition(" ")[0]), (apart,)]
 
 
-def _reconstruction_words(picture: Picture, at: Composition) -> tuple[str, list[Part]]:
+def _reconstruction_words(picture: Picture, at: Composition) -> Words:
     recipe, view = picture.state.recipe, picture.state.view
     head = f"{caption(recipe)}{counted(recipe.n_bands, 'band')}"
     if view.basis is not None:
         value = float(picture.projection.coefficients[index(*view.basis)] @ LUMINANCE)
         coefficient = f"coefficient {radiance(value, picture.figures.peak)}"
-        return typeset(describe_basis(view)), [(coefficient,), ("radius: magnitude",)]
+        return typeset(describe_basis(view)), [(coefficient,), ("radius: magnitude",)], []
     changes = _changes(picture)
     if view.encode:
         encoding = ENCODINGS[view.encode]
-        return encoding.words, [(f"{encoding.floats} numbers a channel",), *changes]
+        return encoding.words, [(f"{encoding.floats} numbers a channel",), *changes], changes
     if isinstance(picture.drawn, Surfaces):
-        return head, [*changes, *_radius(picture.drawn.shown[1].clipped)]
-    method = picture.projection.method.partition("; ")[0] if at.maps else ""
+        return head, [*changes, *_radius(picture.drawn.shown[1].clipped)], changes
+    method, _, missed = picture.projection.method.partition("; ")
+    method = "" if any(places.foot for places in at.captions[1:2]) else method
     count = f"{grouped(recipe.n_bands**2)} coefficient{'' if recipe.n_bands == 1 else 's'}"
-    missed = picture.projection.method.partition("; ")[2]
-    return head, [(count,), *changes, (method,), (_short(missed), _shorter(missed))]
+    may_miss: Part = (_short(missed), _shorter(missed))
+    return head, [(count,), *changes, (method,), may_miss], [*changes, may_miss]
 
 
 def _short(missed: str) -> str:
@@ -187,8 +219,8 @@ def _short(missed: str) -> str:
 
 
 def _shorter(missed: str) -> str:
-    """The same in the fewest."""
-    return _short(missed).replace("features ", "").replace("may be ", "")
+    """The same in the fewest: "may miss < 3°"."""
+    return re.sub(r"^features under (.*) may be missed$", r"may miss < \1", _short(missed))
 
 
 def _error_words(picture: Picture) -> tuple[str, list[Part]]:
@@ -216,24 +248,19 @@ def _radius(clipped: bool) -> list[Part]:
     return [root, *([("cut at the circle", "cut")] if clipped else [])]
 
 
-def _foot(picture: Picture, line: Line, at: Composition, timing: bool, *, unsaid: bool) -> list[Piece]:
-    """How the coefficients came about and the sun that was split off; first what no other line says.
-
-    unsaid: whether no line after the head has room for what may be missed.
-    """
+def _foot(picture: Picture, line: Line, at: Composition, timing: bool, unsaid: list[Part]) -> list[Piece]:
+    """How the coefficients came about and the sun that was split off; first what no line after the head has room for."""
     projection = picture.projection
-    method, _, missed = projection.method.partition("; ")
+    method = projection.method.partition("; ")[0]
     if projection.evaluations is not None:
         method = f"{grouped(projection.evaluations)} {method} {projection.evaluation_noun}"
     spent = timing and projection.milliseconds is not None
     time = f"{grouped_number(projection.milliseconds or 0.0)} ms" if spent else ""
-    first: list[Part] = [(_short(missed), _shorter(missed))] if unsaid else []
-    if at.compact:
-        first += _changes(picture)
-    said: list[Part] = [*first, (method,), (describe_suns(picture),), (time,), (describe_evaluation(picture, timing),)]
+    said: list[Part] = [*unsaid, (method,), (describe_suns(picture),), (time,), (describe_evaluation(picture, timing),)]
     size, ink = at.px(SMALL if at.compact else FOOT), INK if at.over else FAINT
     return [
-        _text("method", where.left, where.baseline, words, size, ink, at) for where, words in _set(said, [line], size)
+        _text("method", where.left, where.baseline, words, size, ink, at)
+        for where, words in _set(said, [line], size)[0]
     ]
 
 

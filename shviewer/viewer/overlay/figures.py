@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import floor
+from typing import TypeAlias
+
 from shviewer.analysis.figures import PENDING, Pending
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words, roughness_of
 from shviewer.viewer.composing.composition import Composition
@@ -15,7 +20,11 @@ from shviewer.viewer.picture import Picture
 UNIT = 0.61
 """The type of the word "bands" after an answer, in sizes of the answer."""
 
-SWATCH = 12.0
+SWATCH, COLUMN_GAP = 12.0, 9.0
+"""The side of a sample, and the space after a figure before the next column; pixels of the design."""
+
+SMALLER = 0.9
+"""How much smaller than it should be a value with a bound may be set."""
 
 
 def answer_pieces(picture: Picture, at: Composition) -> list[Piece]:
@@ -40,72 +49,107 @@ def answer_pieces(picture: Picture, at: Composition) -> list[Piece]:
             pieces.append(Text(f"{name}_unit", after, cell.value, word, UNIT * size, INK))
         what = looked_at(picture.state.recipe.quantity) if name == "radiance" else name
         labels = [f"{what} {within}{more}" for more in reversed(rest)] + [f"{what} {within}", what]
-        pieces += _label(f"{name}_label", cell, labels, label_size)
+        pieces.append(_label(f"{name}_label", cell, labels, label_size))
     return pieces
+
+
+Wording: TypeAlias = tuple[str, str]
+"""A value, and the bound after it or ""."""
+
+
+@dataclass(frozen=True)
+class _Figure:
+    """A figure under the spheres. Of what is said and of the labels, the longest wording is the first."""
+
+    name: str
+    said: Sequence[Wording]
+    labels: tuple[str, ...]
+    sample: str = ""
+    """The kind of swatch that shows how it is drawn."""
 
 
 def figure_pieces(picture: Picture, at: Composition) -> list[Piece]:
     """Error, largest error, lowest channel, negative area, and the energy in use."""
-    figures, numbers = picture.figures, at.numbers
-    extremes, peak = picture.extremes, figures.peak
+    found = zip(_figures(picture, at), at.numbers.figures, strict=False)
+    return [piece for figure, cell in found for piece in _figure(figure, cell, at)]
+
+
+def _figures(picture: Picture, at: Composition) -> list[_Figure]:
+    figures, extremes, peak = picture.figures, picture.extremes, picture.figures.peak
     rest = " of rest" if picture.subject.suns else ""
-    error = minimum = negative = str(PENDING)
-    error_bound = minimum_bound = found = ""
+    errors = [(share(figures.relative_l2, digits, figures.floor), "") for digits in (3, 2, 1)]
+    errors += [(typeset("< 0.01 %"), "")] if figures.relative_l2 < 1e-5 else []
+    largest = lowest = negative = [(str(PENDING), "")]
+    only, lines, area = "", "", ""
     if not isinstance(extremes, Pending):
-        error, minimum = value(extremes.max_error, peak), value(extremes.minimum, peak)
-        negative = share(extremes.negative_area, 2)
-        error_bound = bound_text(extremes.max_error, extremes.max_error_bound, peak)
-        minimum_bound = bound_text(extremes.minimum, extremes.minimum_bound, peak) if extremes.minimum < 0 else ""
-        if extremes.max_error_bound is None:  # a Python function is known only where it was looked at
-            found = " found"
-    rows = (
-        (
+        largest = _wordings(extremes.max_error, extremes.max_error_bound, peak)
+        lowest = _wordings(extremes.minimum, extremes.minimum_bound if extremes.minimum < 0 else None, peak)
+        negative = [(share(extremes.negative_area, 2), "")]
+        only = " found" if extremes.max_error_bound is None else ""  # a function is known only where it was looked at
+        lines = "lines" if extremes.minimum < -1e-6 * peak and not at.compact else ""
+        area = "negative" if extremes.negative_area > 0 else ""
+    return [
+        _Figure(
             "relative_l2",
-            share(figures.relative_l2, floor=figures.floor),
-            "",
-            f"relative L2 error{rest}",
-            f"L2 error{rest}",
-            "L2 error",
+            errors,
+            (f"relative L2 error{rest}", f"L2 error{rest}", "L2 error"),
         ),
-        (
-            "max_error",
-            error,
-            error_bound,
-            f"largest error{found}{rest}",
-            f"largest{found}{rest}",
-            f"largest{found}",
-            "largest",
+        _Figure(
+            "max_error", largest, (f"largest error{only}{rest}", f"largest{only}{rest}", f"largest{only}", "largest")
         ),
-        (
-            "minimum",
-            minimum,
-            minimum_bound,
-            "lowest channel",
-            "lowest",
-        ),
-        ("negative_area", negative, "", "luminance < 0", "negative"),
-        ("energy", share(energy_in_use(picture), 2), "", "energy in use", "energy"),
-    )
-    pieces: list[Piece] = []
-    label_size = at.px(numbers.label_size)
-    for (name, said, bound, *labels), cell in zip(rows, numbers.figures, strict=False):
-        weight = MEDIUM if name == "relative_l2" else REGULAR
-        room = cell.right - cell.left - at.px(4)
-        size = at.px(numbers.figure_size)
-        size = max(min(size, size * room / width_of(said, size, weight)), label_size)
-        both = width_of(said, size, weight) + width_of(bound, label_size)
-        if bound and room < both <= 1.12 * room:  # a little smaller, both have room
-            size, bound_size = size * room / both, max(label_size * room / both, at.px(12.0))
-        else:
-            bound_size = label_size
-        pieces.append(Text(name, cell.left, cell.value, said, size, INK, weight))
-        x = cell.left + width_of(said, size, weight)
-        if bound and x + width_of(bound, bound_size) <= cell.left + room + 1:
-            pieces.append(Text(f"{name}_bound", x, cell.value, bound, bound_size, GREY))
-            x += width_of(bound, bound_size)
-        pieces += _swatch(name, picture, x, cell, at)
-        pieces += _label(f"{name}_label", cell, labels if not numbers.short else labels[1:], label_size)
+        _Figure("minimum", lowest, ("lowest channel", "lowest"), lines),
+        _Figure("negative_area", negative, ("luminance < 0", "negative"), area),
+        _Figure("energy", [(share(energy_in_use(picture), 2), "")], ("energy in use", "energy")),
+    ]
+
+
+def _wordings(found: float, bound: float | None, peak: float) -> list[Wording]:
+    """An extreme and its bound, in fewer and fewer digits."""
+    bounds = dict.fromkeys(bound_text(found, bound, peak, digits) for digits in (3, 2))
+    said = [(value(found, peak), bound) for bound in bounds]
+    return said + [(value(found, peak, digits), "") for digits in (3, 2, 1)]
+
+
+def _figure(figure: _Figure, cell: Cell, at: Composition) -> list[Piece]:
+    """A value with its bound, its sample, and its label, which end before the next column begins."""
+    numbers, name = at.numbers, figure.name
+    weight = MEDIUM if name == "relative_l2" else REGULAR
+    room, label_size = cell.right - cell.left - at.px(COLUMN_GAP), at.px(numbers.label_size)
+    sizes = at.px(numbers.figure_size), label_size, at.px(11.0 if at.compact else 12.0)
+    (said, bound), size, bound_size = _fitting(figure.said, room, sizes, weight)
+    pieces: list[Piece] = [Text(name, cell.left, cell.value, said, size, INK, weight)]
+    if bound:
+        pieces.append(Text(f"{name}_bound", pieces[0].box.right, cell.value, bound, bound_size, GREY))
+    side = round(at.px(SWATCH * (0.8 if at.compact else 1.0)))
+    after, beside = 0.6 * side, cell.left + room - pieces[-1].box.right
+    labelled = bool(figure.sample) and beside < after + side  # no room: it stands after the label
+    label = _label(f"{name}_label", cell, figure.labels[numbers.short :], label_size, after + side if labelled else 0.0)
+    pieces.append(label)
+    if figure.sample:
+        last, baseline = (label, cell.label) if labelled else (pieces[-2], cell.value)
+        left, bottom = round(last.box.right + after), round(baseline + 1)
+        scale = max(at.scale * (0.8 if at.compact else 1.0), 0.8)
+        pieces.append(Swatch(Box(left, bottom - side, left + side, bottom), figure.sample, scale, f"{name}_swatch"))
     return pieces
+
+
+def _fitting(
+    wordings: Sequence[Wording], room: float, sizes: tuple[float, float, float], weight: str
+) -> tuple[Wording, float, float]:
+    """The first wording that has room, with the sizes of the value and of the bound: best as large as the other figures.
+
+    sizes: of a value, of a label, and the least. A value that stands alone becomes as small as labels before it loses digits.
+    """
+    size, label, least = sizes
+    for large, small in ((size, label), (SMALLER * size, least)):
+        for said, bound in wordings:
+            if bound and width_of(said, large, weight) + width_of(bound, small) <= room:
+                return (said, bound), large, small
+    for said, bound in wordings:
+        alone = min(size, floor(4 * size * room / width_of(said, size, weight)) / 4)  # type has quarters of a pixel
+        if not bound and alone >= label:
+            return (said, ""), alone, label
+    return wordings[-1], label, label
 
 
 def looked_at(quantity: str) -> str:
@@ -121,31 +165,8 @@ def energy_in_use(picture: Picture) -> float:
     return kept if kept < 1 - 5e-5 else 1.0
 
 
-def _swatch(name: str, picture: Picture, x: float, cell: Cell, at: Composition) -> list[Piece]:
-    extremes = picture.extremes
-    if isinstance(extremes, Pending):
-        return []
-    kind = {"minimum": "lines", "negative_area": "negative"}.get(name)
-    side = at.px(SWATCH * (0.8 if at.compact else 1.0))
-    shown = extremes.minimum < -1e-6 * extremes.peak if kind == "lines" else extremes.negative_area > 0
-    left = round(x + 0.6 * side)
-    if kind is None or not shown or left + side > cell.right - 0.4 * side:
-        return []
-    if at.compact and kind == "lines":
-        return []
-    bottom = round(cell.value + 1)
-    return [
-        Swatch(
-            Box(left, bottom - round(side), left + round(side), bottom),
-            kind,
-            max(at.scale * (0.8 if at.compact else 1.0), 0.8),
-            f"{name}_swatch",
-        )
-    ]
-
-
-def _label(name: str, cell: Cell, labels: list[str], size: float) -> list[Piece]:
-    """The longest label that has room in its column; the last in any case."""
-    room = cell.right - cell.left - 0.9 * size  # or it would read on in the next
+def _label(name: str, cell: Cell, labels: Sequence[str], size: float, kept: float = 0.0) -> Text:
+    """The longest label that has room in its column, of which some pixels are kept free; the last in any case."""
+    room = cell.right - cell.left - 0.9 * size - kept  # or it would read on in the next
     said = next((text for text in labels if width_of(text, size) <= room), labels[-1])
-    return [Text(name, cell.left, cell.label, said, size, GREY)]
+    return Text(name, cell.left, cell.label, said, size, GREY)

@@ -22,7 +22,7 @@ from shviewer.viewer.overlay.drawing import layer_of
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import GREY, INK, MEDIUM
 from shviewer.viewer.overlay.numerals import share, value
-from shviewer.viewer.overlay.pieces import Curve, Piece, Text
+from shviewer.viewer.overlay.pieces import Curve, Piece, Point, Text
 from shviewer.viewer.picture import Picture
 
 RING, COMPACT_RING, THICKNESS, CASING_WIDTH = 6.5, 5.2, 1.5, 1.4
@@ -40,8 +40,9 @@ STEP = 3
 NEAR, FARTHEST = 30, 84
 """Degrees along the limb between a triangle and its text: up to NEAR all words are kept."""
 
-CLEAR, OFF = 3.0, 8.0
-"""Pixels of the design between those words and a sphere, and over and under them to other text, whose lines they are not."""
+CLEAR, OFF, ASIDE = 3.0, 8.0, 14.0
+"""Pixels of the design between those words and a sphere; over and under them, and beside them, to other text, whose lines they
+are not."""
 
 ORIGINAL, RECONSTRUCTION, ERROR = 0, 1, 2
 FAR = Box(-1e6, -1e6, 1e6, 1e6)
@@ -105,6 +106,7 @@ def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[
             found = None
         if found is not None:
             placed[mark.name] = found
+            obstacles = (*obstacles, found.label) if found.label else obstacles
     return placed
 
 
@@ -131,33 +133,42 @@ def _on(text: str, x: float, y: float, pane: Pane, composition: Composition, obs
 def _outside(
     mark: Mark, x: float, y: float, sphere: Sphere, composition: Composition, obstacles: Sequence[Box]
 ) -> Placed | None:
-    """A triangle outside the limb that points away from the sphere, and its text where there is room; None without any."""
+    """A triangle outside the limb that points away from the sphere, and its text where there is room; None without any.
+
+    Where all words have none, near it or along the limb, the value alone has.
+    """
     angle = STEP * round(degrees(atan2(sphere.y - y, x - sphere.x)) / STEP)
     away = sphere.radius + composition.px(AWAY + HEIGHT / 2)
     middle = sphere.x + away * cos(radians(angle)), sphere.y - away * sin(radians(angle))
-    half = composition.px(BASE / 2)
+    drawn = _triangle(angle, composition.scale)
     room = _room(composition)
-    around = Box(middle[0] - half, middle[1] - half, middle[0] + half, middle[1] + half)
+    across, down = zip(*drawn.points, strict=True)
+    around = _shifted(Box(min(across), min(down), max(across), max(down)), *middle)
     if not (_within(around, room) and sphere.clip.contains(*_limb(sphere, angle)) and _free(around, obstacles)):
         return None
     left, top = round(middle[0]), round(middle[1])
-    triangle = _layers((_triangle(angle, composition.scale),), left, top)
+    triangle = _layers((drawn,), left, top)
     size = _type(composition)
     side = sphere.x - composition.captions[mark.pane].head.left
     cell = Box(sphere.x - side, room.top, sphere.x + side, room.bottom)
-    wide, high_ = composition.px(CLEAR), composition.px(OFF)
-    for within, words in product((0, NEAR, FARTHEST), ((mark.text, ", behind"), (mark.text,))):
+    wide, high_, aside = composition.px(CLEAR), composition.px(OFF), composition.px(ASIDE)
+    whole, brief = ((mark.text, ", behind"), (mark.text,)), ((mark.text.partition(" ")[2],),)
+    distances = (0, NEAR, FARTHEST)
+    for within, words in (*product(distances, whole), *product(distances, brief)):
         pieces, long, high = _label(words, size)
         for offset, x_, y_ in _beside(sphere, angle, middle, long, high, composition):
             at = round(x_), round(y_)
             box = Box(at[0], at[1], at[0] + long, at[1] + high)
             apart = Box(box.left - wide, box.top - wide, box.right + wide, box.bottom + wide)
-            clearing = Box(apart.left, box.top - high_, apart.right, box.bottom + high_)
+            clearing = Box(box.left - aside, box.top - high_, box.right + aside, box.bottom + high_)
             clear = abs(offset) <= within and not any(pane.touches(apart) for pane in composition.panes)
             if clear and _within(box, cell) and _free(clearing, obstacles) and _free(box, (around,)):
-                words_ = _layers(pieces, *at)
                 arc = _arc(sphere, angle, offset, composition) if offset else ()
-                return Placed(x, y, True, box, (*arc, *triangle, *words_))
+                if all(
+                    _free(Box(right - wide, down - wide, right + wide, down + wide), obstacles) for right, down in arc
+                ):
+                    line = _layers((Curve(arc, composition.px(1.0), GREY, FAR),), 0, 0) if arc else ()
+                    return Placed(x, y, True, box, (*line, *triangle, *_layers(pieces, *at)))
     return Placed(x, y, True, None, triangle)
 
 
@@ -181,16 +192,15 @@ def _beside(
             yield turn, x - (long if right < 0 else 0.0), y - (high if down < 0 else 0.0)
 
 
-def _arc(sphere: Sphere, angle: int, turn: int, composition: Composition) -> tuple[Layer, ...]:
-    """A line along the limb from a triangle to its text, unless they nearly touch."""
+def _arc(sphere: Sphere, angle: int, turn: int, composition: Composition) -> tuple[Point, ...]:
+    """The points of a line along the limb from a triangle to its text; none where they nearly touch."""
     radius = sphere.radius + composition.px(AWAY)
     aside = degrees(composition.px(BASE / 2 + 2) / radius)
     if radians(abs(turn) - aside) * radius < composition.px(12):
         return ()
     begin = aside if turn > 0 else -aside
     turns = np.radians(angle + np.linspace(begin, turn, 2 + abs(turn) // 3))
-    points = tuple((sphere.x + radius * cos(t), sphere.y - radius * sin(t)) for t in turns)
-    return _layers((Curve(points, composition.px(1.0), GREY, FAR),), 0, 0)
+    return tuple((sphere.x + radius * cos(t), sphere.y - radius * sin(t)) for t in turns)
 
 
 def _limb(sphere: Sphere, angle: float) -> tuple[float, float]:

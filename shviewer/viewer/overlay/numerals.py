@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from functools import lru_cache
 
@@ -31,15 +32,24 @@ def share(value: float, digits: int = 3, floor: float = 0.0) -> str:
     return typeset(percent(value, digits, floor))
 
 
-def value(found: float, peak: float) -> str:
-    return typeset(radiance(found, peak))
+def value(found: float, peak: float, digits: int = 3) -> str:
+    return typeset(radiance(found, peak, digits))
 
 
-def bound_text(found: float, bound: float | None, peak: float) -> str:
-    """The bound of an extreme that lies more than a hundredth beyond what was found, to stand after that; else ""."""
+def bound_text(found: float, bound: float | None, peak: float, digits: int = 3) -> str:
+    """The bound of an extreme that lies more than a hundredth beyond what was found, to stand after that; else "".
+
+    digits: with fewer than three it is rounded away from what was found, so that it stays a bound.
+    """
     if bound is None or abs(bound) <= abs(found) * BEYOND or abs(bound) <= 1e-6 * peak:
         return ""
-    said, other = value(bound, peak), value(found, peak)
+    said, other = value(bound if digits == 3 else _outward(bound, digits), peak, digits), value(found, peak)
     if said == other:
         return ""
     return f" to {said}" if bound < 0 else f" – {said}"
+
+
+def _outward(bound: float, digits: int) -> float:
+    """The number of so many digits that is next, away from zero."""
+    step = 10.0 ** (math.floor(math.log10(abs(bound))) - digits + 1)
+    return math.copysign(step * math.ceil(abs(bound) / step - 1e-9), bound)

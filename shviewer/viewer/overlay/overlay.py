@@ -96,7 +96,7 @@ def draw_overlay(
     if state.view.help_visible:
         return _overlay(at, [help_pieces(state, at, opengl, state.view.help_page)])
     numbers = at.numbers
-    heads, feet = caption_blocks(picture, at, timing)
+    heads, feet, unsaid = caption_blocks(picture, at, timing)
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]
     plane = None
     remark = ""
@@ -105,9 +105,9 @@ def draw_overlay(
         plane = draw_plane(sheet, picture, at, _boxes([*blocks, *feet]).values())
         remark = "" if plane else NO_ROOM if measured(picture) else NOT_TIMED
     said = said_of(picture, remark)
-    exposure = exposure_pieces(picture, at, numbers.exposure) if numbers.exposure else []
+    exposure = exposure_pieces(picture, at, numbers.exposure, unsaid) if numbers.exposure else []
     if numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline:
-        after = max((piece.box.right for piece in exposure), default=numbers.foot.left) + at.px(18)
+        after = round(max((piece.box.right for piece in exposure), default=numbers.foot.left) + at.px(18))
         foot = foot_pieces(at, said, work, after=after, proposed=proposed_key(picture))
         if said or work is not None:  # both are on one line
             exposure = []

@@ -13,6 +13,7 @@ from shviewer.viewer.actions import step_sweep
 from shviewer.viewer.animation.animation import HOLD, MAX_PIXELS, band_sweep, save_animation, turntable
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.keys import press
+from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import changed, state_of
 
 START = state_of("studio", muted=frozenset({2}), camera=(300.0, -10.0), zoom=1.5)
@@ -43,6 +44,20 @@ def test_a_basis_function_and_a_cursor_above_the_bands_of_a_frame_are_left() -> 
     states = band_sweep(changed(START, n_bands=8, basis=(4, -3), cursor=6), 2, 8).states
     assert [state.view.cursor for state in states] == [1] * 7
     assert {state.view.basis for state in states} == {None}
+
+
+@pytest.mark.parametrize("error", ["signed", "relative"])
+def test_the_colours_of_the_error_mean_the_same_in_every_frame(error: str) -> None:
+    """The range is that of the largest error, to two digits upwards; one that is given stays."""
+    states = band_sweep(changed(START, error=error), 1, 5).states
+    (error_range,) = {state.view.error_range for state in states}
+    ends = [prepare(changed(state, error_range=None)).error_scale.end for state in states]
+    assert error_range is not None
+    assert max(ends) * (1 - 1e-3) <= error_range < 1.11 * max(ends)  # the grid's largest error, and the true one
+    assert min(ends) < error_range
+    given = band_sweep(changed(START, error=error, error_range=0.3), 1, 5).states
+    assert {state.view.error_range for state in given} == {0.3}
+    assert band_sweep(START, 1, 5).states[0].view.error_range is None
 
 
 def test_a_sweep_of_one_band_count_is_one_frame() -> None:

@@ -13,7 +13,7 @@ import pytest
 from shviewer.errors import OutputError
 from shviewer.harmonics.rotation import rotate
 from shviewer.progress import Stopped, listening, tell
-from shviewer.viewer.desktop import errands, opening
+from shviewer.viewer.desktop import errands, opening, task
 from shviewer.viewer.desktop import session as sessions
 from shviewer.viewer.desktop.errands import Errands
 from shviewer.viewer.desktop.session import Session
@@ -41,7 +41,7 @@ class Held:
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """No errand is waited for, and each is spoken of at once."""
     monkeypatch.setattr(errands, "AT_ONCE", NOW)
-    monkeypatch.setattr(errands, "QUIET", -1.0)
+    monkeypatch.setattr(task, "QUIET", -1.0)
 
 
 @pytest.fixture

@@ -13,8 +13,9 @@ from viewer.desktop.desktop import output_of
 from shviewer.lights.function import FunctionLight
 from shviewer.progress import Stopped, listening, tell
 from shviewer.viewer.actions import Command
-from shviewer.viewer.desktop import errands, making
+from shviewer.viewer.desktop import errands
 from shviewer.viewer.desktop import session as sessions
+from shviewer.viewer.desktop import task as tasks
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.state import changed, state_of
@@ -156,14 +157,47 @@ def test_a_sweep_waits_for_its_pictures(gate: Gate) -> None:
 
 
 def test_work_is_spoken_of_only_once_it_has_taken_a_while(gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(making, "QUIET", 1e9)
+    monkeypatch.setattr(tasks, "QUIET", 1e9)
     session = waiting(gate)
     assert session.status == ""
     assert not session.tick(1.0)
-    monkeypatch.setattr(making, "QUIET", 0.0)
+    monkeypatch.setattr(tasks, "QUIET", 0.0)
     assert session.status == "projecting"
     assert session.tick(2.0)
     assert not session.tick(3.0)
+
+
+@pytest.mark.parametrize("keys", [["Up"], ["H", "H"], ["D"], ["Up", "D", "Up"]], ids="-".join)
+def test_what_is_at_work_is_told_until_it_ends_whatever_is_asked_for_since(
+    gate: Gate, monkeypatch: pytest.MonkeyPatch, keys: list[str]
+) -> None:
+    """A step of a Python function cannot be stopped: what comes after it waits, and is said to wait."""
+    monkeypatch.setattr(tasks, "QUIET", 0.0)
+    session = waiting(gate)
+    for key in keys:
+        session.press(key)
+        assert not session.prepare(patience=NOW)
+        assert session.work is not None
+        assert session.work.words.startswith("projecting")
+    assert ("comes after it" in session.status) == (keys != ["H", "H"])
+    assert "; " not in session.status.partition("; ")[2]
+    gate.open.set()
+    assert session.prepare()
+    assert session.work is None
+    session.press("Esc")
+
+
+def test_panes_come_with_their_picture(gate: Gate) -> None:
+    """D asks for a third one; until it is there, there are two."""
+    session = waiting(gate)
+    session.press("D")
+    session.state = changed(session.state, zoom=2.0)
+    assert not session.prepare(patience=NOW)
+    assert (session.view.n_spheres, session.view.zoom) == (2, 2.0)
+    gate.open.set()
+    assert session.prepare()
+    assert session.view == session.state.view
+    assert session.view.n_spheres == 3
 
 
 def test_a_task_ends_at_its_next_step_and_the_next_one_begins_then() -> None:

@@ -69,10 +69,15 @@ def test_a_file_that_is_gone_is_waited_for(file: Path) -> None:
     assert looks(watch, file, read, 3) == [False] * 3
     file.with_name("away").rename(file)
     assert looks(watch, file, read, 3) == [False] * 3  # it is the one that was read
+    assert not watch.gone
     file.unlink()
+    assert looks(watch, file, read, 1) == [False]
+    assert not watch.gone  # perhaps it is being replaced
     assert looks(watch, file, read, 2) == [False] * 2
+    assert watch.gone
     write(file, "another", 3)
     assert looks(watch, file, read, 3) == [False, True, False]
+    assert not watch.gone
 
 
 def test_what_was_reported_of_one_light_says_nothing_of_another(file: Path, tmp_path: Path) -> None:

@@ -31,11 +31,15 @@ from shviewer.viewer.overlay.lettering import (
 )
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Text
-from shviewer.viewer.overlay.plots.curve import LABELS, RING
+from shviewer.viewer.overlay.plots.curve import RING
 from shviewer.viewer.picture import Picture
+from shviewer.words import counted
 
 COUNTS = (1, 2, 3, 5, 9, 16, 32, 64, MAX_BANDS)
 TICKS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+LABELS = 72.0
+"""Room for the labels of the axes at the left, pixels of the design."""
+
 LANE = 5.0
 """The height of the bar under the axis, pixels of the design."""
 
@@ -66,10 +70,12 @@ def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> 
     for count in (count for count in reversed(COUNTS) if count <= most and count != n_bands):
         pieces.append(Fill(Box(left, round(y(count)), right, round(y(count)) + line), RULE))
         if all(abs(y(count) - other) > 1.1 * size for other in written):
+            said = f"{count} bands" if count == most else str(count)  # the name of the axis
             written.append(y(count))
-            pieces.append(_ended(f"count_{count}", left - at.px(8), y(count) + 0.36 * size, str(count), size, FAINT))
+            pieces.append(_ended(f"count_{count}", left - at.px(8), y(count) + 0.36 * size, said, size, FAINT))
     pieces.append(Fill(Box(left, round(y(n_bands)), right, round(y(n_bands)) + line), ACCENT, "bands_in_use"))
-    pieces.append(_ended("in_use", left - at.px(8), y(n_bands) + 0.36 * size, str(n_bands), size, INK, SEMIBOLD))
+    in_use = counted(n_bands, "band") if n_bands == most else str(n_bands)
+    pieces.append(_ended("in_use", left - at.px(8), y(n_bands) + 0.36 * size, in_use, size, INK, SEMIBOLD))
     lane = round(base + line)
     pieces.append(Fill(Box(left, lane, right, lane + thick), UNUSED))
     if steps is not None:
@@ -91,12 +97,13 @@ def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> 
             pieces.append(Curve(tuple(points), at.px(1.8), INK, clip, at.px(1.2), GROUND, name="steps"))
         pieces += _shown(picture, x, y, at)
     baseline = lane + thick + size
-    for roughness in TICKS:
+    step = next(step for step in (1, 3, 9) if step * (x(0.2) - x(0.1)) >= 3.4 * size or step == 9)
+    for roughness in TICKS[::step]:
         text = typeset(f"{roughness:g}")
         wide = width_of(text, size)
         place = round(min(max(x(roughness) - wide / 2, left), right - wide))
         pieces.append(Text(f"roughness_{roughness:g}", place, baseline, text, size, GREY))
-    pieces.append(_ended("roughness_axis", left - at.px(8), baseline, "rough" if at.compact else "rough.", size, FAINT))
+    pieces.append(_ended("roughness_axis", left - at.px(8), baseline, "roughness", size, FAINT))
     return pieces
 
 

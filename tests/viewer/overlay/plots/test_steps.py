@@ -13,7 +13,7 @@ from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.pieces import Curve, Fill
-from shviewer.viewer.overlay.plots.steps import steps_pieces
+from shviewer.viewer.overlay.plots.steps import LABELS, steps_pieces
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import State, state_of
 
@@ -46,7 +46,7 @@ def test_the_lit_part_under_the_axis_is_what_the_bands_serve() -> None:
     (lit,) = [piece.area for piece in pieces if isinstance(piece, Fill) and piece.name.startswith("served")]
     box = at.numbers.curve
     assert box is not None
-    left, right = box.left + at.px(44), box.right
+    left, right = box.left + at.px(LABELS), box.right
     for place, roughness in ((lit.left, low), (lit.right, high)):
         share = (roughness - ROUGHNESS[0]) / (ROUGHNESS[-1] - ROUGHNESS[0])
         assert place == pytest.approx(left + share * (right - left), abs=1)
