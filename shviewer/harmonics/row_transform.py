@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 
-FOLD_BANDS = 24
+FOLD_BANDS = 28
 """The number of bands from which north and south are folded, too; below, the fold costs more than it saves."""
 
 BLOCK_ROWS = 64
@@ -26,8 +26,8 @@ BLOCK_ROWS = 64
 NARROW = 1024
 """The fewest columns for float32, whose rounding averages out over them; with fewer, float64 is as fast and is used."""
 
-SMALL_PRODUCT = 900_000
-"""Multiplications in one product: below a million, OpenBLAS has kernels that read their operands in place."""
+LARGEST_PRODUCT = 4_000_000
+"""Multiplications in one product."""
 
 MAX_STEP = 3072
 """The most values of a row in one product, so that a block stays in the cache."""
@@ -203,5 +203,5 @@ class _Pass:
 
 def _step(n_functions: int, height: int, width: int) -> int:
     """The number of a row's values in one product: a multiple of 48."""
-    most = SMALL_PRODUCT // (n_functions * max(height, 1))
+    most = LARGEST_PRODUCT // (n_functions * max(height, 1))
     return min(max(most // 48 * 48, 48), MAX_STEP, width)
