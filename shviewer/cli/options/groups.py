@@ -22,11 +22,12 @@ from shviewer.cli.options.values import (
     tolerance,
     whole_or_word,
 )
+from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.words import one_line
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png, .jpg and others), "
-    "file.py:function, or coefficients (.json, .csv, .txt, .npz, .h, .glsl, .js, .cs)"
+    f"file.py:function, or coefficients ({', '.join(COEFFICIENT_SUFFIXES)})"
 )
 
 TEXTS = ("window", "error_range")
