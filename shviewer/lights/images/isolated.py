@@ -177,7 +177,7 @@ def _read_halves(stdout: IO[bytes], pixels: NDArray[np.float32]) -> bool:
         block = some[: len(rows)]
         if not _read_into(stdout, block.data.cast("B")):
             return False
-        rows[:] = float32_of(block)
+        float32_of(block, rows)
     return True
 
 

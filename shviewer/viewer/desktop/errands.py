@@ -25,7 +25,7 @@ from shviewer.viewer.saving.stamp import metadata
 
 T = TypeVar("T")
 
-AT_ONCE = 0.04
+AT_ONCE = 0.02
 """Seconds within which an errand is done before the next frame: most are."""
 
 

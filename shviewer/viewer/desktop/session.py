@@ -341,15 +341,21 @@ class Session:
 
     def keep(self, error: ShviewerError, picture: Picture | None = None) -> None:
         """Stay with the picture there is, or go back to another one, and say why; a sweep ends."""
-        shown = (picture or self.picture).seen(self.state)
+        shown, refused = picture or self.picture, self.state
+        message = Message(with_keys(str(error), refused.recipe.light, shown.state.recipe.reading), ERROR)
+        self.back_to(shown, message)
+        self._refused = None if refused.recipe.light == shown.state.recipe.light else refused.recipe.light
+        self.state = changed(self.state, layout_tried=refused.view.layout_tried)
+        self.picture = replace(self.picture, state=self.state)
+        self._log(f"kept {shown.light.name}: {error}")
+
+    def back_to(self, picture: Picture, message: str) -> None:
+        """Go back to a picture, seen as the one now is, with a message; a sweep ends."""
+        shown = picture.seen(self.state)
         keep_light(shown.state.recipe, shown.subject.whole)
-        message = Message(with_keys(str(error), self.state.recipe.light, shown.state.recipe.reading), ERROR)
-        tried = self.state.view.layout_tried
-        self._refused = None if self.state.recipe.light == shown.state.recipe.light else self.state.recipe.light
-        self.state = changed(shown.state, message=message, sweep_to=None, layout_tried=tried)
+        self.state = changed(shown.state, message=message, sweep_to=None)
         self.picture = replace(shown, state=self.state)
         self._enough = still(self.state)
-        self._log(f"kept {shown.light.name}: {error}")
 
     def save(self, renderer: Renderer, composition: Composition) -> None:
         """Save the picture, as soon as it is there, under the next free name in the current folder."""

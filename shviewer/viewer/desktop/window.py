@@ -158,6 +158,10 @@ class Window:
 
     def press(self, key: str) -> None:
         """Do what a key asks for; commands that the session returns are done here."""
+        if key == "Esc" and self.session.work is None and self.canvas.uploading and self.shown is not None:
+            self.session.back_to(self.shown, f"stopped {UPLOADING}")
+            self._due()
+            return
         command = self.session.press(key)
         composition = self.composition()
         if command is Command.FULL_SCREEN or (command is Command.LEAVE and self.fullscreen):

@@ -7,13 +7,17 @@ import signal
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from viewer.desktop.desktop import PATIENCE, Viewer, output_of, screenshot
 
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.desktop.window import Window
 from shviewer.viewer.gl.textures import BAND_BYTES
+from shviewer.viewer.state import state_of
 
 Start = Callable[..., Viewer]
 
@@ -289,3 +293,26 @@ def test_a_map_that_another_thread_hands_to_opengl_is_that_of_the_screenshot(sta
     np.save(tmp_path / "large.npy", pixels)
     shown, _ = start("large.npy").saved_picture()
     np.testing.assert_array_equal(shown, screenshot(tmp_path, "large.npy"))
+
+
+def test_escape_stops_a_map_on_its_way_to_opengl_and_closes_nothing() -> None:
+    session = Session(state_of("green", "hemisphere"))
+    before = session.picture
+    session.press("Right")
+    assert session.prepare()
+    shown = Window.__new__(Window)
+    shown.session, shown.shown, shown.frames_due = session, before, 0
+    shown.canvas = SimpleNamespace(uploading=True)  # type: ignore[assignment]
+    shown.press("Esc")
+    assert session.prepare()
+    assert session.picture.light is before.light
+    assert session.state.recipe.light == "green"
+    assert session.state.view.message == "stopped handing the map to OpenGL"
+    assert shown.frames_due == 1
+
+
+def test_a_window_closes_while_a_map_is_opened(start: Start, tmp_path: Path) -> None:
+    np.save(tmp_path / "large.npy", np.random.default_rng(6).random((600, 1200, 3), dtype=np.float32))
+    viewer = start("green", "large.npy")
+    viewer.xdotool("key", "Right", "ctrl+q")
+    assert viewer.process.wait(PATIENCE) == 0
