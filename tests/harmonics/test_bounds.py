@@ -21,6 +21,7 @@ from shviewer.harmonics.extremes.bands import band_heights
 from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.extremes.waves import Waves
+from shviewer.harmonics.extremes.zonal_table import Table
 from shviewer.harmonics.filters import per_coefficient, window
 from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
@@ -218,6 +219,44 @@ def test_no_derivative_passes_what_the_bands_allow() -> None:
     assert (second <= grid.moved(2) * (1 + 1e-12)).all()
     assert (second[:2] >= 0.45 * grid.moved(2)[:2]).all()
     assert (grid.moved(2)[:2] < 0.2 * grid.amplitude[:2] * grid.reach**2).all()  # where the highest bands are weak
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        Constant(),
+        Gaussian(0.3),
+        Gaussian(3000.0),
+        ClampedLinear(1.0, 0.8),
+        ClampedLinear(2.0, -1.0),
+        Disc(0.4),
+        Disc(2.5),
+    ],
+)
+@pytest.mark.parametrize("n_bands", [1, 4, 16])
+def test_no_second_derivative_between_the_ends_of_a_bin_passes_its_table(profile: Profile, n_bands: int) -> None:
+    """Against the sums themselves, at seven places in each bin that holds no edge."""
+    zonal = profile.zonal(n_bands)
+    table = Table.make(profile, zonal)
+    bins = table.ranges.shape[1]
+    angle = np.linspace(0, np.pi, 8 * bins + 1)
+    l = np.arange(n_bands)[:, None]
+    x, sine = np.cos(angle), np.sin(angle)
+    first, second = (np.polynomial.legendre.legder(np.eye(n_bands), m=order, axis=0) for order in (1, 2))
+    slopes = np.polynomial.legendre.legval(x, first) if n_bands > 1 else np.zeros((1, len(x)))
+    bends = np.polynomial.legendre.legval(x, second) if n_bands > 2 else np.zeros((n_bands, len(x)))
+    weights = (zonal * (2 * l[:, 0] + 1) / (4 * np.pi))[:, None]
+    _, lit_slope, lit_bend, _ = profile.along(angle)
+    along = lit_bend - (weights * (sine**2 * bends - x * slopes)).sum(axis=0)  # d''
+    tilt = lit_slope + sine * (weights * slopes).sum(axis=0)  # d'
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = np.where((angle > 0) & (angle < np.pi), tilt * x / sine, along)
+    inside = np.maximum(np.abs(along), np.abs(across))[:-1].reshape(bins, 8)[:, 1:].max(axis=1)
+    assert (inside <= table.ranges[3] * (1 + 1e-9) + 1e-9).all()
+    smooth = np.isfinite(table.ranges[3])
+    assert np.count_nonzero(~smooth) <= 2
+    steep = np.abs(lit_bend).max() + n_bands**2 * np.abs(weights).sum()  # of light and waves, which may cancel
+    assert table.ranges[3][smooth].mean() <= 1.1 * inside[smooth].mean() + 1e-2 * steep
 
 
 @pytest.mark.parametrize("seed", range(16))

@@ -1,6 +1,8 @@
 """A function of the angle to an axis, a profile less its bands, as a table that bounds it.
 
-Along any great circle the second derivative of such a function d is at most the larger of |d''| and |d' / tan|.
+Along any great circle the second derivative of such a function d is at most the larger of |d''| and |d' / tan|. What is between
+the ends of a bin of width w follows from those: d'' is no larger than there but for w^2 / 8 times the fourth derivative, d' but
+for w times d''; and d' / tan is no larger than the largest |d''| between there and a pole, where d' is 0, if no edge is.
 """
 
 from __future__ import annotations
@@ -19,9 +21,6 @@ FEWEST_BINS, BINS_A_BAND = 1024, 64
 
 EDGE = 1e-9
 """The distance from an edge, relative to its angle, of a direction that is next to it."""
-
-MARGIN = 1.01
-"""Second derivatives are taken at the ends of bins; in between they may be this much larger."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +47,15 @@ class Table:
         width, l = np.pi / bins, np.arange(n_bands)
         series = (zonal * np.sqrt((2 * l + 1) / (4 * np.pi))) @ theta_series(n_bands)[0]  # Y(l, 0) in cos(k theta)
         waves = np.fft.fft(np.stack([series, l * series, l * l * series]), 2 * bins)[:, : bins + 1]
-        angle = width * np.arange(bins + 1)
         values, slope, bend = -waves[0].real, -waves[1].imag, waves[2].real
         between = (n_bands - 1) ** 2 * width**2 / 8  # the share of a wave that is lost between the ends of a bin
-        wave = float(np.ptp(values)) / 2
+        wave = float(np.ptp(values)) / 2 / np.cos((n_bands - 1) * width / 2)  # [Ehlich-Zeller], see waves.py
         lit, lit_slope, lit_bend, rough = _along(profile, bins)
-        total, slope, bend = values + lit, slope + lit_slope, np.abs(bend + lit_bend)
-        bend[1:-1] = np.maximum(bend[1:-1], np.abs(slope[1:-1]) * np.abs(1 / np.tan(angle[1:-1])))
-        bend = MARGIN * np.maximum(bend[:-1], bend[1:]) + (n_bands - 1) ** 2 * wave * between + rough * width**2 / 8
-        slope = np.maximum(np.abs(slope[:-1]), np.abs(slope[1:])) + bend * width
+        total = values + lit
+        alone = _larger(bend) + (n_bands - 1) ** 2 * wave * between
+        bend = _larger(bend + lit_bend) + (n_bands - 1) ** 2 * wave * between + rough * width**2 / 8
+        slope = _larger(slope + lit_slope) + bend * width
+        bend = np.maximum(bend, _across(slope, bend, alone, profile.half_angle if profile is not None else np.pi))
         room = bend * width**2 / 8
         low, high = np.minimum(total[:-1], total[1:]) - room, np.maximum(total[:-1], total[1:]) + room
         edge, sides = 4.0, (0.0, 0.0)
@@ -110,6 +109,27 @@ def around_edge(profile: Profile, axis: Array, count: int) -> Array:
 def beside(edge: float) -> tuple[float, float]:
     """Angles just inside and just outside of an edge."""
     return edge * (1 - EDGE), edge * (1 + EDGE)
+
+
+def _larger(values: Array) -> Array:
+    """The larger magnitude at the two ends of each bin."""
+    size = np.abs(values)
+    return np.maximum(size[:-1], size[1:])
+
+
+def _across(slope: Array, bend: Array, alone: Array, edge: float) -> Array:
+    """A bound of |d' / tan| in each bin, by bounds of d' and d'' and of the d'' that the waves have alone, (bins,)."""
+    bins = len(slope)
+    lit = int(edge * bins / np.pi) if edge < np.pi else bins
+    number = np.arange(bins)
+    by_north, waves_by_north, by_south = (
+        np.maximum.accumulate(values) for values in (bend, alone, bend[::-1])
+    )  # the largest on the way from a pole; beyond an edge there are waves alone, whose slope never jumped
+    north = np.where(number < lit, by_north, waves_by_north)
+    south = np.where((number > lit) | (lit == bins), by_south[::-1], np.inf)
+    nearer = np.minimum(number, bins - 1 - number) * (np.pi / bins)  # the end of a bin that is nearer to a pole
+    nearest = np.divide(slope, np.tan(nearer), out=np.full(bins, np.inf), where=nearer > 0)
+    return np.asarray(np.minimum(nearest, np.where(2 * number < bins, north, south)))
 
 
 @lru_cache(maxsize=256)
