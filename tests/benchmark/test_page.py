@@ -147,6 +147,7 @@ def test_html_escapes_what_a_light_is_called_and_leaves_stars_in_code_and_words_
         '# T\n\n- <b>&"x": a*b*c, `*p*`, *once*, **two\n  words**\n\n| a | b |\n|---|--:|\n| x \\| y | 1 000 |\n'
     )
     assert "&lt;b&gt;&amp;&quot;x&quot;: a*b*c, <code>*p*</code>, <em>once</em>, <strong>two\n  words</strong>" in page
+    assert "<img" not in as_html("# T\n\n![a light](http://elsewhere/x.svg) ![b](../x.svg) ![c](x.png)\n")
     assert '<td>x | y</td><td class="n">1\u00a0000</td>' in page
 
 

@@ -97,14 +97,14 @@ def _table(lines: list[str]) -> str:
 
 
 def _inline(text: str) -> str:
-    """Pictures, code and emphasis of a text; stars and underscores within code or a word are left as they are."""
+    """Plots beside the page, code and emphasis of a text; stars within code or a word are left as they are."""
     parts = re.split(r"`([^`]*)`", escape(text))
     for number, part in enumerate(parts):
         if number % 2:
             parts[number] = f"<code>{part}</code>"
             continue
         part = re.sub(r"(?<=\d)\s(?=%|\d{3}(?!\d))", "\N{NO-BREAK SPACE}", part)  # "5 %", "10 000"
-        part = re.sub(r"!\[([^\]]*)\]\(([^)]*)\)", r'<img src="\2" alt="\1">', part)
+        part = re.sub(r"!\[([^\]]*)\]\(([\w-]+\.svg)\)", r'<img src="\2" alt="\1">', part)
         part = re.sub(r"\*\*(\S.*?)\*\*", r"<strong>\1</strong>", part, flags=re.DOTALL)
         parts[number] = re.sub(r"(?<!\w)\*(\w.*?)\*(?!\w)", r"<em>\1</em>", part, flags=re.DOTALL)
     return "".join(parts)
