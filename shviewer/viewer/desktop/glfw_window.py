@@ -112,7 +112,7 @@ def side_context(window: Any) -> SideContext | None:
     """
     _hint(*(glfw.get_window_attrib(window, what) for what in (glfw.CONTEXT_VERSION_MAJOR, glfw.CONTEXT_VERSION_MINOR)))
     glfw.window_hint(glfw.VISIBLE, False)
-    handle = glfw.create_window(1, 1, "shviewer", None, window)
+    handle = glfw.create_window(1, 1, "", None, window)
     return SideContext(handle) if handle else None
 
 

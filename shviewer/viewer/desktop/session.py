@@ -214,10 +214,10 @@ class Session:
                 self._reading = Event()
 
         def refused(error: ShviewerError) -> None:
-            if again:
-                self._reading = Event()
             if not self._pass_over(state, error):
                 self.say(str(error), ERROR)
+            elif again:
+                self._reading = Event()
 
         self._openings.stop()
         words = f"opening {light_name(state.recipe.light)}"
