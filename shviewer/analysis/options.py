@@ -84,9 +84,9 @@ class Choice(NamedTuple):
 
     def check(self, name: str, value: Any) -> None:
         if value not in self.choices:
-            empty = ", or empty" if "" in self.choices else ""
             known = [choice for choice in self.choices if choice]
-            raise UsageError(f"{_said(name)} {value!r}: {meant(str(value), known)}{empty}")
+            rule = f"it must be one of {', '.join(known)}{', or empty' if '' in self.choices else ''}"
+            raise UsageError(f"{_said(name)} {value!r}: {meant(str(value), known, rule)}")
 
 
 class Whole(NamedTuple):
