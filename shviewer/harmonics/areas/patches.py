@@ -54,7 +54,10 @@ def quadrant_points(n_texels: int, n_points: int) -> tuple[Array, Array]:
 
 
 def quadrant_edges(n_texels: int) -> Array:
-    """The edges, from 0 to 1, of the texels in the half [0, 1]; the middle one of an odd number begins at 0."""
+    """The edges, from 0 to 1, of the texels in the half [0, 1], (n_texels - n_texels // 2 + 1,).
+
+    The middle one of an odd number begins at 0.
+    """
     return np.maximum((2 * np.arange(n_texels // 2, n_texels + 1) - n_texels) / n_texels, 0.0)
 
 

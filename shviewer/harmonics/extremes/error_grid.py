@@ -125,7 +125,7 @@ class ErrorGrid:
         )
 
     def lows(self, shown: Array) -> Lows:
-        """The same of the reconstruction alone, which takes no look at the light."""
+        """The same of the reconstruction (n_bands**2, 3) alone, which takes no look at the light."""
         return self._lows(self._see(shown))
 
     def _see(self, shown: Array) -> _Seen:

@@ -28,6 +28,8 @@ AREA_POINTS = 12
 
 @dataclass(frozen=True)
 class AngularLayout(DiscLayout):
+    """A disc whose radius is the angle to the direction ahead, over pi."""
+
     name: str = "angular"
 
     def radius(self, theta: Array) -> Array:

@@ -46,6 +46,8 @@ class Face:
 
 @dataclass(frozen=True)
 class Arrangement:
+    """Where the faces of a cube stand in an image, in cells of one face each."""
+
     name: str
     rows: int
     columns: int

@@ -50,11 +50,11 @@ class DiscLayout(Disc):
 
     @abstractmethod
     def radius(self, theta: Array) -> Array:
-        """The radius, in [0, 1], of directions at an angle from the direction ahead, in radians."""
+        """The radius, in [0, 1], of directions at an angle from the direction ahead, in radians; of the same shape."""
 
     @abstractmethod
     def theta(self, radius: Array) -> Array:
-        """The angle of a radius: the inverse of `radius`."""
+        """The angle of a radius, radians: the inverse of `radius`."""
 
     def upper(self) -> NDArray[np.bool_]:
         return (2 * np.arange(self.side) + 1 < self.side)[:, None]

@@ -31,6 +31,8 @@ ROOT_POINTS = 24
 
 @dataclass(frozen=True)
 class MirrorBallLayout(DiscLayout):
+    """A disc as a mirroring ball shows it: its radius is the sine of half the angle to the direction ahead."""
+
     name: str = "mirror-ball"
 
     def radius(self, theta: Array) -> Array:
