@@ -23,6 +23,7 @@ from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.light import About, Split
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import DEFAULT_LIMITS, RASTER_BYTES, SPLIT_BYTES, Limits, check_brightness
+from shviewer.progress import tell
 from shviewer.words import one_line
 
 MAX_RASTER_WIDTH = 8192
@@ -129,6 +130,7 @@ class EnvironmentLight(RadianceLight):
         """As in Light. The most bands asked for so far are kept; fewer bands are their first rows."""
         held = self._projected[-1:]
         if not held or len(held[0]) < n_bands**2:
+            tell("projecting")  # whoever asks, and whatever for
             found = self._from_whole(n_bands)
             held = [self.layout.project(self.pixels, n_bands) if found is None else found]
             self._projected[:] = held

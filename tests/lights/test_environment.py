@@ -23,6 +23,7 @@ from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.reading import Reading
 from shviewer.limits import Limits
+from shviewer.progress import listening
 
 
 def random_light(height, width, seed=0):
@@ -302,3 +303,12 @@ def test_any_size_is_read_and_projected_exactly(tmp_path, width, height):
     expected = np.einsum("r,rcx->x", weights, light.pixels.astype(np.float64)) / np.sqrt(4 * np.pi)
     assert_allclose(light.coefficients(5)[0], expected, rtol=1e-12, atol=0)
     assert ((light.coefficients(5) ** 2).sum(axis=0) <= light.products().diagonal() * (1 + 1e-12)).all()
+
+
+def test_whoever_has_an_image_projected_it_is_said_once_and_not_again_for_fewer_bands() -> None:
+    told: list[str] = []
+    light = EnvironmentLight(np.ones((8, 16, 3), np.float32))
+    with listening(lambda what, share: told.append(what)):
+        for n_bands in (3, 2, 3, 4):
+            light.coefficients(n_bands)
+    assert told.count("projecting") == 2
