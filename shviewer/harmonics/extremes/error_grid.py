@@ -28,6 +28,9 @@ TOLERANCE = 8e-4
 RING_POINTS = 32
 """Points a band along the edge of a lobe, where the tables do not say where the largest error is."""
 
+CLOSE_ROWS, MOST_OPEN = 5, 2000
+"""A grid of so many rows a band bounds the minimum of lobes sooner than their tables, or one with fewer points open."""
+
 BLOCKS = 6
 """The blocks of the grid from whose highest cells the largest error is climbed to."""
 
@@ -77,6 +80,8 @@ class _Seen(NamedTuple):
     synthesis: Synthesis
     values: Array
     waves: Waves
+    of_lobes: tuple[Array, float]
+    """Of a light of lobes `Lobes.factors`; of others nothing."""
 
 
 class ErrorGrid:
@@ -110,7 +115,7 @@ class ErrorGrid:
         """The extremes of the reconstruction with coefficients `shown`, (n**2, 3), and of its error."""
         seen = self._see(shown)
         if isinstance(self.form, Lobes):
-            error = self._error_of_lobes(seen, self.form, *self.form.factors(shown))
+            error = self._error_of_lobes(seen, self.form, *seen.of_lobes)
         elif isinstance(self.form, Raster):
             error = self._error_of_raster(seen, self.form)
         else:
@@ -131,13 +136,12 @@ class ErrorGrid:
     def _see(self, shown: Array) -> _Seen:
         synthesis = Synthesis(shown)
         values = synthesis.on_rows(self.theta, len(self.phi))
-        return _Seen(shown, synthesis, values, Waves(values, band_heights(shown)))
+        of_lobes = self.form.factors(shown) if isinstance(self.form, Lobes) else (np.zeros((0, 0)), 0.0)
+        return _Seen(shown, synthesis, values, Waves(values, band_heights(shown)), of_lobes)
 
     def _lows(self, seen: _Seen) -> Lows:
-        if isinstance(self.form, Lobes):
-            lowest = self._lowest_of_lobes(seen, self.form, *self.form.factors(seen.shown))
-        else:
-            lowest = self._lowest(seen)
+        form = self.form
+        lowest = self._lowest_of_lobes(seen, form, *seen.of_lobes) if isinstance(form, Lobes) else self._lowest(seen)
         luminance = sum(weight * seen.values[:, channel] for channel, weight in enumerate(LUMINANCE))
         return Lows(
             minimum=lowest.value,
@@ -176,8 +180,11 @@ class ErrorGrid:
         return found._replace(bound=bounded.bound)
 
     def _lowest_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> Found:
-        negligible = self._negligible(seen)
-        if rest > negligible or not lobes.on_one_axis:  # coefficients of samples are not the light's own
+        negligible, low = self._negligible(seen), float(seen.waves.low.min())
+        close = len(self.theta) >= CLOSE_ROWS * len(seen.waves.heights) or (
+            seen.waves.open_points(low, TOLERANCE * abs(low)) < MOST_OPEN
+        )
+        if rest > negligible or (close and not lobes.on_one_axis):  # coefficients of samples are not the light's own
             found = self._lowest(seen)
             if rest > negligible or found.bound >= found.value - 2 * max(TOLERANCE * abs(found.value), negligible):
                 return found

@@ -101,6 +101,10 @@ class Waves:
         better(by_row[..., -1], by_row[..., 0], out=corners[..., -1])
         return corners
 
+    def open_points(self, found: float, tolerance: float) -> int:
+        """The number of points, times channels, beside which it may be lower by their values alone."""
+        return int(np.count_nonzero(self.difference < (found - tolerance + self.slack)[:, None]))
+
     def lowest(self, found: float, tolerance: float, effort: int = 1) -> Bounded:
         """A lower bound of all channels, not far below found - tolerance; found: a value that the function takes.
 
