@@ -12,8 +12,9 @@ float line_cover(float along, float pitch, float width) {
 }
 
 // `shown` with its lines. to_edge: pixels to the limb of a sphere, where a surface seen askew would crowd the line of the edge.
-// That line is on the negative side alone: where light ends in black there is none. Derivatives: to be called by all pixels.
-vec3 with_lines(vec3 shown, Exposed light, float to_edge) {
+// That line is on the negative side alone: where light ends in black there is none. beyond: whether what is beyond white has
+// lines. Derivatives: to be called by all pixels.
+vec3 with_lines(vec3 shown, Exposed light, float to_edge, bool beyond) {
     float lowest = min(min(light.radiance.r, light.radiance.g), light.radiance.b);
     bool on_light = dot(shown, LUMINANCE) > LIGHT_GROUND;   // a fill is never as light
     vec3 ink = on_light ? DARK_INK : RISING_INK;
@@ -21,7 +22,7 @@ vec3 with_lines(vec3 shown, Exposed light, float to_edge) {
                    : lowest < -BARELY ? (on_light ? RISING_DARK : RISING_FAINT) : 0.0;
     float along = gl_FragCoord.x - gl_FragCoord.y, pitch = RISING_PITCH, width = 1.0;
 #if TONE == TONE_NONE
-    if (light.luminance > 1.0) {
+    if (beyond && light.luminance > 1.0) {
         ink = DARK_INK, pitch = BEYOND_PITCH, width = BEYOND_WIDTH, along = gl_FragCoord.x + gl_FragCoord.y;
         strength = BEYOND_STRENGTH * min((light.luminance - 1.0) / BEYOND_RISE, 1.0);
     }

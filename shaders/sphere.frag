@@ -21,6 +21,7 @@ uniform vec2 centre;            // pixels from the bottom left; of a map: where 
 uniform float radius;           // of a sphere, pixels
 uniform float turn;             // of a map: pixels from a meridian round to itself
 uniform mat3 light_from_pane;   // turns a normal or a direction of the world into the frame of the light
+uniform bool wide_suns;         // whether the suns are so wide that lines on them are more than a stroke
 uniform bool linear_output;     // radiance as it is, zero beside a sphere, for comparing numbers
 uniform sampler2D original_map;
 uniform bool original_rows_on_poles;
@@ -104,7 +105,11 @@ void main() {
     vec3 shown = error_colour(error_value(original, radiance));
 #else
     Exposed light = exposed(radiance);
-    vec3 shown = with_lines(visible(light), light, to_edge);
+    bool beyond = wide_suns;
+#if SHOWN == SHOWN_RECONSTRUCTION
+    beyond = beyond || exposure * dot(lobe_radiance(direction, sun_lobes), LUMINANCE) <= 1.0;
+#endif
+    vec3 shown = with_lines(visible(light), light, to_edge, beyond);
 #endif
     colour = vec4(encode(mix(BACKGROUND, shown, clamp(to_edge + 0.5, 0.0, 1.0))), 1.0);
 }

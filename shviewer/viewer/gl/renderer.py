@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.zonal import Disc
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobe import Lobe
 from shviewer.viewer.colour import colour_maps
@@ -21,6 +22,7 @@ from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.gl.shared import (
     BACKGROUND,
     CHOICES,
+    FLOATS,
     LOBE_SLOTS,
     SH_TERMS,
     pack_coefficients,
@@ -38,6 +40,9 @@ GL_VERSIONS = (450, 410, 330)
 
 MOST_SAMPLES = 6
 """The most looks at a map along a side of a pixel."""
+
+LEAST_HATCHED = 3
+"""How many lines beyond white are the fewest that a sun has room for, if it has any."""
 
 VEC4 = 16
 """Bytes of a vec4."""
@@ -240,6 +245,7 @@ class Renderer:
             n_bands=count_bands(picture.coefficients),
             original_lobes=lobes,
             sun_lobes=suns,
+            wide_suns=shown != "RECONSTRUCTION" or _wide(picture.suns, pane, max(composition.scale, 1.0)),
             original_rows_on_poles=source.map is not None and source.map.rows_on_poles,
         )
         if isinstance(picture.drawn, Encoded):
@@ -295,6 +301,13 @@ class Renderer:
         if name not in self.colours:
             self.colours[name] = colour_maps.linear(colour_maps.table(name))[None].astype(np.float32)
         return self.colours[name]
+
+
+def _wide(suns: Sequence[Lobe], pane: Pane, scale: float) -> bool:
+    """Whether every sun is a few lines beyond white wide; a smaller one would have a stroke like a fault on it."""
+    per_radian = pane.radius if isinstance(pane, Sphere) else pane.width / (2 * np.pi)
+    widths = [2 * sun.profile.half_angle * per_radian for sun in suns if isinstance(sun.profile, Disc)]
+    return all(width >= LEAST_HATCHED * FLOATS["BEYOND_PITCH"] * scale for width in widths)
 
 
 def _held(shown: LatLongMap | None) -> tuple[NDArray[np.float32] | None, bool]:

@@ -43,8 +43,8 @@ Page = list[list[Row]]
 """The rows of each column."""
 
 
-def help_pieces(state: State, at: Composition, opengl: str, page: int = 0) -> list[Piece]:
-    """The sheet, which covers the frame. page: how often PageDown was pressed."""
+def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list[Piece]:
+    """The sheet, which covers the frame. foot: what stands under it, if there is room; page: how often PageDown was pressed."""
     pieces: list[Piece] = [Fill(Box(0, 0, at.width, at.height), GROUND)]
     size, margin = _size(at), at.margin
     pages, pitch = pages_of(at)
@@ -64,9 +64,9 @@ def help_pieces(state: State, at: Composition, opengl: str, page: int = 0) -> li
             y += max(len(row.lines), 1) * at.px(ROW)
         lowest = max(lowest, y)
     last = at.height - at.px(12)
-    if opengl and last - at.px(14) > lowest - at.px(ROW):
-        words = shortened_to(opengl, at.width - 2 * margin, at.px(12))
-        pieces.append(Text("opengl", margin, round(last), words, at.px(12), FAINT))
+    if foot and last - at.px(14) > lowest - at.px(ROW):
+        words = shortened_to(foot, at.width - 2 * margin, at.px(12))
+        pieces.append(Text("help_foot", margin, round(last), words, at.px(12), FAINT))
     return pieces
 
 

@@ -90,11 +90,12 @@ def draw_overlay(
     """Draw everything that is written.
 
     timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
-    work: what is at work meanwhile, in place of messages. hovered: the band under the mouse.
+    work: what is at work meanwhile, in place of messages and of OpenGL's name. hovered: the band under the mouse.
     """
     at, state = composition, picture.state
     if state.view.help_visible:
-        return _overlay(at, [help_pieces(state, at, opengl, state.view.help_page)])
+        at_foot = opengl if work is None else f"{work.words}; Esc stops"
+        return _overlay(at, [help_pieces(state, at, at_foot, state.view.help_page)])
     numbers = at.numbers
     heads, feet, unsaid = caption_blocks(picture, at, timing)
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]

@@ -192,6 +192,7 @@ def test_enlarged_spheres_are_cut_between_their_panes_and_at_the_hairline(zoom: 
             assert enlarged.clip.bottom <= at.hairline.top
         for one, two in itertools.pairwise(at.spheres):
             assert one.clip.right < two.clip.left
+        assert (at.spheres[0].clip.left, at.spheres[0].clip.top, at.spheres[-1].clip.right) == (0, 0, 1280)
 
 
 @pytest.mark.parametrize("width", [64, 100, 200, 320, 900, 8192])

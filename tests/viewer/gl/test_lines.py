@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers import picture_of
+from helpers import frame_of, picture_of
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from viewer.gl.frames import map_frame, positions, square_frame
@@ -24,6 +24,7 @@ from shviewer.viewer.composing.panes import Sphere
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.screenshot import render_linear, render_rgb
+from shviewer.viewer.state import changed
 from shviewer.viewer.view import TONES
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -222,3 +223,24 @@ def test_a_channel_below_zero_is_seen_under_the_light_of_the_others(renderer: Re
     mask = assert_drawn_as_told(renderer, picture, FRAMES["spheres"], ORIGINAL)
     drawn = render_rgb(renderer, picture, FRAMES["spheres"], overlay=False)
     assert np.median(structure(drawn, "normal")[all_in_window(mask)]) > 3
+
+
+@pytest.mark.parametrize(("zoom", "lined"), [(6.0, False), (16.0, True)])
+def test_a_sun_apart_has_lines_only_where_there_is_room_for_several(
+    renderer: Renderer, zoom: float, lined: bool
+) -> None:
+    """Half a degree is 12 or 33 pixels wide, where there is a line every 6: one would be a stroke like a fault."""
+    shown = picture_of("sun-sky", n_bands=4, split_sun=True, zoom=zoom, exposure_stops=-4.0)
+    shown = shown.seen(changed(shown.state, camera=towards(shown.subject.suns[0].axis)))
+    frame = frame_of(shown)
+    sphere = frame.spheres[RECONSTRUCTION]
+    pixels = render_rgb(renderer, shown, frame, overlay=False).astype(int)
+    reach = int(0.6 * sphere.radius * shown.subject.suns[0].half_angle)
+    part = pixels[round(sphere.y) - reach : round(sphere.y) + reach, round(sphere.x) - reach : round(sphere.x) + reach]
+    assert (part.min() < 200) == lined
+    assert part.max() == 255
+
+
+def towards(axis: Array) -> tuple[float, float]:
+    """The camera in front of a direction."""
+    return float(np.degrees(np.arctan2(axis[1], axis[0]))), float(np.degrees(np.arcsin(axis[2])))

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
+from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont  # of matplotlib, which the tests need anyway
 from places import ROOT
 
@@ -86,6 +92,38 @@ def test_any_name_is_letters_or_escapes(name: str) -> None:
         assert face in (lettering.OURS, lettering.RAISE) or has(face, character)
     assert mask(shown, 15).coverage.any()
     assert escaped(shown) == shown
+
+
+@pytest.mark.skipif(shutil.which("fc-match") is None or sys.platform != "linux", reason="no fontconfig here")
+def test_a_face_of_the_system_draws_what_ours_lacks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One made here, so that it does not matter which faces the machine has."""
+    square = TTGlyphPen(None)
+    square.moveTo((100, 0))
+    for corner in ((100, 800), (900, 800), (900, 0)):
+        square.lineTo(corner)
+    square.closePath()
+    builder = FontBuilder(1000)
+    builder.setupGlyphOrder([".notdef", "sun"])
+    builder.setupCharacterMap({0x65E5: "sun"})
+    builder.setupGlyf({".notdef": TTGlyphPen(None).glyph(), "sun": square.glyph()})
+    builder.setupHorizontalMetrics({".notdef": (1000, 0), "sun": (1000, 100)})
+    builder.setupHorizontalHeader(ascent=900, descent=-100)
+    builder.setupNameTable({"familyName": "Suns", "styleName": "Regular"})
+    builder.setupOS2()
+    builder.setupPost()
+    builder.save(tmp_path / "suns.ttf")
+    where = f"<dir>{tmp_path}</dir><cachedir>{tmp_path}/cache</cachedir>"
+    (tmp_path / "fonts.conf").write_text(f"<fontconfig>{where}</fontconfig>", encoding="utf-8")
+    monkeypatch.setenv("FONTCONFIG_FILE", str(tmp_path / "fonts.conf"))
+    caches = (system_face, lettering._face_of, escaped, mask, width_of)
+    for cache in caches:
+        cache.cache_clear()
+    assert escaped("\u65e5.hdr \u672c") == "\u65e5.hdr \\u672c"
+    assert width_of("\u65e5", 20.0) == 20.0
+    drawn = mask("\u65e5", 20.0).coverage
+    assert (drawn > 200).sum() == pytest.approx(16 * 16, abs=40)
+    for cache in caches:
+        cache.cache_clear()
 
 
 def test_what_no_face_has_is_escaped(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -178,3 +216,17 @@ def test_a_share_says_no_more_than_can_be_known(value: float, floor: float, text
 )
 def test_only_a_bound_that_is_not_reached_is_said(found: float, bound: float | None, text: str) -> None:
     assert bound_text(found, bound, 1.0) == text
+
+
+@pytest.mark.parametrize(
+    ("bound", "digits", "text"),
+    [
+        (-0.1101, 2, " to −0.12"),
+        (-0.11, 2, " to −0.11"),
+        (-2.71e-5, 2, " to −2.8 × 10⁻⁵"),
+        (99.1, 2, " – 100"),
+        (99910.0, 2, " – 1.0 × 10⁵"),
+    ],
+)
+def test_a_bound_in_fewer_digits_is_still_a_bound(bound: float, digits: int, text: str) -> None:
+    assert bound_text(0.0, bound, 1.0, digits) == text

@@ -266,6 +266,32 @@ def test_beyond_white_is_explained_only_where_something_is_and_no_curve_bends_it
     assert "zebra" not in draw_overlay(PICTURES["green"], at).boxes
 
 
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("name", ["green", "signed error", "relative error"])
+def test_the_exposure_stands_in_one_place(name: str, size: tuple[int, int]) -> None:
+    for maps in (False, True):
+        said = text_of(draw_overlay(PICTURES[name], frame(PICTURES[name], size, maps)))
+        compact = frame(PICTURES[name], size, maps).compact
+        assert said.count(" stops") == 1 or (compact and said.count(" stops") == 0), maps
+
+
+@pytest.mark.parametrize(("minimum", "bound"), [(-0.104, -0.110), (0.0, -2.7e-5), (-1.09e7, -1.2e7)])
+def test_the_sample_of_negative_channels_is_there_whatever_the_numbers(minimum: float, bound: float) -> None:
+    shown = PICTURES["green"]
+    extremes = replace(shown.figures.extremes, minimum=minimum or -2.6e-5, minimum_bound=bound)
+    boxes = draw_overlay(replace(shown, figures=replace(shown.figures, extremes=extremes)), compose(1280, 640)).boxes
+    assert "minimum_swatch" in boxes
+    last = max(box.right for name, box in boxes.items() if name.startswith("minimum"))
+    assert boxes["negative_area"].left - last >= 8
+
+
+def test_what_may_be_missed_is_no_fact_in_few_words_either() -> None:
+    shown = PICTURES["long name"]
+    for size in SIZES[1:]:
+        said = text_of(draw_overlay(shown, frame(shown, size)))
+        assert "may miss < " in said or "may be missed" in said, size
+
+
 def test_a_fixed_exposure_says_so() -> None:
     assert "exposure +1.0 stops, fixed" in text_of(draw_overlay(picture_of(exposure_stops=1.0), compose(1280, 640)))
 
@@ -421,6 +447,27 @@ def test_the_help_covers_everything() -> None:
     assert (help_of((1280, 640)).image[..., 3] == 255).all()
     assert "PageDown" not in text_of(help_of((1280, 640)))
     assert "PageDown: page 2 of" in text_of(help_of((400, 300), 1))
+
+
+def test_the_help_says_what_is_at_work() -> None:
+    shown = PICTURES["help"]
+    at = compose(1280, 640)
+    said = text_of(draw_overlay(shown, at, opengl="OpenGL 4.5", work=Work("reading sky.exr")))
+    assert "reading sky.exr; Esc stops" in said
+    assert "OpenGL 4.5" in text_of(draw_overlay(shown, at, opengl="OpenGL 4.5"))
+
+
+def test_settings_stand_at_the_right_end_of_their_column_and_sentences_begin_in_line() -> None:
+    """Where a column has the room, no sentence is broken."""
+    drawn = help_of((1280, 640))
+    columns: dict[int, list[float]] = {}
+    for piece in drawn.texts:
+        if piece.name.startswith("value_"):
+            columns.setdefault(round(piece.right) // 420, []).append(piece.right)
+        assert not piece.name.startswith("does_") or piece.name.endswith("_0"), piece
+    assert len(columns) == 3
+    for ends in columns.values():
+        assert max(ends) - min(ends) <= 1
 
 
 def test_the_help_shows_present_values() -> None:

@@ -56,7 +56,7 @@ def test_what_needs_more_bands_than_there_are_is_off_the_chart_and_pending_figur
     picture, at = shown("sun-sky", n_bands=9), compose(1280, 640)
     curves = [piece for piece in steps_pieces(staircase(picture.state.recipe), picture, at) if isinstance(piece, Curve)]
     assert len(curves) == 1
-    assert curves[0].points[0][0] > at.numbers.curve.left + at.px(44) + 5  # type: ignore[union-attr]
+    assert curves[0].points[0][0] > at.numbers.curve.left + at.px(LABELS) + 5  # type: ignore[union-attr]
     pending = draw_overlay(replace(picture, needs=PENDING), at)
     assert "steps_sentence" not in pending.boxes
     assert not any(isinstance(piece, Curve) and piece.name == "steps" for piece in pending.pieces)
@@ -74,3 +74,11 @@ def test_J_goes_there_and_back() -> None:
     assert isinstance(there, State)
     assert there.view.by_roughness
     assert press(there, "J") == State()
+
+
+@pytest.mark.parametrize("n_bands", [4, 16])
+def test_both_axes_are_named(n_bands: int) -> None:
+    boxes = draw_overlay(prepare(state_of(by_roughness=True, n_bands=n_bands)), compose(1280, 640))
+    said = {piece.name: piece.text for piece in boxes.texts}
+    assert said["roughness_axis"] == "roughness"
+    assert "16 bands" in said.values()
