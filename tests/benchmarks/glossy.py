@@ -19,8 +19,9 @@ from measure import cpu_milliseconds, machine
 
 from shviewer.analysis.roughness import staircase
 from shviewer.benchmark.measuring.measured_lights import measured_light
-from shviewer.benchmark.measuring.moving import SAMPLES, WAYS, noise, sampled
-from shviewer.benchmark.measuring.moving import sun as moving_sun
+from shviewer.benchmark.measuring.moving import SAMPLES, WAYS, sampled
+from shviewer.benchmark.measuring.moving_texels import noise
+from shviewer.benchmark.measuring.moving_texels import sun as moving_sun
 from shviewer.harmonics.quadrature import gauss_legendre_rows
 from shviewer.harmonics.quantities.glossy import glossy_factors
 from shviewer.lights.environment import EnvironmentLight
