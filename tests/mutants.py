@@ -28,7 +28,7 @@ class Mutant(NamedTuple):
 
 
 BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
-    "harmonics/basis.py": (
+    "harmonics/evaluation/recurrence.py": (
         ("recurrence without (l-m)", "(l + np.arange(len(ratio)))", "(l + 0 * np.arange(len(ratio)))"),
         ("wrong double factorial", "-np.sqrt((2 * m + 1) / (2 * m))", "-np.sqrt((2 * m - 1) / (2 * m))"),
         (
@@ -81,10 +81,12 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ),
         (
             "samples of the south as if in the north",
-            "np.multiply(self.values[0], sign, out=self.values[1])",
+            "np.multiply(self.values[0], self.waves.south(), out=self.values[1])",
             "self.values[1] = self.values[0]",
         ),
         ("last block filled up with the one before", "self.values[0, :, len(directions) :] = 0", "pass"),
+    ),
+    "harmonics/evaluation/waves.py": (
         ("T(k) counted once for sin(k theta)/sin(theta)", "    odd[..., 0] /= 2\n", "    odd[..., 1:] /= 2\n"),
     ),
     "harmonics/quadrature.py": (
