@@ -34,6 +34,7 @@ complete -c shviewer -n 'not __fish_seen_subcommand_from info project report' -l
 complete -c shviewer -n 'not __fish_seen_subcommand_from info project report' -l pan -r -d 'move the spheres, in radii at zoom 1'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l rotate-light -r -d 'turn the light so that its +x axis points there, degrees'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info report' -l roll-light -r -d 'before that, turn the light about its +x axis'
+complete -c shviewer -n 'not __fish_seen_subcommand_from info project report' -l anew -d 'project the light as it stands when it is turned, so that samples do not turn with it'
 complete -c shviewer -n 'not __fish_seen_subcommand_from info project report' -l size -r -d 'pixels (default 1280 640, or those of the picture)'
 complete -c shviewer -n 'not __fish_seen_subcommand_from project' -l convention -x -a 'shviewer filament three unity unreal ambix sphericart scipy babylon playcanvas cesium gltf godot 3dgs directxmath e3nn shtools spharpy fuma mitsuba webxr-phase webxr-no-phase arcore-phase arcore-no-phase arkit-phase arkit-no-phase' -d 'convention of a bare list of coefficients, such as three, unity or shviewer,y-up,no-phase: the names and modifiers of project\'s --convention'
 complete -c shviewer -l sanitize -d 'repair NaN, infinite and negative texels of an image instead of refusing or keeping them'

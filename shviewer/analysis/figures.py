@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from shviewer.analysis.cache import remember
-from shviewer.analysis.projections import BEST, Projection, project, sampling_of
+from shviewer.analysis.projections import BEST, Projection, Way, project, sampling_of
 from shviewer.analysis.recipe import Recipe, Shown
 from shviewer.analysis.subjects import load_light, through
 from shviewer.errors import UsageError
@@ -134,14 +134,14 @@ def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
 
 
 @remember(most=16, doing="searching bands")
-def errors_of(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
+def errors_of(light: Light, method: Way, samples: int, seed: int) -> Array:
     """The relative L2 error for every band count searched: (MAX_BANDS,), for samples, which are rarely good for more,
     (MAX_DIRECT_BANDS,), of given coefficients all that there are.
     """
     exact = project(light, *BEST, MAX_BANDS).coefficients
     if method == "best":
         return errors_by_band_count(light.products(), exact, exact)
-    n_bands = MAX_DIRECT_BANDS if isinstance(method, str) else min(method.n_bands, MAX_BANDS)
+    n_bands = min(method.n_bands, MAX_BANDS) if isinstance(method, CoefficientLight) else MAX_DIRECT_BANDS
     shown = project(light, method, samples, seed, n_bands).coefficients
     return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -19,9 +19,12 @@ from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
 from shviewer.harmonics.quadrature import DirectionSet, gauss_legendre, jittered
+from shviewer.harmonics.rotation import rotate
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
+from shviewer.lights.lobe import lobes_form
+from shviewer.limits import MAX_DIRECT_BANDS
 
 if TYPE_CHECKING:
     from shviewer.harmonics.quantities.encodings import Stored
@@ -31,6 +34,17 @@ BEST = ("best", 0, 0)
 
 MOST_MEASUREMENTS = 128
 """How many are kept per light, quantity and bands: more than the keys reach, at most 1 KiB each."""
+
+
+class Turned(NamedTuple):
+    """A method whose samples stand in the world. turn: as in `Recipe`."""
+
+    method: str
+    turn: tuple[float, ...]
+
+
+Way: TypeAlias = str | Turned | CoefficientLight
+"""A method, or given coefficients in its place."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,12 +95,14 @@ class Measurement:
         return self.method, self.samples, self.seed
 
 
-def sampling_of(recipe: Recipe) -> tuple[str | CoefficientLight, int, int]:
-    """Method, samples and seed of a recipe. The best way does not depend on the last two, so they are always the same for it.
-
-    Given coefficients stand in place of the method.
+def sampling_of(recipe: Recipe) -> tuple[Way, int, int]:
+    """Method, samples and seed of a recipe. The best way does not depend on the last two, so they are always the same for it,
+    nor on how the light is turned. Given coefficients stand in place of the method.
     """
-    return way_of(recipe) if recipe.compare is None else (recipe.compare, 0, 0)
+    if recipe.compare is not None:
+        return recipe.compare, 0, 0
+    method, samples, seed = way_of(recipe)
+    return (method if recipe.turn is None or recipe.method == "best" else Turned(method, recipe.turn)), samples, seed
 
 
 def way_of(recipe: Recipe) -> tuple[str, int, int]:
@@ -96,11 +112,13 @@ def way_of(recipe: Recipe) -> tuple[str, int, int]:
     return BEST if recipe.method == "best" else (recipe.method, recipe.samples, recipe.seed)
 
 
-def project(light: Light, method: str | CoefficientLight, samples: int, seed: int, n_bands: int) -> Projection:
+def project(light: Light, method: Way, samples: int, seed: int, n_bands: int) -> Projection:
     """Project a light; another quantity of a sampled light comes from the samples of the light itself.
 
-    method: "best", "jittered" or "gauss-legendre", or given coefficients, which are then used instead.
+    method: "best", "jittered" or "gauss-legendre", one of these where the light is turned, or given coefficients instead.
     """
+    if isinstance(method, Turned):
+        return _turned_projection(light, method, samples, seed, n_bands)
     if not isinstance(method, str):
         return _given_projection(light, method, n_bands)
     found = _measured_projection(light, method, samples, seed, n_bands)
@@ -142,17 +160,32 @@ def _measure(light: Light, sampling: tuple[str, int, int], projection: Projectio
             known.popitem(last=False)
 
 
-@remember(most=4, doing="projecting")
-def turned_projection(light: Light, samples: int, seed: int, turn: tuple[float, ...], n_bands: int) -> Projection:
-    """A light projected by jittered samples that stand still while it turns. turn: the matrix, row by row, from their frame
-    to that of the light, in which the coefficients are.
-    """
-    points = jittered(samples, seed)
-    moved = DirectionSet(points.directions @ np.reshape(turn, (3, 3)).T, points.weights)
+@remember(most=8, doing="projecting")
+def _turned_projection(light: Light, how: Turned, samples: int, seed: int, n_bands: int) -> Projection:
+    """A light projected by samples that stand still while it turns; the coefficients are in its own frame."""
+    if light is not light.source:
+        source = project(light.source, how, samples, seed, n_bands)
+        return replace(source, coefficients=light.from_source(source.coefficients))
+    sampled = how.method == "jittered"
+    points = jittered(samples, seed) if sampled else gauss_legendre(samples).direction_set()
+    moved = DirectionSet(points.directions @ np.reshape(how.turn, (3, 3)).T, points.weights)
     start = perf_counter()
-    radiance = project_samples(light.source.integrand, moved, n_bands)
+    radiance = project_samples(light.integrand, moved, n_bands)
     spent = 1000 * (perf_counter() - start)
-    return Projection(light.from_source(radiance), "jittered", len(points.weights), spent, radiance)
+    return Projection(radiance, "jittered" if sampled else "Gauss-Legendre", len(points.weights), spent, radiance)
+
+
+@remember(most=8, doing="projecting")
+def turned_exactly(light: Light, turn: tuple[float, ...], n_bands: int) -> Projection:
+    """The best way, as it stands in the world and turned back. Exact coefficients of an image or a function turn with it."""
+    found, source = project(light, *BEST, n_bands), light.source
+    if not source.lobes or n_bands > MAX_DIRECT_BANDS:  # to rotate more takes seconds
+        return found
+    light_from_world = np.reshape(turn, (3, 3))
+    lobes = [replace(lobe, axis=lobe.axis @ light_from_world) for lobe in source.lobes]
+    there = lobes_form([lobe.profile for lobe in lobes], lobes)
+    radiance = rotate(there.coefficients(there.zonal(n_bands)), light_from_world)
+    return replace(found, coefficients=light.from_source(radiance), radiance=radiance)
 
 
 @remember(most=16, doing="encoding the irradiance")

@@ -113,6 +113,9 @@ class Recipe:
         "--seed",
         "S",
     )
+    turn: tuple[float, ...] | None = None
+    """The matrix from directions of the world to those of the light, row by row, where the light is projected as it stands in
+    the world: samples then stand still while it turns. None: it is projected as it was defined."""
     compare: CoefficientLight | None = None
     """Given coefficients, shown instead of the light's own; no more bands than they have are shown."""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shviewer.analysis.figures import Figures, Sums, error_grid, figures_of, grid_rows, sums
-from shviewer.analysis.projections import BEST, Projection, encoded, project, sampling_of, turned_projection
+from shviewer.analysis.projections import BEST, Projection, encoded, project, sampling_of, turned_exactly
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
@@ -49,21 +49,21 @@ def values_at(directions: Array, coefficients: Array, stored: Stored | None) -> 
     return np.asarray(evaluate_basis(directions, count_bands(coefficients)) @ coefficients)
 
 
-def reconstruction_of(
-    recipe: Recipe, ahead: int = 0, encoding: str = "", turn: tuple[float, ...] | None = None
-) -> Reconstruction:
+def reconstruction_of(recipe: Recipe, ahead: int = 0, encoding: str = "") -> Reconstruction:
     """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range.
 
-    encoding: one of ENCODINGS, through which an irradiance goes. turn: as in `turned_projection`.
+    encoding: one of ENCODINGS, through which an irradiance goes.
     ahead: the number of bands that will be asked for later: an image, which keeps its coefficients, is projected only once.
     """
     recipe.check()
     found = subject(recipe)
     if ahead > recipe.projected_bands and found.light.about.size is not None:
         project(found.light, *BEST, ahead)
-    projection = project(found.light, *sampling_of(recipe), recipe.projected_bands)
-    if turn is not None and recipe.method == "jittered":
-        projection = turned_projection(found.light, recipe.samples, recipe.seed, turn, recipe.projected_bands)
+    sampling = sampling_of(recipe)
+    if recipe.turn is not None and sampling == BEST:
+        projection = turned_exactly(found.light, recipe.turn, recipe.projected_bands)
+    else:
+        projection = project(found.light, *sampling, recipe.projected_bands)
     if encoding:
         projection = encoded(found.light, projection, encoding)
     named = recipe.light if isinstance(recipe.light, str) else found.light.name

@@ -15,7 +15,7 @@ import numpy as np
 
 from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import Needs, needs
-from shviewer.analysis.projections import BEST, project, sampling_of
+from shviewer.analysis.projections import BEST, Way, project, sampling_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.basis import Array
@@ -82,12 +82,12 @@ def staircase(recipe: Recipe) -> Staircase:
 
 
 @remember(most=8, doing="searching roughness")
-def errors_by_roughness(light: Light, method: str | CoefficientLight, samples: int, seed: int) -> Array:
+def errors_by_roughness(light: Light, method: Way, samples: int, seed: int) -> Array:
     """Relative L2 errors of the first n = 1, 2, ... bands for each of ROUGHNESS, at least as large as they are.
 
     (roughness, bands), as many bands as `errors_of` searches.
     """
-    n_bands = MAX_DIRECT_BANDS if isinstance(method, str) else min(method.n_bands, MAX_BANDS)
+    n_bands = min(method.n_bands, MAX_BANDS) if isinstance(method, CoefficientLight) else MAX_DIRECT_BANDS
     exact = project(light, *BEST, MAX_BANDS).coefficients
     shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
     power = band_power(exact).sum(axis=1)

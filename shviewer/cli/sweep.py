@@ -12,13 +12,11 @@ from shviewer.cli.status_line import status_line
 from shviewer.errors import UsageError
 from shviewer.viewer.animation.animation import (
     ENCODERS,
-    TURN_FRAMES,
-    TURN_SECONDS,
     band_sweep,
     save_animation,
     turntable,
 )
-from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_FRAMES, TURN_SECONDS
 from shviewer.viewer.animation.turning import light_turn
 from shviewer.viewer.composing.composition import frame_for
 

@@ -23,6 +23,7 @@ from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.beside import besides_of
+from shviewer.viewer.camera import turn_of
 from shviewer.viewer.state import IN_RECIPE, State, changed
 from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, View
 
@@ -237,6 +238,7 @@ def toggle_sweep(state: State) -> State:
     """Start a sweep from 1 band to the present count, or to SWEEP_BANDS where that is 1; or stop the sweep that plays."""
     if state.view.sweep_to is not None:
         return changed(state, sweep_to=None)
+    state = changed(state, turning="")
     to = state.recipe.n_bands if state.recipe.n_bands > 1 else SWEEP_BANDS
     return changed(with_bands(state, 1), sweep_to=to)
 
@@ -250,6 +252,18 @@ def step_sweep(state: State) -> State:
     return changed(stepped, sweep_to=state.view.sweep_to if going_on else None)
 
 
+def turn_light(state: State, seeds: str) -> State:
+    """Let the light turn, projected anew in every frame, with samples by one of SEEDS; or stop it if it does so."""
+    if state.view.turning == seeds:
+        return changed(state, turning="")
+    if state.recipe.compare:
+        return changed(
+            state, message=f"the coefficients are those of {state.recipe.compare.name}: no light is projected"
+        )
+    turn = turn_of(state.view.light_rotation)
+    return changed(state, turn=turn, turning=seeds, trace=(), sweep_to=None)
+
+
 def reset(state: State) -> State:
     """Go back to what the command line asked for, in everything but the light."""
     recipe, view = state.start
@@ -257,12 +271,13 @@ def reset(state: State) -> State:
 
 
 def escape(state: State) -> State | Command:
-    """Close the help, or else the sheet over the spheres, or else stop the sweep, or else leave."""
+    """Close the help, or else the sheet over the spheres, or else stop the sweep or the light, or else leave."""
     if state.view.help_visible:
         return changed(state, help_visible=False)
     if state.view.sheet:
         return changed(state, sheet="")
-    return Command.LEAVE if state.view.sweep_to is None else changed(state, sweep_to=None)
+    playing = state.view.sweep_to is not None or state.view.turning
+    return changed(state, sweep_to=None, turning="") if playing else Command.LEAVE
 
 
 def _held(state: State, name: str) -> Any:

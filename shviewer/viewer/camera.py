@@ -80,6 +80,11 @@ def light_from_world(light_rotation: Quaternion) -> Array:
     return turn
 
 
+def turn_of(light_rotation: Quaternion) -> tuple[float, ...]:
+    """The same, row by row: `Recipe.turn`."""
+    return tuple(light_from_world(light_rotation).ravel().tolist())
+
+
 def turned_by_drag(rotation: Quaternion, camera: tuple[float, float], right: float, up: float) -> Quaternion:
     """`rotation` followed by the turn that moves the front of a sphere `right` and `up`, in radii of the sphere."""
     azimuth, elevation = camera

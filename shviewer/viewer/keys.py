@@ -126,6 +126,12 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("Ctrl+R / F5", "read its file again", {"Ctrl+R": Command.RELOAD, "F5": Command.RELOAD}),
         Binding("L", "next layout of an image", {"L": do.next_layout}, lambda s: s.recipe.reading.layout),
         Binding("Z", "repair bad values or not", {"Z": do.toggle_sanitizing}, lambda s: describe_sanitizing(s.recipe)),
+        Binding(
+            "Q / Shift+Q",
+            "turn it, fresh or same samples",
+            _each(do.turn_light, {"Q": "fresh", "Shift+Q": "same"}),
+            lambda s: s.view.turning or "still",
+        ),
         Binding("right drag", "turn the light; Shift+drag, too", {}),
         Binding("drop files", "open them", {}),
     ),

@@ -33,7 +33,7 @@ from shviewer.viewer.state import FRONT, State, changed
 
 LIVE = (
     *("camera", "light_rotation", "zoom", "pan", "whole_sphere", "map_centre", "marks", "cursor", "cursor_visible"),
-    *("sweep_to", "help_visible", "help_page", "message", "roughness", "layout_tried"),
+    *("sweep_to", "turning", "trace", "help_visible", "help_page", "message", "roughness", "layout_tried"),
 )
 """Fields of the view on which nothing depends that takes time."""
 
@@ -84,9 +84,6 @@ class Picture:
     verdict: str = ""
     """How well the compared coefficients agree with the light's own, and if they do not, what is wrong with them."""
 
-    trace: tuple[float, ...] = ()
-    """While the light turns: how far the coefficients moved in each of the last frames, over the norm of the light."""
-
     @property
     def extremes(self) -> Extremes | Pending:
         return self.figures.extremes if isinstance(self.figures, Figures) else PENDING
@@ -110,6 +107,8 @@ class Picture:
         """The same picture with the live parts and the exposure of another state: at once, whatever the light is."""
         last, view = self.state.view, state.view
         live = {name: getattr(view, name) for name in (*LIVE, *EXPOSURE)}
+        if state.recipe.turn != self.state.recipe.turn:  # it is seen where it was projected
+            live["light_rotation"] = last.light_rotation
         stops = self.exposure_stops + view.exposure_offset - last.exposure_offset
         if view.exposure_stops is not None:
             stops = view.exposure_stops + view.exposure_offset
@@ -117,7 +116,7 @@ class Picture:
             self,
             state=changed(self.state, **live),
             world_from_view=camera.world_from_view(*camera_of(view, self.subject.whole)),
-            light_from_world=camera.light_from_world(view.light_rotation),
+            light_from_world=camera.light_from_world(live["light_rotation"]),
             exposure_stops=stops,
         )
 
@@ -139,21 +138,14 @@ def still(state: State) -> State:
     return changed(state, **{name: getattr(FRONT, name) for name in LIVE})
 
 
-def prepare(
-    state: State,
-    *,
-    by_map: bool = False,
-    written: bool = True,
-    turn: tuple[float, ...] | None = None,
-    trace: tuple[float, ...] = (),
-) -> Picture:
+def prepare(state: State, *, by_map: bool = False, written: bool = True) -> Picture:
     """Make the picture of a state. LightError if the light cannot be read, UsageError for a state out of range.
 
     by_map: draw the reconstruction from a map of it, although it could be summed per pixel. written: whether its figures are
-    written over it; if not, those that no pixel depends on stay pending. turn: as in `reconstruction_of`. trace: as in Picture.
+    written over it; if not, those that no pixel depends on stay pending.
     """
     ahead = MAX_BANDS if written and state.view.sheet != "plane" else 0  # the plane tells what the bands in use took
-    picture = replace(first_picture(state, by_map=by_map, ahead=ahead, turn=turn), trace=trace)
+    picture = first_picture(state, by_map=by_map, ahead=ahead)
     if written:
         return completed(picture)
     return picture if picture.error_scale is None else with_figures(picture)
@@ -187,22 +179,20 @@ def with_figures(picture: Picture) -> Picture:
     return replace(picture, error_scale=_scale(picture.state, picture.light, picture.projection, figures.extremes))
 
 
-def first_picture(
-    state: State, *, by_map: bool = False, ahead: int = 0, turn: tuple[float, ...] | None = None
-) -> Picture:
+def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Picture:
     """The picture of a state with what can be drawn at once: what takes a search is pending. Raises what `prepare` raises.
 
-    ahead, turn: as in `reconstruction_of`.
+    ahead: as in `reconstruction_of`.
     """
     state.check()
     recipe, view = state.recipe, state.view
-    found = reconstruction_of(recipe, ahead, view.encode, turn)
+    found = reconstruction_of(recipe, ahead, view.encode)
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
     scale = _scale(state, light, projection)
     stops = exposure_stops(view, whole)
     other = None
     if view.beside != "off":
-        other = reconstruction_of(recipe_beside(recipe, view.beside), 0, view.encode, turn)
+        other = reconstruction_of(recipe_beside(recipe, view.beside), encoding=view.encode)
 
     def drawn_as(one: Reconstruction) -> Drawn:
         if view.lobe_view:

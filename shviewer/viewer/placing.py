@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from shviewer.harmonics.basis import Array
-from shviewer.viewer.camera import facing, turned_by_drag
+from shviewer.viewer.camera import Quaternion, facing, turn_of, turned_by_drag
 from shviewer.viewer.state import State, changed
 from shviewer.viewer.view import ZOOM_RANGE, View
 
@@ -47,9 +47,15 @@ def rotate_light(state: State, right: float, up: float) -> State:
     """Turn the light as if the front of a sphere, or the middle of a map, was dragged; right and up as in `orbit`."""
     view = state.view
     if view.whole_sphere:  # which is seen from inside
-        return changed(state, light_rotation=turned_by_drag(view.light_rotation, view.map_centre, -right, up))
+        return stand(state, turned_by_drag(view.light_rotation, view.map_centre, -right, up))
     assert view.camera is not None
-    return changed(state, light_rotation=turned_by_drag(view.light_rotation, view.camera, right, up))
+    return stand(state, turned_by_drag(view.light_rotation, view.camera, right, up))
+
+
+def stand(state: State, rotation: Quaternion) -> State:
+    """Turn the light to where `rotation` has it, and project it there if it is projected as it stands."""
+    turn = None if state.recipe.turn is None else turn_of(rotation)
+    return changed(state, light_rotation=rotation, turn=turn)
 
 
 def zoom(state: State, steps: float) -> State:

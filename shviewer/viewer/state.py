@@ -77,7 +77,9 @@ def changed(state: State, **values: Any) -> State:
     recipe = {name: values.pop(name) for name in IN_RECIPE & values.keys()}
     view = {name: values.pop(name) for name in IN_VIEW & values.keys()}
     if recipe:
-        state = replace(state, recipe=replace(state.recipe, **recipe))
+        before, state = state.recipe, replace(state, recipe=replace(state.recipe, **recipe))
+        if state.view.trace and state.recipe != before:  # it is of another
+            view = {"trace": ()} | view
     if view:
         state = replace(state, view=replace(state.view, **view))
     return replace(state, **values) if values else state
@@ -85,7 +87,10 @@ def changed(state: State, **values: Any) -> State:
 
 def started(state: State) -> State:
     """The state as one to which R goes back: without what only keys show."""
-    shown = {name: getattr(FRONT, name) for name in ("help_visible", "sweep_to", "message", "layout_tried")}
+    shown = {
+        name: getattr(FRONT, name)
+        for name in ("help_visible", "sweep_to", "turning", "trace", "message", "layout_tried")
+    }
     return replace(state, start=(state.recipe, replace(state.view, **shown)))
 
 

@@ -21,6 +21,9 @@ ERRORS = ("off", "signed", "absolute", "relative")
 BESIDES = ("off", "no-window", "method", "own")
 """The choices for a second reconstruction in its place; viewer/beside.py says what they are."""
 
+SEEDS = ("fresh", "same")
+"""The jittered samples of a light that turns: new ones in every frame, or the same in all."""
+
 SHEETS = ("", "plane")
 EVALUATIONS = ("auto", "direct", "map")
 MAX_EXPOSURE = 64.0
@@ -158,6 +161,10 @@ class View:
     cursor_visible: bool = False
     sweep_to: int | None = None
     """While a sweep plays, the number of bands at which it ends."""
+    turning: str = ""
+    """While the light turns, one of SEEDS: what its jittered samples are in each frame."""
+    trace: tuple[float, ...] = ()
+    """How far the coefficients moved in each of the last frames of a turn, turned back, over the norm of the light."""
     help_visible: bool = False
     help_page: int = 0
     """How often PageDown was pressed in the help."""

@@ -19,6 +19,7 @@ from shviewer.limits import MAX_BANDS
 from shviewer.viewer import actions, derived, drawn
 from shviewer.viewer import picture as picture_module
 from shviewer.viewer.actions import Command, step_sweep, toggle_band, with_bands
+from shviewer.viewer.animation.turning import step_turn
 from shviewer.viewer.composing.composition import Composition, frame_for
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
@@ -100,7 +101,7 @@ class Walk:
             session.state = toggle_band(state, band)
         else:
             self.trail.append("beat")
-            session.state = step_sweep(state)
+            session.state = step_turn(step_sweep(state)) if state.view.turning else step_sweep(state)
 
     def _draw(self) -> None:
         picture, composition = self.session.picture, self.composition()

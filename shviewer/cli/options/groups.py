@@ -114,6 +114,11 @@ def add_picture_options(parser: OneLineParser) -> None:
     add_table(parser, View)
     add_turn(parser)
     parser.add_argument(
+        "--anew",
+        action="store_true",
+        help="project the light as it stands when it is turned, so that samples do not turn with it",
+    )
+    parser.add_argument(
         "--size", metavar=("W", "H"), nargs=2, type=int, help="pixels (default 1280 640, or those of the picture)"
     )
 

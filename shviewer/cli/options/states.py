@@ -37,6 +37,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     from shviewer.lights.find import built_in_lights
     from shviewer.viewer.actions import open_light
     from shviewer.viewer.beside import recipe_beside
+    from shviewer.viewer.camera import turn_of
     from shviewer.viewer.message import warning
     from shviewer.viewer.state import State, changed
 
@@ -69,7 +70,11 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     if pictured and pictured.said:
         print(one_line(f"shviewer: note: {options.like or entry}: {pictured.said}"), file=sys.stderr)
         state = changed(state, message=warning(pictured.said)) if all_lights else state
-    return changed(state, sweep_to=None) if all_lights else state  # a window shows the picture, and does not play on
+    if options.anew or state.recipe.turn is not None:
+        state = changed(state, turn=turn_of(state.view.light_rotation))
+    if state.recipe != start.recipe:
+        state = changed(state, trace=())
+    return changed(state, sweep_to=None, turning="") if all_lights else state  # a window does not play on
 
 
 def _view_from(options: argparse.Namespace, start: View) -> View:

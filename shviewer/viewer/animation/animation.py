@@ -20,7 +20,7 @@ from shviewer.limits import BRIGHTEST, MAX_BANDS
 from shviewer.outputs import ANYTHING, Replacing, check_place, write_atomically
 from shviewer.viewer.actions import step_sweep, with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
-from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_FRAMES, TURN_SECONDS
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.picture import Picture, error_end, prepare
 from shviewer.viewer.saving.stamp import metadata
@@ -32,10 +32,6 @@ Progress = Callable[[float, float, str], None]
 
 ENCODERS = {".gif": (encode_gif, 2), ".webp": (encode_webp, 1)}
 """Suffix -> the encoder, and how often it draws each frame."""
-
-TURN_FRAMES = 72
-TURN_SECONDS = 0.08
-"""How long a turntable shows a frame: once round in 5.8 s, at 5 degrees a frame."""
 
 HOLD = 3
 """How many times longer a band sweep shows its last frame than the others."""

@@ -6,6 +6,14 @@ SWEEP_SECONDS = 0.7
 """How long a sweep shows each band count: long enough to read the error."""
 
 
+TURN_FRAMES = 72
+TURN_SECONDS = 0.08
+"""How long a turn shows a frame: once round in 5.8 s, at TURN_STEP degrees a frame."""
+
+TURN_STEP = 360 / TURN_FRAMES
+"""Degrees from frame to frame of a light that turns in the window, which leaves none out, however long one takes."""
+
+
 class Metronome:
     """A beat every so many seconds while something plays, the first one a whole period after it began.
 

@@ -54,11 +54,16 @@ class Canvas:
         return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
 
     def show(
-        self, picture: Picture, composition: Composition, work: Work | None = None, pointer: Point | None = None
+        self,
+        picture: Picture,
+        composition: Composition,
+        work: Work | None = None,
+        pointer: Point | None = None,
+        pace: float | None = None,
     ) -> bool:
         """Upload what has changed, and draw its text, with what is being done meanwhile in place of the message.
 
-        pointer: where the mouse is, for the values of the band under it.
+        pointer: where the mouse is, for the values of the band under it. pace: as in `draw_overlay`.
 
         Return False while a large map is on its way: the last picture stays, seen from where the camera is now.
         GraphicsError for a map that this OpenGL cannot hold.
@@ -70,10 +75,12 @@ class Canvas:
                 return False
             self.renderer.picture = picture = self.renderer.picture.seen(picture.state)
         hovered = self.band_at(pointer)
-        key = work, hovered, _overlay_key(picture, composition)
+        key = work, hovered, pace, _overlay_key(picture, composition)
         if key != self._overlay_key:
             opengl = self.renderer.version
-            self.overlay = draw_overlay(picture, composition, timing=True, opengl=opengl, work=work, hovered=hovered)
+            self.overlay = draw_overlay(
+                picture, composition, timing=True, opengl=opengl, work=work, hovered=hovered, pace=pace
+            )
             self._overlay_key = key
         return uploaded
 

@@ -22,12 +22,14 @@ from shviewer.lights.light import Light
 from shviewer.lights.several import several
 from shviewer.viewer.actions import Command, open_light, step_sweep
 from shviewer.viewer.animation.metronome import Metronome
+from shviewer.viewer.animation.turning import followed, is_next, only_turned, step_turn
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.errands import Errands, save_coefficients, save_picture
 from shviewer.viewer.desktop.making import Making
 from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
 from shviewer.viewer.desktop.opening import MOST_DROPPED, Opening
+from shviewer.viewer.desktop.turning import Turning
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
@@ -77,6 +79,7 @@ class Session:
         self.by_map = False
         self.verbose = verbose
         self.metronome = Metronome()
+        self.turn = Turning()
         self._watch = Watch() if watch else None
         self._looked_at = perf_counter()
         self._reading: Event | None = None
@@ -111,7 +114,8 @@ class Session:
 
     def press(self, key: str) -> Command | None:
         """Do what a key asks for; a command that only a window can carry out is returned."""
-        if key == "Esc" and (self.work is not None or (self._making.working and not self._shown)):
+        making = self._making.working and not self._shown and not self._stepping
+        if key == "Esc" and (self.work is not None or making):
             self.stop()
             return None
         state, refused = self.state, self._refused
@@ -161,14 +165,26 @@ class Session:
         return self._reading is None and still(self.state) == still(self.picture.state)
 
     @property
+    def _stepping(self) -> bool:
+        """Whether what is being made is the next frame of a light that turns."""
+        state, last = self.state, self.picture.state
+        return bool(state.view.turning) and only_turned(last.recipe, state.recipe) and self._reading is None
+
+    @property
+    def pace(self) -> float | None:
+        """Frames a second of a light that turns, where it cannot keep up; None as long as it does, or is not known."""
+        return self.turn.pace if self.state.view.turning else None
+
+    @property
     def status(self) -> str:
-        """What is done behind the window, once it has taken a while; "" while nothing is at work."""
-        return self._making.status or (self.work.words if self.work is not None else "")
+        """What is done behind the window, once it has taken a while; "" while nothing is, or only the light turns on."""
+        made = "" if self._stepping else self._making.status
+        return made or (self.work.words if self.work is not None else "")
 
     @property
     def work(self) -> Work | None:
-        """The same with how far it is, for the hairline; None while nothing is at work."""
-        return self._openings.work or self._making.work or self.errands.work
+        """The same with how far it is, for the hairline; None where there is no status."""
+        return self._openings.work or (None if self._stepping else self._making.work) or self.errands.work
 
     def stop(self) -> None:
         """End the task, and stay with the picture there is; where there is none, end what is written and copied."""
@@ -183,7 +199,7 @@ class Session:
             self._reading = None
             self._opening.end()
             keep_light(self.picture.state.recipe, self.picture.subject.whole)
-            self.state = changed(self.picture.state, message=f"stopped {what}".rstrip(), sweep_to=None)
+            self.state = changed(self.picture.state, message=f"stopped {what}".rstrip(), sweep_to=None, turning="")
             self._enough = still(self.picture.state)
 
     def drop(self, *paths: str) -> None:
@@ -234,7 +250,7 @@ class Session:
         self.state = changed(self.state, message=Message(one_line(text), kind))
 
     def tick(self, now: float) -> bool:
-        """Take a step of the sweep and a look at a watched file, where they are due; return whether anything changed."""
+        """Take a step of what plays and a look at a watched file, where they are due; return whether anything changed."""
         last, reading, said = self.state, self._reading, self._said
         self._openings.take()
         self.errands.take()
@@ -245,6 +261,8 @@ class Session:
             self.state = changed(self.state, message="")
         if not self._making.working and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
+        if self.turn.beats(bool(self.state.view.turning), now, ready=not self._making.working and self._shown and not self._later):
+            self.state = step_turn(self.placed)  # from where the camera is, or it would go round with the light
         if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
             self._looked_at = now
             self._look()
@@ -263,7 +281,10 @@ class Session:
 
     def wait(self, now: float, most: float) -> float:
         """The seconds until the next tick is due, at most `most`."""
-        return min(most, STATUS_SECONDS) if self.working else self.metronome.wait(now, most)
+        if self._making.working or self._later:
+            return min(most, STATUS_SECONDS)
+        most = min(most, STATUS_SECONDS) if self.working else most
+        return self.turn.wait(now, self.metronome.wait(now, most))
 
     def prepare(self, by_map: bool = False, patience: float | None = None) -> bool:
         """Make the picture of the state; return whether it is complete. For a state that cannot be shown, keep the last one.
@@ -319,7 +340,10 @@ class Session:
 
     def _take(self, made: Picture, by_map: bool, again: bool | None = None) -> None:
         """Show a picture that was made for the state. again: whether its light was read again."""
-        last, state, picture = self.picture, self.state, made.seen(self.state)
+        last, state = self.picture, self.state
+        if state.view.turning and made.light is last.light and is_next(last.state.recipe, made.state.recipe):
+            state = self.state = followed(state, made.light, last.coefficients, made.coefficients)
+        picture = made.seen(state)
         if picture.light is not last.light:
             again = self._reading is not None if again is None else again
             message = self._news(picture.light, again=again and state.recipe.light == last.state.recipe.light)
@@ -340,7 +364,7 @@ class Session:
         self.prepare(self.by_map, PATIENCE)
 
     def keep(self, error: ShviewerError, picture: Picture | None = None) -> None:
-        """Stay with the picture there is, or go back to another one, and say why; a sweep ends."""
+        """Stay with the picture there is, or go back to another one, and say why; what plays ends."""
         shown, refused = picture or self.picture, self.state
         message = Message(with_keys(str(error), refused.recipe.light, shown.state.recipe.reading), ERROR)
         self.back_to(shown, message)
@@ -350,10 +374,10 @@ class Session:
         self._log(f"kept {shown.light.name}: {error}")
 
     def back_to(self, picture: Picture, message: str) -> None:
-        """Go back to a picture, seen as the one now is, with a message; a sweep ends."""
+        """Go back to a picture, seen as the one now is, with a message; what plays ends."""
         shown = picture.seen(self.state)
         keep_light(shown.state.recipe, shown.subject.whole)
-        self.state = changed(shown.state, message=message, sweep_to=None)
+        self.state = changed(shown.state, message=message, sweep_to=None, turning="")
         self.picture = replace(shown, state=self.state)
         self._enough = still(self.state)
 

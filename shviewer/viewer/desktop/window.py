@@ -133,7 +133,7 @@ class Window:
         glfw.set_window_title(handle, self.title)
 
     def loop(self) -> None:
-        """Draw what is due, then sleep until something happens or a sweep takes its next step."""
+        """Draw what is due, then sleep until something happens or what plays takes its next step."""
         while not glfw.window_should_close(self.handle):
             if self.frames_due:
                 begin = perf_counter()
@@ -187,7 +187,7 @@ class Window:
         ready = session.prepare(self.canvas.by_map(session.state, composition), PATIENCE)
         composition = self.composition() or composition  # a state that was refused has left another one
         try:
-            uploaded = self.canvas.show(session.picture, composition, session.work, self.mouse.at)
+            uploaded = self.canvas.show(session.picture, composition, session.work, self.mouse.at, session.pace)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             if self.shown is None:
                 raise

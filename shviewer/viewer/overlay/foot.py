@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from shviewer.analysis.comparison import agrees
 from shviewer.analysis.figures import Pending
 from shviewer.viewer import message
+from shviewer.viewer.animation.metronome import TURN_STEP
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
@@ -173,6 +174,25 @@ def work_pieces(at: Composition, work: Work) -> list[Piece]:
     if words:
         pieces.append(Text("message", line.left, line.baseline, words, size, INK))
     return pieces
+
+
+def turning_pieces(at: Composition, picture: Picture, pace: float | None) -> list[Piece]:
+    """That the light turns, what is projected in each frame, and how many there are a second where that is not known."""
+    line = message_line(at)
+    if line is None:
+        return []
+    recipe, size, small = picture.state.recipe, at.px(12.0 if at.compact else 13.0), at.px(11.0 if at.compact else 12.0)
+    samples = "fresh samples" if picture.state.view.turning == "fresh" else "the same samples"
+    how = {"best": "projected exactly", "gauss-legendre": "points that stand still"}.get(recipe.method, samples)
+    rate = "" if pace is None else f"{pace:.0f} frames a second" if pace >= 9.5 else f"{pace:.1g} frames a second"
+    parts = [f"the light turns by {TURN_STEP:g}° a frame", how, *([rate] if rate else [])]
+    room = line.right - line.left - width_of("Esc stops", small) - at.px(18)
+    words = shortened_to(typeset(", ".join(parts)), room, size)
+    if not words:
+        return []
+    turning = Text("turning", line.left, line.baseline, words, size, INK)
+    after = round(turning.box.right + at.px(18))
+    return [turning, Text("turning_stops", after, line.baseline, "Esc stops", small, GREY)]
 
 
 def _mark(sign: str, x: float, baseline: float, size: float, ink: Ink, at: Composition) -> list[Piece]:

@@ -20,7 +20,7 @@ from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
 from shviewer.viewer.overlay.drawing import image_of, layer_of
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
-from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, proposed_key, said_of
+from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, proposed_key, said_of, turning_pieces
 from shviewer.viewer.overlay.help_sheet import help_pieces
 from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
@@ -86,11 +86,13 @@ def draw_overlay(
     opengl: str = "",
     work: Work | None = None,
     hovered: int | None = None,
+    pace: float | None = None,
 ) -> Overlay:
     """Draw everything that is written.
 
     timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
     work: what is at work meanwhile, in place of messages and of OpenGL's name. hovered: the band under the mouse.
+    pace: frames a second of a light that turns.
     """
     at, state = composition, picture.state
     if state.view.help_visible:
@@ -107,13 +109,15 @@ def draw_overlay(
         remark = "" if plane else NO_ROOM if measured(picture) else NOT_TIMED
     said = said_of(picture, remark)
     exposure = exposure_pieces(picture, at, numbers.exposure, unsaid) if numbers.exposure else []
-    if numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline:
-        after = round(max((piece.box.right for piece in exposure), default=numbers.foot.left) + at.px(18))
+    turning = bool(numbers.foot and state.view.turning and not said and work is None)
+    if turning:
+        foot = turning_pieces(at, picture, pace)
+    shared = numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline
+    if shared and (said or work is not None or turning):  # both are on one line
+        exposure = []
+    if not turning:
+        after = round(max((piece.box.right for piece in exposure), default=0) + at.px(18)) if shared else 0
         foot = foot_pieces(at, said, work, after=after, proposed=proposed_key(picture))
-        if said or work is not None:  # both are on one line
-            exposure = []
-    else:
-        foot = foot_pieces(at, said, work, proposed=proposed_key(picture))
     bars: dict[int, Box] = {}
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
     if at.compact and (said or work is not None):  # the message takes the place of the last line there is
@@ -128,8 +132,8 @@ def draw_overlay(
             axes = axes_of(series, at)
             bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
             blocks += [*curve_blocks(series, state, at), legend_pieces(series, state, at, hovered)]
-        if picture.trace:
-            blocks[-1] = trace_pieces(picture.trace, at)
+        if state.view.trace:
+            blocks[-1] = trace_pieces(state.view.trace, at)
         if work is not None and numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline:
             blocks[-1] = []  # how far the work is takes its place
         if numbers.curve_head is not None:

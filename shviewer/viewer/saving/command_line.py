@@ -34,7 +34,7 @@ def command_line(picture: Picture, size: tuple[int, int]) -> str:
 
 
 def arguments_of(state: State, size: tuple[int, int]) -> list[str]:
-    """LIGHT and the options of a state, but for what only keys show: help, cursor, the time-error plane, a sweep.
+    """LIGHT and the options of a state, but for what only keys show: help, cursor, the time-error plane, what plays.
 
     Files are named by their whole path, so that the command can be given anywhere.
     """
@@ -48,7 +48,10 @@ def arguments_of(state: State, size: tuple[int, int]) -> list[str]:
         for row in options_of(type(holder)).values():
             if row.name not in ("n_bands", "quantity") and row.flag:
                 words += _option(row, getattr(holder, row.name), recipe)
-    words += [*_reading(recipe.reading), *_turn(view.light_rotation), "--size", *map(str, size)]
+    words += [*_reading(recipe.reading), *_turn(view.light_rotation)]
+    if recipe.turn is not None:
+        words.append("--anew")
+    words += ["--size", *map(str, size)]
     return words
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
-from shviewer.analysis.options import Choice, Flag, Kind, Whole, taken, whole
+from shviewer.analysis.options import Choice, Flag, Kind, Whole, is_number, taken, whole
 from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -16,10 +16,10 @@ from shviewer.lights.find import is_code
 from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES, Reading
 from shviewer.limits import MAX_BANDS, Limits
-from shviewer.viewer.camera import Quaternion
+from shviewer.viewer.camera import Quaternion, turn_of
 from shviewer.viewer.saving.stamp import LIMITS, SCHEMA
 from shviewer.viewer.state import State
-from shviewer.viewer.view import SHEETS, View
+from shviewer.viewer.view import SEEDS, SHEETS, View
 
 BESIDE: dict[str, Kind] = {
     "cursor": Whole(0, MAX_BANDS - 1, "cursor {}", f"bands are counted from 0 to {MAX_BANDS - 1}"),
@@ -27,6 +27,7 @@ BESIDE: dict[str, Kind] = {
     "help_visible": Flag(),
     "help_page": Whole(0, 99, "page {} of the help", "pages are counted from 0"),
     "sheet": Choice(SHEETS),
+    "turning": Choice(("", *SEEDS)),
     "sweep_to": Whole(1, MAX_BANDS, "a sweep to {} bands", f"the viewer shows 1 to {MAX_BANDS}"),
 }
 """Fields of the view that are no options, and their kinds."""
@@ -88,6 +89,9 @@ def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     view = {part.name: said["view"][part.name] for part in fields(View) if part.name in said["view"]}
     recipe |= taken(recipe, Recipe) | {"reading": _told_reading(recipe["reading"])}
     view |= taken(view, View) | {"light_rotation": _told_rotation(view["light_rotation"])}
+    if recipe.get("turn") is not None:
+        recipe["turn"] = turn_of(view["light_rotation"])
+    view["trace"] = tuple(map(_change, view.get("trace", ())))
     if view["sheet"] == "convergence":  # its curve is always there by now
         view["sheet"] = ""
     for name, kind in BESIDE.items():
@@ -116,6 +120,13 @@ def _told_rotation(said: list[Any]) -> Quaternion:
     if not abs(math.hypot(x, y, z, w) - 1) < 1e-6:
         raise ValueError(f"a light rotation of length {math.hypot(x, y, z, w):g}")
     return x, y, z, w
+
+
+def _change(said: Any) -> float:
+    """A finite number from 0 up. ValueError for anything else."""
+    if not (is_number(said) and said >= 0):
+        raise ValueError(f"a share of {said!r}")
+    return float(said)
 
 
 def _told_before_schemas(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -35,7 +35,9 @@ def trace_pieces(changes: Sequence[float], at: Composition) -> list[Piece]:
         pieces.append(Curve(points, at.px(1.4), ACCENT, clip, at.px(1.0), GROUND, name="trace"))
     frames = counted(len(changes), "frame")
     said = f"changes by {share(rms)} of the light from frame to frame, RMS of {frames}"
-    if rms <= NOTHING:
+    if most == 0:
+        said = f"its coefficients turn with it: no change in {frames}"
+    elif most <= NOTHING:
         said = f"turned back it does not change: the same to rounding in {frames}"
     left = round(right + at.px(12))
     return [
