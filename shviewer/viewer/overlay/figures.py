@@ -8,6 +8,7 @@ from math import floor
 from typing import TypeAlias
 
 from shviewer.analysis.figures import PENDING, Pending
+from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words, roughness_of
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Cell
@@ -69,7 +70,7 @@ class _Figure:
 
 
 def figure_pieces(picture: Picture, at: Composition) -> list[Piece]:
-    """Error, largest error, lowest channel, negative area, and the energy in use."""
+    """Error, largest error, lowest channel, negative area, and the energy in use or what an encoding keeps."""
     found = zip(_figures(picture, at), at.numbers.figures, strict=False)
     return [piece for figure, cell in found for piece in _figure(figure, cell, at)]
 
@@ -99,8 +100,15 @@ def _figures(picture: Picture, at: Composition) -> list[_Figure]:
         ),
         _Figure("minimum", lowest, ("lowest channel", "lowest"), lines),
         _Figure("negative_area", negative, ("luminance < 0", "negative"), area),
-        _Figure("energy", [(share(energy_in_use(picture), 2), "")], ("energy in use", "energy")),
+        _last_figure(picture),
     ]
+
+
+def _last_figure(picture: Picture) -> _Figure:
+    """The energy in use; while an encoding is shown, how many numbers it keeps."""
+    if encoding := picture.state.view.encode:
+        return _Figure("numbers", [(str(ENCODINGS[encoding].floats), "")], ("numbers a channel", "numbers"))
+    return _Figure("energy", [(share(energy_in_use(picture), 2), "")], ("energy in use", "energy"))
 
 
 def _wordings(found: float, bound: float | None, peak: float) -> list[Wording]:

@@ -29,6 +29,7 @@ from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots, legend_pieces
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
 from shviewer.viewer.overlay.plots.steps import steps_legend, steps_of, steps_pieces
+from shviewer.viewer.overlay.plots.stored import stored_errors, stored_legend, stored_pieces
 from shviewer.viewer.overlay.plots.trace import trace_pieces
 from shviewer.viewer.picture import Picture
 
@@ -127,6 +128,8 @@ def draw_overlay(
         if state.view.by_roughness:
             steps = steps_of(picture)
             blocks += [steps_pieces(steps, picture, at), steps_legend(steps, picture, at)]
+        elif state.view.encode:
+            blocks += [stored_pieces(stored_errors(picture), picture, at), stored_legend(picture, at)]
         else:
             series = band_series(picture, least_slots(at))
             axes = axes_of(series, at)
@@ -139,7 +142,8 @@ def draw_overlay(
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)
-            words = "bands against roughness" if state.view.by_roughness else "error against bands"
+            words = "error of each encoding" if state.view.encode else "error against bands"
+            words = "bands against roughness" if state.view.by_roughness else words
             blocks.append([Text("curve_head", head.left, head.baseline, words, size, INK, SEMIBOLD)])
     found = _overlay(at, blocks, bars)
     if plane is not None:
@@ -160,6 +164,8 @@ def foresee(picture: Picture) -> None:
     band_series(picture)
     if picture.state.view.by_roughness:
         steps_of(picture)
+    elif picture.state.view.encode:
+        stored_errors(picture)
 
 
 def _overlay(at: Composition, blocks: Sequence[Sequence[Piece]], bars: dict[int, Box] | None = None) -> Overlay:
