@@ -261,7 +261,8 @@ class Session:
             self.state = changed(self.state, message="")
         if not self._making.working and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
-        if self.turn.beats(bool(self.state.view.turning), now, ready=not self._making.working and self._shown and not self._later):
+        ready = self._shown and not self._making.working and not self._later
+        if self.turn.beats(bool(self.state.view.turning), now, ready=ready):
             self.state = step_turn(self.placed)  # from where the camera is, or it would go round with the light
         if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
             self._looked_at = now

@@ -55,7 +55,7 @@ PLACES = {
 }  # fmt: skip
 """Keycodes of the keys that have these letters on an American keyboard."""
 
-BOUND = "WTYUIOPASDFGHZXVBNMER"
+BOUND = "QWTYUIOPASDFGHZXVBNMER"
 """Letters that do something."""
 
 
@@ -73,7 +73,7 @@ LAYOUTS: dict[str, dict[str, list[str]]] = {
     "ru": {**letters(), "16": ["7"], "shift+16": ["Shift+7"], "61": ["."],
            "ctrl+54": ["Ctrl+C"], "ctrl+shift+54": ["Ctrl+Shift+C"],
            "ctrl+24": ["Ctrl+Q"], "59": [], "shift+21": ["+"], "20": ["-"]},
-    "gr": {**letters(), "24": [], "ctrl+25": ["Ctrl+W"], "ctrl+39": ["Ctrl+S"], "59": [","], "60": ["."]},
+    "gr": {**letters(), "ctrl+25": ["Ctrl+W"], "ctrl+39": ["Ctrl+S"], "59": [","], "60": ["."]},
     "us,ru -option grp:toggle": {"25": ["W"]},
 }  # fmt: skip
 """Arguments of setxkbmap: keycodes, with modifiers, and what they do."""
