@@ -34,7 +34,7 @@ def opened(state: State, *, as_image: bool) -> State:
     words = "; ".join(filter(None, (state.view.message, picture.said or picture.state.view.message)))
     message = Message(words, WARNING if picture.said else "")
     reading = replace(shown.recipe.reading, isolated=True)
-    return started(changed(shown, reading=reading, sweep_to=None, message=message))
+    return started(changed(shown, reading=reading, sweep_to=None, turning="", message=message))
 
 
 class Opening:

@@ -34,9 +34,9 @@ ROWS = {
     "l1": ("L1", "L1"),
     "geomerics": ("L1 Geomerics", "Geomerics"),
     "hallucinated": ("ZH3 hallucinated", "hallucinated"),
-    "hallucinated-shared": ("  shared axis", "  shared axis"),
+    "hallucinated-shared": ("hallucinated, shared", "halluc. shared"),
     "zh3": ("ZH3", "ZH3"),
-    "zh3-shared": ("  shared axis", "  shared axis"),
+    "zh3-shared": ("ZH3, shared axis", "ZH3 shared"),
     "l2": ("L2", "L2"),
     "l2-deringed": ("L2 deringed", "deringed"),
 }
@@ -85,8 +85,8 @@ def stored_pieces(errors: Mapping[str, float | None], picture: Picture, at: Comp
             base = round(area.top + (row + 0.5) * step + 0.36 * size)
             said, ink = ROWS[name][kind], INK if shown else GREY
             pieces.append(Text(f"stored_{name}_floats", left, base, str(encoding.floats), size, FAINT))
-            x = left + 1.2 * size + width_of(said[: len(said) - len(said.lstrip())], size)
-            pieces.append(Text(f"stored_{name}", x, base, said.strip(), size, ink, MEDIUM if shown else REGULAR))
+            weight = MEDIUM if shown else REGULAR
+            pieces.append(Text(f"stored_{name}", left + 1.2 * size, base, said, size, ink, weight))
             if error is not None and length > 0:
                 start, thick = round(left + after), round(0.62 * size)
                 end = max(round(left + after + each * error), start + line)
