@@ -136,7 +136,7 @@ def test_every_command_is_one_that_the_program_understands(path: Path, capsys: p
             if stopped.code:
                 pytest.fail(f"shviewer {' '.join(arguments)}: {capsys.readouterr().err}")
             continue  # --help, --version
-        for light in getattr(options, "lights", [getattr(options, "light", "green")]):
+        for light in getattr(options, "lights", [getattr(options, "light", None) or "green"]):
             assert light in built_in_lights() or {".", "/"} & set(light) or light.isupper(), (
                 f"{light}: no built-in light"
             )

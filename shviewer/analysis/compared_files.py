@@ -10,6 +10,7 @@ from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.recognised import Recognised, recognise
 from shviewer.analysis.subjects import load_light
+from shviewer.analysis.suspecting import others_of
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.reading import interpreted, read_numbers
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
@@ -53,7 +54,7 @@ def _recognised(recipe: Recipe, listed: Listed) -> Recognised:
     """The convention in which the numbers fit the radiance of the light that is projected."""
     light = load_light(replace(recipe, quantity="radiance"))
     most = min(MAX_BANDS, max(1, ceil(sqrt(listed.numbers.size))))  # the bands of a grey list; others have fewer
-    return recognise(listed, project(light, *BEST, most).coefficients)
+    return recognise(listed, project(light, *BEST, most).coefficients, others_of(light, most))
 
 
 def _kind(text: str) -> str:

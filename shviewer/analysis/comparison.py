@@ -11,25 +11,17 @@ from shviewer.analysis.cache import remember
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.coefficients.diagnosis.chance import CHANCE
-from shviewer.coefficients.diagnosis.search import explain
-from shviewer.coefficients.diagnosis.sentences import words
+from shviewer.analysis.suspecting import FITS, held_as, others_of, suspect
+from shviewer.coefficients.diagnosis.search import EXPLAINED
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.parts.quantities import RADIANCE
 from shviewer.coefficients.programs import OURS
-from shviewer.coefficients.reading import interpreted
-from shviewer.coefficients.texts import convention_text
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.filters import per_coefficient
-from shviewer.harmonics.quantities.kernels import kernel_of
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
-from shviewer.words import brief_percent
-
-FITS = 0.02
-"""Given coefficients that are off by more than this share of the light's own, in the same bands, are examined."""
+from shviewer.words import all_of, brief_percent
 
 FAINT = 1e-3
 """The error of a band is divided by no less than this share of the strongest band."""
@@ -39,9 +31,6 @@ LONGEST_NAME = 28
 
 EXACT = 1e-6
 """Numbers that are off by less are the same, printed with six digits."""
-
-EXPLAINED = 0.25
-"""A suspected mistake is named if the error without it is at most this, and at most this share of the error with it."""
 
 ALL, MOST = 0.05, 0.5
 """A factor is all, or most, of an error, of which at most this share is left without it."""
@@ -84,7 +73,7 @@ def verdict(light: Light, given: CoefficientLight) -> str:
     Both are compared as what the file holds, radiance or irradiance, whatever is shown.
     """
     exact = project(light, *BEST, given.n_bands).coefficients
-    wanted, held = _held(exact, given.quantity), _numbers(given)
+    wanted, held = held_as(exact, given.quantity), _numbers(given)
     norm, off = float(np.linalg.norm(wanted)), float(np.linalg.norm(wanted - held))
     if off <= FITS * norm:
         over = f"its {given.n_bands} bands" if given.n_bands > 1 else "its one band"
@@ -93,25 +82,22 @@ def verdict(light: Light, given: CoefficientLight) -> str:
     says = f"{given.name} is {brief_percent(off / norm) if norm else 'wholly'} off"
     if not held.any():
         return f"{says}: its numbers are all zero"
-    explained = _explained(exact, given, off / norm if norm else np.inf)
-    return f"{says}, {explained or f'which no usual mistake explains{_where(wanted, held)}'}"
+    file = given.file
+    listed, named = (file.listed, file.convention) if file and file.listed else (Listed(given.given), OURS)
+    try:
+        found = suspect(listed, exact, named, others_of(light, given.n_bands))
+    except LightError:  # of numbers that are no table
+        found = None
+    if found is None or found.error > EXPLAINED * min(1.0, off / norm if norm else np.inf):
+        return f"{says}, which no usual mistake explains{_where(wanted, held)}"
+    left = "not at all" if found.error < EXACT else brief_percent(found.error)
+    paste = f": --convention {found.text}" if file and found.differs(named) else ""
+    return f"{says}, but {left} if {found.conditions(named)}{paste}"
 
 
 def agrees(said: str) -> bool:
     """Whether a verdict says that the coefficients agree."""
     return " agrees with the light's own " in said
-
-
-def error_of(exact: Array, coefficients: Array, quantity: str) -> float:
-    """The relative L2 error of our coefficients of a quantity. exact: the radiance, of at least as many bands."""
-    wanted = _held(exact[: len(coefficients)], quantity)
-    norm = float(np.linalg.norm(wanted))
-    return float(np.linalg.norm(coefficients - wanted)) / norm if norm else np.inf
-
-
-def _held(exact: Array, quantity: str) -> Array:
-    """The coefficients of a quantity, of a light whose radiance has these."""
-    return exact if quantity == RADIANCE else exact * per_coefficient(kernel_of(quantity).factors(count_bands(exact)))
 
 
 def _numbers(given: CoefficientLight) -> Array:
@@ -128,26 +114,6 @@ def _factor(wanted: Array, held: Array) -> str:
     return f", {'all' if left <= ALL * off else 'most'} of it a factor of {factor:.5g}"
 
 
-def _explained(exact: Array, given: CoefficientLight, off: float) -> str:
-    """What makes the numbers right, in words and as a text to be pasted; "" if nothing does."""
-    file = given.file
-    listed, named = (file.listed, file.convention) if file and file.listed else (Listed(given.given), OURS)
-    try:
-        found = explain(listed, exact, named)
-        if found is None or found.chance > CHANCE:
-            return ""
-        text = convention_text(found.convention)
-        read = interpreted(listed, text, overrule=True)
-        error = error_of(exact, read.coefficients, read.quantity)
-    except LightError:  # of numbers that are too large, read so
-        return ""
-    if error > EXPLAINED * min(1.0, off):
-        return ""
-    left = "not at all" if error < EXACT else brief_percent(error)
-    paste = f": --convention {text}" if file else ""
-    return f"but {left} if its numbers are {words(found.convention, named)}{paste}"
-
-
 def _where(exact: Array, shown: Array) -> str:
     """The bands that disagree, measured by the same bands of the light's own; "" if it has only one band, or is black."""
     starts = np.arange(count_bands(exact)) ** 2
@@ -158,10 +124,11 @@ def _where(exact: Array, shown: Array) -> str:
     share = off / np.maximum(own, FAINT * own.max())
     worst = int(share.argmax())
     bad = np.flatnonzero(share > FITS)
-    others = "the others fit" if len(bad) == 1 else "most of all" if len(bad) == len(own) else _bad_bands(bad, worst)
+    others = "most of all" if len(bad) == len(own) > 1 else f"{_bad_bands(bad, worst)}the others fit"
     return f": band {worst} is {brief_percent(share[worst])} off, {others}"
 
 
 def _bad_bands(bad: NDArray[np.int64], worst: int) -> str:
     others = [str(band) for band in bad if band != worst]
-    return f"{', '.join(others[:6])}{' and more' if len(others) > 6 else ''} less, the others fit"
+    named = all_of([*others[:6], *(["more"] if len(others) > 6 else [])])
+    return f"band{'s' if len(others) > 1 else ''} {named} by less, " if others else ""

@@ -6,15 +6,12 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
-from shviewer.analysis.comparison import EXPLAINED, FITS, error_of
+from shviewer.analysis.suspecting import FITS, Others, error_of, suspect
 from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.diagnosis.chance import CHANCE
-from shviewer.coefficients.diagnosis.search import ALIKE, TINY, explain
-from shviewer.coefficients.diagnosis.sentences import differences
+from shviewer.coefficients.diagnosis.search import ALIKE, EXPLAINED, TINY
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.reading import CoefficientFile, interpreted
-from shviewer.coefficients.texts import convention_text
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.words import all_of, brief_percent
@@ -36,8 +33,10 @@ class _Fit:
     error: float
 
 
-def recognise(listed: Listed, exact: Array) -> Recognised:
+def recognise(listed: Listed, exact: Array, others: Others = lambda: iter(())) -> Recognised:
     """The convention of a bare list. exact: the light's radiance in our convention, with at least its bands.
+
+    others: the lights that are taken for it by mistake.
 
     A program's own convention that fits is taken as it is; one with changes if chance does not explain it. LightError if
     the numbers are no table in any convention.
@@ -46,36 +45,31 @@ def recognise(listed: Listed, exact: Array) -> Recognised:
     if not plain:
         interpreted(listed, "shviewer")  # says what is wrong
         raise LightError("numbers in no known convention: name it, --convention")
-    found, changes = None, list[str]()
+    found = None
     with suppress(LightError):
-        if (best := explain(listed, exact)) is not None:
-            found = next(_fits(listed, exact, [convention_text(best.convention)]), None)
-            changes = differences(best.convention)
-            if found and (found.error > EXPLAINED or (changes and best.chance > CHANCE)):
-                found = None
-    if found is None:
-        nearest = min(plain, key=lambda fit: max(fit.error, TINY))
+        found = suspect(listed, exact, None, others)
+    nearest = min(plain, key=lambda fit: max(fit.error, TINY))
+    if found is None or found.error > EXPLAINED:
         fits = nearest.error <= FITS
-        said = f"{nearest.text} fits{_alike(nearest, plain)}" if fits else ""
+        said = f"{nearest.text} fits{_alike(nearest.error, nearest.text, plain)}" if fits else ""
         nothing = f"no usual one fits; read as {nearest.text}, which is {brief_percent(nearest.error)} off"
         return Recognised(nearest.file, said or nothing, fits)
-    base = found.text.partition(",")[0]
+    base, changes, slips = found.explanation.convention.name, found.changes, all_of(found.slips)
     turned = replace(CONVENTIONS[base], name="", program="") == replace(OURS, name="", program="", phase=False)
     also = ", or shviewer of the map turned by half a turn, which is the same" if turned and not changes else ""
     called = f"{', '.join([base, *changes])}," if changes else base
     fits = found.error <= FITS
-    said = (
-        f"{called} fits{also}{_alike(found, plain)}"
-        if fits
-        else f"{called} is nearest, {brief_percent(found.error)} off"
-    )
+    if fits:
+        alike = f", if {slips}" if slips else _alike(found.error, found.text, plain)
+        said = f"{called} fits{also}{alike}"
+    else:
+        said = f"{called} is nearest, {brief_percent(found.error)} off{f' if {slips}' if slips else ''}"
     return Recognised(found.file, f"{said}: --convention {found.text}" if changes else said, fits)
 
 
-def _alike(best: _Fit, plain: list[_Fit]) -> str:
-    same = [fit.text for fit in plain if fit.text != best.text and fit.error <= max(ALIKE * best.error, TINY)]
-    alike = all_of(same)
-    return f", as {alike} would" if alike else ""
+def _alike(error: float, text: str, plain: list[_Fit]) -> str:
+    same = [fit.text for fit in plain if fit.text != text and fit.error <= max(ALIKE * error, TINY)]
+    return f", as {all_of(same)} would" if same else ""
 
 
 def _different() -> list[str]:

@@ -252,7 +252,7 @@ def test_where_nothing_explains_it_the_band_is_named() -> None:
     wrong[1:4] += np.random.default_rng(0).normal(size=(3, 3)) * np.linalg.norm(exact[1:4])
     assert re.search(r"explains: band 1 is \d+ % off, the others fit$", verdict(venice(), given(wrong)))
     wrong[4:9] *= 1.5
-    assert re.search(r"explains: band 1 is \d+ % off, 2 less, the others fit$", verdict(venice(), given(wrong)))
+    assert re.search(r"explains: band 1 is \d+ % off, band 2 by less, the others fit$", verdict(venice(), given(wrong)))
 
 
 @pytest.mark.parametrize(

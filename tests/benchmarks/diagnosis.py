@@ -3,7 +3,8 @@
     python tests/benchmarks/diagnosis.py
 
 For lists of 2 to 9 bands of which nothing is known: the median of several searches, the first of which also makes the
-matrices of all orientations, and the ratio to reading the list and measuring its error once.
+matrices of all orientations, the same with the sign of a row wrong, and the ratio to reading the list and measuring its error
+once.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from statistics import median
 import numpy as np
 from measure import wall_milliseconds
 
-from shviewer.analysis.comparison import error_of
+from shviewer.analysis.suspecting import error_of
 from shviewer.coefficients.diagnosis.search import explain
 from shviewer.coefficients.diagnosis.ways import ways
 from shviewer.coefficients.numbers import Listed
@@ -32,7 +33,7 @@ def compare(listed: Listed, exact: np.ndarray) -> float:
 
 def main() -> None:
     light = find_light("venice_sunset")
-    print("bands  ways  first search     search  comparison  ratio")
+    print("bands  ways  first search     search  wrong row  comparison  ratio")
     for n_bands in (2, 3, 4, 5, 6, 9):
         exact = light.coefficients(n_bands)
         numbers = np.asarray(parse_convention("shviewer,y-up,no-phase,times=1.7").from_ours(exact))
@@ -40,7 +41,10 @@ def main() -> None:
         first, *searches = (wall_milliseconds(partial(explain, listed, exact)) for _ in range(ROUNDS))
         once = median(wall_milliseconds(partial(compare, listed, exact)) for _ in range(20))
         search, count = median(searches), len(list(ways(listed)))
-        print(f"{n_bands:5d} {count:5d} {first:11.1f} ms {search:6.1f} ms {once:8.2f} ms {search / once:6.0f}")
+        broken = Listed(np.where(np.arange(n_bands**2) == 3, -1, 1)[:, None] * numbers)
+        slip = median(wall_milliseconds(partial(explain, broken, exact)) for _ in range(ROUNDS))
+        times = f"{first:11.1f} ms {search:6.1f} ms {slip:6.1f} ms {once:8.2f} ms"
+        print(f"{n_bands:5d} {count:5d} {times} {search / once:6.0f}")
 
 
 if __name__ == "__main__":

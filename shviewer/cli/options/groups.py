@@ -58,7 +58,7 @@ def add_view_options(parser: OneLineParser, *, several: bool = False) -> None:
             help=f"{LIGHT_HELP} (default green); or several, or folders, for Left and Right to go through",
         )
     else:
-        parser.add_argument("light", metavar="LIGHT", nargs="?", default="green", help=f"{LIGHT_HELP} (default green)")
+        parser.add_argument("light", metavar="LIGHT", nargs="?", help=f"{LIGHT_HELP} (default green)")
     parser.add_argument(
         "--like",
         metavar="PICTURE",

@@ -26,7 +26,7 @@ LIGHT = "green"
 def lights_of(options: argparse.Namespace) -> list[str]:
     """What is given as LIGHT, or what stands for it."""
     given = vars(options)
-    return given.get("lights") or [given.get("light", LIGHT)]
+    return given.get("lights") or [given.get("light") or LIGHT]
 
 
 def lights_within(options: argparse.Namespace) -> list[str]:

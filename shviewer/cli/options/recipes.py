@@ -51,6 +51,10 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
         from shviewer.analysis.compared_files import compared_with
 
         recipe, found = compared_with(recipe, compared)
+        if not vars(options).get("like") and not (vars(options).get("lights") or vars(options).get("light")):
+            found = "; ".join(
+                [f"no LIGHT is named, so that {compared} is compared with {light}", *filter(None, [found])]
+            )
         if found:
             print(f"shviewer: {found}", file=sys.stderr)
     listed = isinstance(light, str) and split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES

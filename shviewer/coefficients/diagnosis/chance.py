@@ -32,11 +32,33 @@ def chance(errors: Array, told: NDArray[np.bool_], exact: Array) -> float:
     errors: of each degree, relative to its own norm, (n_bands,); told: whether a degree counts, (n_bands,); exact: the light's
     coefficients, (n_bands**2, 3).
     """
-    starts = np.arange(len(errors)) ** 2
-    norms = np.sqrt(np.add.reduceat((exact**2).sum(axis=1), starts))
-    products = exact.T @ exact
-    channels = float(np.trace(products) ** 2 / (products**2).sum())
-    sizes = (2 * np.arange(len(errors)) + 1) * channels
-    counts = told & (norms > FAINT * norms.max())
-    shares = np.clip(errors, ROUNDING, 1.0) ** np.maximum(sizes - 1, 0.0) / 2
-    return float(np.prod(np.where(counts, shares, 1.0)))
+    n_bands = len(errors)
+    norms = np.sqrt(np.add.reduceat((exact**2).sum(axis=1), np.arange(n_bands) ** 2))
+    return float(_chances(errors[None], told[None], norms[None], np.arange(1.0, 2 * n_bands, 2), exact[None])[0])
+
+
+def chances_of_rows(given: Array, wanted: Array, told: NDArray[np.bool_]) -> Array:
+    """The same of lists (k, n**2, 3) that should be `wanted`, each degree with its best constant: (k,).
+
+    told: the rows that count, (k, n**2).
+    """
+    starts = np.arange(round(given.shape[1] ** 0.5)) ** 2
+    given, wanted = given * told[:, :, None], wanted * told[:, :, None]
+    own, power, linear = (
+        np.add.reduceat((one * other).sum(axis=2), starts, axis=1)
+        for one, other in ((wanted, wanted), (given, given), (given, wanted))
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(linear > 0, linear**2 / (own * power), 0.0)
+    errors = np.sqrt(np.maximum(1 - share, 0.0))
+    rows = np.add.reduceat(told * 1.0, starts, axis=1)
+    return _chances(errors, (own > 0) & (power > 0), np.sqrt(own), rows, wanted)
+
+
+def _chances(errors: Array, told: NDArray[np.bool_], norms: Array, rows: Array, exact: Array) -> Array:
+    """Of lists: errors, norms and how many rows tell something, of each degree (k, n); and the lists (k, n**2, 3)."""
+    products = exact.transpose(0, 2, 1) @ exact
+    channels = products.trace(axis1=1, axis2=2) ** 2 / (products**2).sum(axis=(1, 2))
+    counts = told & (norms > FAINT * norms.max(axis=1, keepdims=True))
+    shares = np.clip(errors, ROUNDING, 1.0) ** np.maximum(rows * channels[:, None] - 1, 0.0) / 2
+    return np.asarray(np.prod(np.where(counts, shares, 1.0), axis=1))

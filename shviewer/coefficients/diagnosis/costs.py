@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.diagnosis.orientations import HALF_TURN, TURNS, USUAL_AXES, between, orientations
+from shviewer.coefficients.diagnosis.orientations import FLIPS, HALF_TURN, TURNS, USUAL_AXES, between, orientations
 from shviewer.coefficients.diagnosis.ways import Taken, sequence_of
 from shviewer.coefficients.parts.axes import Axes, all_axes
 from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, FLAT_BY_CHANNEL
@@ -21,16 +21,19 @@ ONE = 1.0
 ALSO_THE_PHASE = 1.02
 """Half a turn, which the phase is, too."""
 
-ODD_AXES = 2.05
-"""Axes that no program has."""
+FLIPPED, ODD_AXES = 0.98, 2.05
+"""An image whose rows or columns are taken in reverse, and axes that no program has."""
 
 OVER_PI_TOO = 0.6
 """Irradiance that is divided by pi, beyond irradiance."""
 
-PROGRAM, OPEN_READING, ANOTHER_PROGRAM = 0.9, 1.02, 1.1
-"""A program where none was named, one of the two readings of a program whose phase nobody documents, and another program than
-the one that was named.
+PROGRAM, OPEN_READING, ANOTHER_PROGRAM, BENDING = 0.9, 1.02, 1.1, 0.15
+"""A program where none was named, one of the two readings of a program whose phase nobody documents, another program than
+the one that was named; and, beyond the mistakes themselves, those in what the program that was named has fixed.
 """
+
+BENT = -1
+"""The number of the base that is what was named, with mistakes in what its program has fixed."""
 
 NAMED_FACTOR, ANY_FACTOR = 1.02, 1.4
 """A factor with a name, which may be part of a quantity or a normalisation, and any other."""
@@ -52,8 +55,9 @@ def costs(
 ) -> tuple[Array, NDArray[np.int64]]:
     """The cost of each orientation and combination, (192, k), without channels and factor, and the number of its base.
 
-    The base is the convention of CONVENTIONS from which least differs; infinite where none can have it. n_bands: those of the
-    list. named: the convention it was read in; flat: whether it has no rows; placed: whether these name their l and m.
+    The base is the convention of CONVENTIONS, or what was named, BENT, from which least differs; infinite where none can have
+    it. n_bands: those of the list. named: the convention it was read in; flat: whether it has no rows; placed: whether these
+    name their l and m.
     """
     best = np.full((len(orientations()), len(combinations(taken))), np.inf)
     bases = np.zeros(best.shape, dtype=np.int64)
@@ -62,12 +66,22 @@ def costs(
             total = _from_base(base, taken, named, flat, placed)
             better = total < best
             best[better], bases[better] = total[better], number
+    if named and named != OURS and named.sequence != FLAT_BY_CHANNEL and taken.complex == named.complex:
+        total = _from_base(named, taken, named, flat, placed, free=True)
+        total = np.where(total > 0, total + BENDING, total)
+        better = total < best - 1e-9
+        best[better], bases[better] = total[better], BENT
     return best, bases
 
 
-def _from_base(base: Convention, taken: Taken, named: Convention | None, flat: bool, placed: bool) -> Array:
-    """The same from one base. A program's own phase, sign of m, normalisation, order, shift and quantity are fixed."""
-    ours, given = base is OURS, named if named is not None and named.name == base.name else None
+def _from_base(
+    base: Convention, taken: Taken, named: Convention | None, flat: bool, placed: bool, free: bool = False
+) -> Array:
+    """The same from one base. A program's own phase, sign of m, normalisation, order, shift and quantity are fixed.
+
+    free: they are not.
+    """
+    ours, given = free or base is OURS, named if named is not None and named.name == base.name else None
     found = np.full((len(orientations()), len(combinations(taken))), np.inf)
     other_order = taken.order != base.order and not placed
     sequence = sequence_of((given or base).sequence, flat)
@@ -75,7 +89,7 @@ def _from_base(base: Convention, taken: Taken, named: Convention | None, flat: b
     if fixed or (not ours and (other_order or taken.shift != base.shift)):
         return found
     cost = _of_name(base, named) + (taken.sequence != sequence) + other_order + (taken.shift != base.shift)
-    of_axes, polynomial = _of_axes(base.basis_axes, ours), "polynomial" in taken.scales
+    of_axes, polynomial = _of_axes(base.basis_axes, base is OURS), "polynomial" in taken.scales
     for first in range(0, len(found), len(of_axes)):
         phase, mirrored, _ = orientations()[first]
         if polynomial and (phase or mirrored):
@@ -113,6 +127,8 @@ def _of_axes(meant: Axes, ours: bool) -> Array:
         turn = between(meant, axes).text
         if turn == HALF_TURN:
             return ALSO_THE_PHASE
+        if turn in FLIPS:
+            return FLIPPED
         return ONE if turn in TURNS or (ours and axes.text in USUAL_AXES) else ODD_AXES
 
     return np.array([cost(axes) for axes in all_axes()])

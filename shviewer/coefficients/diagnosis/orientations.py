@@ -19,11 +19,14 @@ TURNS = {
     HALF_TURN: "of the map turned by half a turn",
     "+y-x+z": "of the map turned by a quarter, its left in the middle",
     "-y+x+z": "of the map turned by a quarter, its right in the middle",
-    "+x-y+z": "of the map mirrored, left and right exchanged",
-    "+x+y-z": "of the map upside down and mirrored",
+    "+x-y+z": "of the map mirrored left to right",
+    "+x+y-z": "of the map flipped top to bottom",
+    "+x-y-z": "of the map turned upside down",
     "-x-y-z": "of the light from opposite directions",
 }
 """What happened to a light, if the axes are these against those that were meant -> words. Our y is left, our x the middle."""
+
+FLIPS = ("+x-y+z", "+x+y-z")
 
 CYCLE = Axes("+y+z+x")
 """Any axes are this, repeated as needed, and then axes that keep z in its place, whose turns are exact and quick."""

@@ -2,39 +2,28 @@
 
 A list is numbers g; were it right, they would be our coefficients c of the light, times the factors f(l) of what it holds
 and of its normalisation. The usual mistakes are few: the phase, m and -m, the axes, a constant, the clamped cosine A(l),
-another normalisation, the order of the rows or the channels, the sequence of the numbers. All combinations are tried.
-
-Phase, m and axes are orthogonal and keep the power of each degree; factors multiply a degree. With g' the numbers after one
-of the `ways` to take the rows and one of the orientations undone, e = sum of c^2, d = sum of c g' and p = sum of g'^2 per
-degree, the best constant is K = sum p / sum f d, and the squared error that is left, relative to K f c, is
-1 - (sum f d)^2 / (sum p sum f^2 e). So each g' serves all factors, channels and constants at once. Degrees that the list
-cannot tell, A(3) = 0, must be empty in it.
+another normalisation, the order of the rows or the channels, the sequence of the numbers. All combinations are tried
+(tried.py), and with the simple ones whether single rows are wrong (slips.py).
 
 Among errors that are about equal the explanation decides that costs least (costs.py), and chance.py says what it is worth.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.diagnosis.chance import chance
-from shviewer.coefficients.diagnosis.costs import ANY_FACTOR, CHANNELS, NAMED_FACTOR, Combination, combinations
+from shviewer.coefficients.diagnosis.chance import CHANCE, chance
+from shviewer.coefficients.diagnosis.costs import CHANNELS
 from shviewer.coefficients.diagnosis.costs import costs as costs_of
-from shviewer.coefficients.diagnosis.orientations import Orientation, orientations, undoing
-from shviewer.coefficients.diagnosis.ways import Taken, Way, ways
+from shviewer.coefficients.diagnosis.slips import ONE_OF_TEN, Slip, Slipped
+from shviewer.coefficients.diagnosis.tried import CONSTANTS, Place, Tried, constant_cost, constant_of
+from shviewer.coefficients.diagnosis.ways import ways
 from shviewer.coefficients.numbers import Listed
-from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, FLAT_BY_CHANNEL, channel_places
-from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, is_over_pi, whole
-from shviewer.coefficients.parts.rows import ACN
-from shviewer.coefficients.parts.scales import SCALES
-from shviewer.coefficients.programs import CONVENTIONS, OURS
+from shviewer.coefficients.parts.rows import row_order
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.filters import irradiance_factors
 
 MOST_BANDS = 6
 """The most bands compared: enough to tell all mistakes apart, and fast to turn."""
@@ -45,30 +34,29 @@ ALIKE = 1.5
 TINY = 1e-6
 """Relative errors below this count as none: single precision, or six printed digits."""
 
-NO_FACTOR = 0.02
-"""A constant that differs from 1 by no more is no mistake: it is said beside the agreement."""
+EXPLAINED = 0.25
+"""A suspected mistake is named if the error without it is at most this, and at most this share of the error with it."""
 
-CONSTANTS = {
-    "multiplied by pi": np.pi,
-    "divided by pi": 1 / np.pi,
-    "multiplied by sqrt(4 pi)": np.sqrt(4 * np.pi),
-    "divided by sqrt(4 pi)": 1 / np.sqrt(4 * np.pi),
-    "times 2": 2.0,
-    "times 0.5": 0.5,
-    "multiplied by 4 pi": 4 * np.pi,
-    "divided by 4 pi": 1 / (4 * np.pi),
-}
-"""Words -> a factor that the numbers often have."""
+CLEAN = 0.05
+"""The most that slips may leave of an error: they are told where all other rows are right."""
+
+USUAL = 2.1
+"""The most that a convention costs with which slips are sought: two mistakes, or a program and one."""
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """A convention (`base` with what differs), the relative error of the numbers in it, and by how much chance explains it."""
+    """A convention, the relative error of the numbers in it, and by how much chance explains it."""
 
     convention: Convention
+    meant: Convention
+    """What it differs from: a program's own convention, or the one that was named."""
     error: float
     chance: float
     """The expected number of explanations at most so costly that fit a list of random directions so well."""
+    cost: float
+    slips: tuple[Slip, ...] = ()
+    """What is wrong in single rows of the list, which are counted from 0 in its own order."""
 
 
 def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Explanation | None:
@@ -82,113 +70,81 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
     exact = exact[: n_bands**2]
     if not exact.any() or not found[0].table[: n_bands**2].any():
         return None
-    tried, flat = [_Tried(way, exact, n_bands) for way in found], listed.numbers.ndim == 1
-    costs = [costs_of(one.taken, count_bands(found[0].table), named, flat, listed.placed) for one in tried]
-    for one, (cost, _) in zip(tried, costs, strict=True):
-        one.misfits[:, np.isinf(cost)] = np.inf
+    tried = [Tried(way, exact, n_bands) for way in found]
+    for one in tried:
+        one.costs, one.bases = costs_of(
+            one.taken, count_bands(found[0].table), named, listed.numbers.ndim == 1, listed.placed
+        )
+        one.misfits[:, np.isinf(one.costs)] = np.inf
+    simplest = _simplest(tried, exact, named)
+    if found[0].taken.complex or (simplest and simplest.error <= TINY and simplest.cost <= ONE_OF_TEN):
+        return simplest
+    return _with_slips(tried, exact, named, simplest)
+
+
+def _simplest(tried: list[Tried], exact: Array, named: Convention | None) -> Explanation | None:
+    """The simplest of those that fit about as well as any, without slips."""
     least = min(float(one.misfits.min()) for one in tried)
     good = max(ALIKE * least, TINY)
     best, most = None, np.inf
-    for one, (cost, bases) in zip(tried, costs, strict=True):
+    for one in tried:
         near = one.misfits <= good
         if near.any():
-            total = np.where(near, cost + CHANNELS[:, None, None] + one.constant_costs(good), np.inf)
-            place = int(total.argmin())
-            if total.flat[place] < most - 1e-9:
-                best, most = (one, bases, np.unravel_index(place, total.shape)), float(total.flat[place])
+            total = np.where(near, one.costs + CHANNELS[:, None, None] + one.constant_costs(good), np.inf)
+            first = int(total.argmin())
+            if total.flat[first] < most - 1e-9:
+                channels, orientation, combination = map(int, np.unravel_index(first, total.shape))
+                best, most = (one, (channels, orientation, combination)), float(total.flat[first])
     if best is None:
         return None
-    one, bases, (channels, orientation, combination) = best
-    base = CONVENTIONS[list(CONVENTIONS)[bases[orientation, combination]]]
-    factor = one.constant(channels, orientation, combination, good)
-    convention = _convention(
-        base, one.taken, orientations()[orientation], CHANNEL_ORDERS[channels], one.combinations[combination], factor
+    one, place = best
+    within = sum(
+        int((CHANNELS[:, None, None] + one.costs <= most + 1e-9).sum()) * (1 + len(CONSTANTS)) for one in tried
     )
-    within = sum(int((CHANNELS[:, None, None] + cost <= most + 1e-9).sum()) * (1 + len(CONSTANTS)) for cost, _ in costs)
-    return Explanation(
-        convention,
-        float(one.misfits[channels, orientation, combination]),
-        within * chance(*one.by_degree(channels, orientation, combination), exact),
-    )
+    convention, meant = one.convention(place, one.constant(place, good), named)
+    by_chance = within * chance(*one.by_degree(place), exact)
+    return Explanation(convention, meant, float(one.misfits[place]), by_chance, most)
 
 
-class _Tried:
-    """All that is tried with one way to take the rows; arrays over channels, orientations and combinations."""
-
-    def __init__(self, way: Way, exact: Array, n_bands: int) -> None:
-        self.taken = way.taken
-        self.combinations = combinations(way.taken)
-        self.factors = np.array([_factors(*combination, n_bands) for combination in self.combinations])
-        starts = np.arange(n_bands) ** 2
-        turned = undoing(n_bands) @ way.table[: n_bands**2]  # (192, n**2, 3)
-        pairs = np.add.reduceat(exact[None, :, :, None] * turned[:, :, None, :], starts, axis=1)
-        self.own = np.add.reduceat((turned**2).sum(axis=2), starts, axis=1)  # (192, n)
-        self.exact = np.add.reduceat((exact**2).sum(axis=1), starts)
-        places = [np.argsort(channel_places(order)) for order in CHANNEL_ORDERS]
-        self.with_exact = np.stack([sum(pairs[:, :, i, at[i]] for i in range(3)) for at in places])  # (6, 192, n)
-        self.linear = self.with_exact @ self.factors.T
-        power, model = self.own.sum(axis=1)[:, None], self.factors**2 @ self.exact
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.where(self.linear > 0, self.linear**2 / (power * model), 0.0)
-            self.constants = np.where(self.linear > 0, power / self.linear, 1.0)
-        self.misfits = np.sqrt(np.maximum(1 - np.nan_to_num(share), 0.0))
-        if way.taken.shift:  # what is shifted has no factor: it would shift, too
-            self.misfits[np.abs(self.constants - 1) > NO_FACTOR] = np.inf
-
-    def constant_costs(self, good: float) -> Array:
-        off = np.abs(self.constants - 1)
-        costs = np.where(off <= NO_FACTOR, 0.0, ANY_FACTOR)
-        for value in CONSTANTS.values():
-            costs = np.where(np.abs(self.constants / value - 1) <= good, NAMED_FACTOR, costs)
-        return np.asarray(costs)
-
-    def constant(self, channels: np.intp, orientation: np.intp, combination: np.intp, good: float) -> float:
-        """The factor of the numbers: 1, one of CONSTANTS, or any, to six digits."""
-        found = float(self.constants[channels, orientation, combination])
-        if abs(found - 1) <= NO_FACTOR:
-            return 1.0
-        near = [value for value in CONSTANTS.values() if abs(found / value - 1) <= good]
-        return float(f"{near[0]:.10g}" if near else f"{found:.7g}")
-
-    def by_degree(
-        self, channels: np.intp, orientation: np.intp, combination: np.intp
-    ) -> tuple[Array, NDArray[np.bool_]]:
-        """The relative error of each degree, each with its best constant, and whether the degree tells anything."""
-        model = self.factors[combination] ** 2 * self.exact
-        linear = self.factors[combination] * self.with_exact[channels, orientation]
-        told = (model > 0) & (self.own[orientation] > 0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.where(told & (linear > 0), linear**2 / (model * self.own[orientation]), 0.0)
-        return np.sqrt(np.maximum(1 - share, 0.0)), told
+def _with_slips(
+    tried: list[Tried], exact: Array, named: Convention | None, simplest: Explanation | None
+) -> Explanation | None:
+    """The simplest of those that fit about as well as any and are not chance, with or without slips."""
+    sure = simplest is not None and simplest.chance <= CHANCE
+    exactly = simplest is not None and sure and simplest.error <= TINY  # then only what is simpler is sought
+    most = min(USUAL, simplest.cost - ONE_OF_TEN) if simplest and exactly else USUAL
+    places: list[tuple[Tried, Place]] = []
+    given: list[Array] = []
+    wanted: list[Array] = []
+    for one in tried:
+        if found := one.usual(most):
+            places += [(one, place) for place in found]
+            for rows, part in zip((given, wanted), one.rows(found, exact), strict=True):
+                rows.append(part)
+    if not places:
+        return simplest
+    slipped = Slipped(np.concatenate(given), np.concatenate(wanted), (1.0, *CONSTANTS.values()), CLEAN)
+    chances = slipped.chances * len(places) * (1 + len(CONSTANTS))
+    counted = np.flatnonzero(chances <= CHANCE)
+    if not counted.size:
+        return simplest
+    least = min(float(slipped.errors[counted].min()), simplest.error if simplest and sure else np.inf)
+    good = max(ALIKE * least, TINY)
+    near = counted[slipped.errors[counted] <= good]
+    factors = slipped.factors[near].tolist()
+    costs = slipped.costs[near] + [constant_cost(factor, good) for factor in factors]
+    costs += [_cost(*places[candidate]) for candidate in slipped.candidates[near]]
+    if not near.size or (simplest and sure and simplest.error <= good and simplest.cost <= costs.min() + 1e-9):
+        return simplest
+    best = int(costs.argmin())
+    one, place = places[slipped.candidates[near[best]]]
+    convention, meant = one.convention(place, constant_of(factors[best], good), named)
+    order = np.argsort(row_order(convention.order, count_bands(exact))).tolist()
+    slips = tuple(sorted(Slip(order[row], order[holds], sign) for row, holds, sign in slipped.slips(near[best])))
+    error, by_chance = float(slipped.errors[near[best]]), float(chances[near[best]])
+    return Explanation(convention, meant, error, by_chance, float(costs[best]), slips)
 
 
-@cache
-def _factors(quantity: str, scale: str, n_bands: int) -> Array:
-    """What multiplies our coefficients of the radiance, per degree."""
-    factors = irradiance_factors(n_bands) if whole(quantity) == IRRADIANCE else np.ones(n_bands)
-    if scale in ("polynomial", "fuma"):  # undone before anything was turned
-        scale = "orthonormal"
-    return np.asarray(
-        factors * SCALES[scale][0](n_bands)[np.arange(n_bands) ** 2] / (np.pi if is_over_pi(quantity) else 1.0)
-    )
-
-
-def _convention(
-    base: Convention, taken: Taken, orientation: Orientation, channels: str, combination: Combination, factor: float
-) -> Convention:
-    quantity, scale = combination
-    held = quantity if quantity != RADIANCE or base.quantity else None
-    phase = base.phase if scale == "polynomial" and base is not OURS else orientation.phase
-    return replace(
-        base,
-        phase=phase,
-        mirrored=orientation.mirrored,
-        axes=orientation.axes.then(base.pole.inverse),
-        scale=scale,
-        quantity=held,
-        order=taken.order if taken.order != ACN else base.order,
-        shift=taken.shift,
-        sequence=base.sequence if base.sequence == FLAT_BY_CHANNEL else taken.sequence,
-        channels=channels,
-        factor=factor,
-    )
+def _cost(one: Tried, place: Place) -> float:
+    channels, orientation, combination = place
+    return float(CHANNELS[channels] + one.costs[orientation, combination])
