@@ -107,15 +107,17 @@ def _sum_rows(weights: Array, image: NDArray[np.floating], spans: NDArray[np.int
     height, width = image.shape[:2]
     sums = np.zeros((len(weights), width * 3))
     block = min(height, max(1, BLOCK_TEXELS // width))
-    memory = np.empty((block, width, 3))
+    memory = np.empty(block * width * 3)
     for start in range(0, height, block):
-        some = image[start : start + block]
-        wide = memory[: len(some)]
+        rows = slice(start, min(start + block, height))
+        left, right = (0, width) if spans is None else (int(spans[rows, 0].min()), int(spans[rows, 1].max()))
+        some = image[rows, left:right]
+        wide = memory[: some.size].reshape(some.shape)
         np.copyto(wide, some)
         if spans is not None:
-            for row, (first, last) in zip(wide, spans[start : start + block].tolist(), strict=True):
+            for row, (first, last) in zip(wide, (spans[rows] - left).tolist(), strict=True):
                 row[:first] = row[last:] = 0.0
-        sums += weights[:, start : start + block] @ wide.reshape(len(wide), -1)
+        sums[:, 3 * left : 3 * right] += weights[:, rows] @ wide.reshape(len(wide), -1)
     return sums
 
 
