@@ -356,6 +356,23 @@ def test_a_sum_of_bands_stays_above_its_bound_by_another_basis(n_bands: int) -> 
     assert (np.abs(values) <= np.abs(grid.amplitude + np.abs(values).max(axis=(0, 2)))[:, None]).all()
 
 
+def test_a_valley_between_the_points_of_a_grid_is_bounded_though_another_is_lower_on_them() -> None:
+    """Two tips, the first at a point of the grid, the second in the middle of a cell and a fiftieth deeper."""
+    n_bands, rows = 24, 48
+    theta, phi = np.pi * (np.array([20.5, 31.0])) / rows, column_azimuths(2 * rows)[[10, 60]]
+    phi[1] -= np.pi / (2 * rows)
+    tips = directions_from_angles(theta, phi)
+    l = np.repeat(np.arange(n_bands), 2 * np.arange(n_bands) + 1)
+    zonal = evaluate_basis(tips, n_bands) * np.exp(-l / 8)
+    coefficients = np.repeat(-(zonal[0] + 1.02 * zonal[1])[:, None], 3, axis=1)
+    values = Synthesis(coefficients).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows)
+    true = float((scipy_basis(tips, n_bands) @ coefficients).min())
+    lowest = float(values.min())
+    assert true < 1.015 * lowest  # so that the grid alone is taken in
+    found = Waves(values, band_heights(coefficients)).lowest(lowest, 1e-4 * abs(lowest))
+    assert 1.005 * true < found.bound <= true  # two rows a band
+
+
 def hard_scenes() -> list[tuple[int, Array]]:
     """Small discs, thousands of times as bright as the sky behind them, with few to many bands."""
     scenes = []
