@@ -28,6 +28,9 @@ GROWTH = {Mode.HALVES: 160.0, Mode.STACK: 160.0, Mode.CELL: 46.0, Mode.BARE: 46.
 """How much higher than needed the numbers become where the panes cannot grow; the rest parts the rows."""
 
 
+UNDER_HEAD = 22.0
+"""Where the room of a curve among the spheres begins at the earliest, under its head."""
+
 NOWHERE, NO_NUMBERS = Box(0.0, 0.0, 0.0, 0.0), Numbers()
 
 
@@ -187,7 +190,7 @@ class _Placed:
         free = None
         if self.rows * design.columns(self.rows) > design.n_panes:
             cell, top = self.pane(design.n_panes)
-            free = self.picture(design.n_panes) if design.maps else cell._replace(top=top)
+            free = self.picture(design.n_panes) if design.maps else cell._replace(top=max(top, cell.top + UNDER_HEAD))
         feet = self._foot(0) is not None
         numbers = numbers_area(self.mode, area, compact=design.compact, third=third, cell=free, exposed=feet)
         if free is not None and self.mode in (Mode.CELL, Mode.COLUMN):

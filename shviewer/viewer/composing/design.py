@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 from math import ceil, sqrt
 
-from shviewer.viewer.composing.numbers_area import COMFORTABLE, HEIGHTS, LEVELS, SIDE, Mode, fits
+from shviewer.viewer.composing.numbers_area import COLUMN_HEIGHT, COMFORTABLE, HEIGHTS, LEVELS, SIDE, Mode, fits
 
 COMPACT_WIDTH, COMPACT_HEIGHT = 900, 480
 """A frame that is smaller both ways is compact: small type, and nothing that could be done without."""
@@ -17,6 +17,9 @@ LOW_HEIGHT = 360
 
 NEAR = 0.93
 """The share of the largest panes with which a tall frame has more rows."""
+
+LEAST = 0.4
+"""The share of comfortable panes below which numbers are given up in any case."""
 
 CLEARANCE = 12.0
 """Pixels of the design between a text and a sphere."""
@@ -82,7 +85,8 @@ class Design:
         for number, (choices, share) in enumerate(levels):
             largest = max((sizes[choice] for choice in choices), default=-1.0)
             others = (sizes[choice] for rest, _ in levels[number + 1 : number + 2] for choice in rest)
-            if choices and (largest >= comfortable or largest >= share * max(others, default=0.0)):
+            enough = largest >= LEAST * comfortable and largest >= share * max(others, default=0.0)
+            if choices and (enough or largest >= comfortable or number == len(levels) - 1):
                 break
         if self.height > self.width:  # a tall frame is filled by more rows, where they hardly make the panes smaller
             choices = [choice for choice in choices if sizes[choice] >= NEAR * largest]
@@ -94,6 +98,8 @@ class Design:
         for rows, mode in product(range(1, self.n_panes + 1), Mode):
             free = self.columns(rows) * rows > self.n_panes
             cell = self.pane_width(rows, mode) if free else None
+            if mode is Mode.COLUMN and self.height < COLUMN_HEIGHT:
+                continue
             if fits(mode, self.width - 2 * self.margin, compact=self.compact, cell=cell):
                 yield rows, mode
 

@@ -77,6 +77,9 @@ COMFORTABLE = 145.0
 ROOMY = 205.0
 """From this height on the numbers are larger, or the figures stand in two rows beside a wider curve."""
 
+COLUMN_HEIGHT = 450.0
+"""The least height of a frame whose numbers stand in a column at the right."""
+
 SIDE = 200.0
 """Width of the column of numbers at the right, without the margin."""
 

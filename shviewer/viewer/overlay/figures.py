@@ -46,7 +46,7 @@ def answer_pieces(picture: Picture, at: Composition) -> list[Piece]:
         pieces.append(Text(f"{name}_answer", cell.left, cell.value, said, size, INK, MEDIUM))
         after = cell.left + width_of(said, size, MEDIUM) + 0.2 * size
         word = "band" if count == 1 else "bands"
-        if after + width_of(word, UNIT * size) <= cell.right:
+        if after + width_of(word, UNIT * size) <= cell.right - 0.4 * size:
             pieces.append(Text(f"{name}_unit", after, cell.value, word, UNIT * size, INK))
         what = looked_at(picture.state.recipe.quantity) if name == "radiance" else name
         labels = [f"{what} {within}{more}" for more in reversed(rest)] + [f"{what} {within}", what]
@@ -80,6 +80,7 @@ def _figures(picture: Picture, at: Composition) -> list[_Figure]:
     rest = " of rest" if picture.subject.suns else ""
     errors = [(share(figures.relative_l2, digits, figures.floor), "") for digits in (3, 2, 1)]
     errors += [(typeset("< 0.01 %"), "")] if figures.relative_l2 < 1e-5 else []
+    errors += [(typeset("> 99.9 %"), "")] if 0.999 < figures.relative_l2 < 1 else []
     largest = lowest = negative = [(str(PENDING), "")]
     only, lines, area = "", "", ""
     if not isinstance(extremes, Pending):
@@ -137,7 +138,8 @@ def _figure(figure: _Figure, cell: Cell, at: Composition) -> list[Piece]:
         last, baseline = (label, cell.label) if labelled else (pieces[-2], cell.value)
         left, bottom = round(last.box.right + after), round(baseline + 1)
         scale = max(at.scale * (0.8 if at.compact else 1.0), 0.8)
-        pieces.append(Swatch(Box(left, bottom - side, left + side, bottom), figure.sample, scale, f"{name}_swatch"))
+        if left + side <= cell.left + room + 2:
+            pieces.append(Swatch(Box(left, bottom - side, left + side, bottom), figure.sample, scale, f"{name}_swatch"))
     return pieces
 
 

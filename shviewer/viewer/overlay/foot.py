@@ -130,7 +130,8 @@ def message_pieces(line: Line, said: str, at: Composition) -> list[Piece]:
     pieces = _mark(sign, line.left, line.baseline, at.px(MARK), ink, at) if sign else []
     shown = typeset(words)
     lines = [shown]
-    if at.compact and width_of(shown, size) > line.right - left:
+    two = line.baseline + 1.6 * size <= at.height
+    if at.compact and two and width_of(shown, size) > line.right - left:
         lines = _two_lines(shown, line.right - left, size)
     for number, text in enumerate(lines):
         text = shortened_to(text, line.right - left, size)

@@ -50,8 +50,11 @@ def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list
     pages, pitch = pages_of(at)
     shown = pages[page % len(pages)]
     top = _top(at)
-    closes = "H closes" if len(pages) == 1 else f"PageDown: page {page % len(pages) + 1} of {len(pages)}   H closes"
+    place = f"{page % len(pages) + 1} of {len(pages)}"
+    wordings = ("H closes",) if len(pages) == 1 else (f"PageDown: page {place}   H closes", f"PageDown: {place}", place)
     pieces.append(Text("help_title", margin, round(top), "Keys", at.px(15), INK, SEMIBOLD))
+    room = at.width - margin - pieces[-1].box.right - at.px(12)
+    closes = next((words for words in wordings if width_of(words, 0.92 * size) <= room), wordings[-1])
     x = at.width - margin - width_of(closes, 0.92 * size)
     pieces.append(Text("help_closes", round(x), round(top), closes, 0.92 * size, FAINT))
     rule = round(top + at.px(12))

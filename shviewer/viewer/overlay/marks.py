@@ -126,8 +126,21 @@ def _on(text: str, x: float, y: float, pane: Pane, composition: Composition, obs
         moved = _moved(words, start, baseline)
         box = _shifted(moved.box, left, top)
         if pane.clip.left + 2 <= box.left and box.right + 2 <= pane.clip.right and _free(box, obstacles):
-            return Placed(x, y, False, box, _layers((ring, moved), left, top))
-    return Placed(x, y, False, None, _layers((ring,), left, top))
+            return Placed(x, y, False, box, _within_map(_layers((ring, moved), left, top), pane))
+    return Placed(x, y, False, None, _within_map(_layers((ring,), left, top), pane))
+
+
+def _within_map(layers: tuple[Layer, ...], pane: Pane) -> tuple[Layer, ...]:
+    """Layers as far as they lie on a map, whose head stands close to it; on a sphere as they are."""
+    if isinstance(pane, Sphere):
+        return layers
+    found = []
+    for image, left, top in layers:
+        above, under = max(round(pane.clip.top) - top, 0), max(round(pane.clip.bottom) - top, 0)
+        found.append(
+            Layer(image[above:under], left, top + above) if above or under < len(image) else Layer(image, left, top)
+        )
+    return tuple(found)
 
 
 def _outside(

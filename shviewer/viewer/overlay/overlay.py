@@ -121,8 +121,10 @@ def draw_overlay(
         foot = foot_pieces(at, said, work, after=after, proposed=proposed_key(picture))
     bars: dict[int, Box] = {}
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
-    if at.compact and (said or work is not None):  # the message takes the place of the last line there is
+    if numbers.foot is None and (said or work is not None):  # the message takes the place of the last line there is
         answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])
+        if not (numbers.figures or numbers.answers):
+            blocks = heads
     blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
     if numbers.curve is not None:
         if state.view.by_roughness:

@@ -16,7 +16,7 @@ from shviewer.viewer.picture import Picture
 APART = 0.45
 """The least space between two texts on one line that are not one phrase, in sizes of the smaller: a word space is 0.28."""
 
-NUMBERS_OF_A_ROW = ("relative_l2", "max_error", "minimum", "negative_area", "energy")
+FIGURES = ("relative_l2", "max_error", "minimum", "negative_area", "energy")
 
 
 def faults(picture: Picture, at: Composition, drawn: Overlay) -> list[str]:
@@ -27,13 +27,13 @@ def faults(picture: Picture, at: Composition, drawn: Overlay) -> list[str]:
 
 def _cut(at: Composition, drawn: Overlay) -> Iterator[str]:
     """Texts and samples that leave the frame, or that lie on the hairline."""
-    line = at.hairline
+    line, alone = at.hairline, "help_title" not in drawn.boxes  # the help has a rule of its own
     for piece in drawn.pieces:
         if isinstance(piece, Text | Swatch | Strip):
             box = piece.box
             if not (min(box.left, box.top) >= 2 and box.right <= at.width - 2 and box.bottom <= at.height - 1):
                 yield f"{piece.name} is cut"
-            if line.right <= at.width and line.bottom <= at.height and box.overlaps(line):
+            if alone and line.right <= at.width and line.bottom <= at.height and box.overlaps(line):
                 yield f"{piece.name} lies on the hairline"
 
 
@@ -65,9 +65,9 @@ def _phrase(name: str) -> str:
 
 def _said_twice(drawn: Overlay) -> Iterator[str]:
     """Sentences that stand twice: not names of keys and lines, and not what two panes have alike."""
-    said = [piece.text for piece in drawn.texts if not piece.name.startswith(("key_", "legend_"))]
+    said = [piece.text for piece in drawn.texts if not piece.name.startswith(("key_", "legend_", *FIGURES))]
     for text, count in Counter(said).items():
-        if count > 1 and " " in text and not text.startswith(("radius", ">")):
+        if count > 1 and " " in text and not text.startswith(("radius", "cut at", ">")):
             yield f"said twice: {text!r}"
 
 

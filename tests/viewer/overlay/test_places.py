@@ -11,6 +11,8 @@ from viewer.overlay.collisions import faults
 
 from shviewer.analysis.figures import Figures
 from shviewer.lights.function import FunctionLight
+from shviewer.viewer import message
+from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import changed
@@ -72,6 +74,21 @@ def test_whatever_is_shown_all_text_has_its_place(name: str, seed: int) -> None:
     for size in chance.sample(SIZES, 3):
         at = frame_of(shown, *size)
         assert faults(shown, at, draw_overlay(shown, at, timing=True)) == [], size
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_at_any_size_of_window_and_monitor_too(seed: int) -> None:
+    """With messages, with work, and with a band under the mouse."""
+    chance = random.Random(seed)
+    for _ in range(4):
+        shown = with_numbers(PICTURES[chance.choice(list(PICTURES))], chance)
+        said = chance.choice(("", message.warning("a warning that is as long as two lines of a small window " * 2)))
+        shown = replace(shown, state=changed(shown.state, message=said))
+        size, scale = (chance.randint(320, 1900), chance.randint(280, 1200)), chance.choice((1.0, 1.25, 2.0))
+        at = frame_of(shown, *size, scale)
+        work = chance.choice((None, None, Work("projecting 40 960 000 jittered samples", 0.43, 3.0)))
+        drawn = draw_overlay(shown, at, work=work, hovered=chance.choice((None, 3)))
+        assert faults(shown, at, drawn) == [], (shown.light.name, size, scale)
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)

@@ -26,6 +26,7 @@ from shviewer.viewer.overlay.lettering import (
     SEMIBOLD,
     UNUSED,
     Ink,
+    shortened_to,
     width_of,
 )
 from shviewer.viewer.overlay.numerals import share, typeset
@@ -250,9 +251,11 @@ def legend_pieces(series: BandSeries, state: State, at: Composition, hovered: in
     line = at.numbers.legend
     if line is None:
         return []
-    size = at.px(12.0)
+    size, room = at.px(12.0), line.right - line.left
     if hovered is not None and hovered < series.slots:
-        words = band_words(series, hovered)
+        parts = band_words(series, hovered).split(",  ")
+        fits = (count for count in range(len(parts), 1, -1) if width_of(",  ".join(parts[:count]), size) <= room)
+        words = shortened_to(",  ".join(parts[: next(fits, 1)]), room, size)
         return [Text("hovered", line.left, line.baseline, words, size, INK)]
     main = looked_at(state.recipe.quantity)
     entries: list[tuple[str, Ink | None, tuple[str, str], Ink]] = [
