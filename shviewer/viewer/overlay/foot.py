@@ -21,6 +21,7 @@ from shviewer.viewer.overlay.lettering import (
     RULE,
     WARNING,
     Ink,
+    escaped,
     shortened_to,
     width_of,
 )
@@ -98,9 +99,19 @@ def foot_pieces(
     if work is not None:
         return work_pieces(at, work)
     if said:
-        return message_pieces(line, said, at)
+        whole = line._replace(right=at.width - at.margin) if takes_legend(at, said) else line
+        return message_pieces(whole, said, at)
     foot = at.numbers.foot
     return [] if foot is None else _keys(foot._replace(left=max(foot.left, after)), at, proposed)
+
+
+def takes_legend(at: Composition, said: str) -> bool:
+    """Whether a message is too long for its line, so that the legend beside it gives way."""
+    foot, legend, line = at.numbers.foot, at.numbers.legend, message_line(at)
+    if not said or foot is None or legend is None or line is None or legend.baseline != foot.baseline:
+        return False
+    mark = at.px(AFTER_MARK) if message.kind_of(said) else 0
+    return mark + width_of(escaped(typeset(str(said))), at.px(13.0)) > line.right - line.left
 
 
 def message_line(at: Composition) -> Line | None:

@@ -20,7 +20,15 @@ from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
 from shviewer.viewer.overlay.drawing import image_of, layer_of
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
-from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces, proposed_key, said_of, turning_pieces
+from shviewer.viewer.overlay.foot import (
+    Work,
+    foot_pieces,
+    hairline_pieces,
+    proposed_key,
+    said_of,
+    takes_legend,
+    turning_pieces,
+)
 from shviewer.viewer.overlay.help_sheet import help_pieces
 from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
@@ -139,8 +147,9 @@ def draw_overlay(
             blocks += [*curve_blocks(series, state, at), legend_pieces(series, state, at, hovered)]
         if state.view.trace:
             blocks[-1] = trace_pieces(state.view.trace, at)
-        if work is not None and numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline:
-            blocks[-1] = []  # how far the work is takes its place
+        beside = numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline
+        if beside and (work is not None or takes_legend(at, said)):
+            blocks[-1] = []  # how far the work is takes its place, or a long message
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)

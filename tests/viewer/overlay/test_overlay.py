@@ -372,6 +372,17 @@ def test_a_message_is_shortened_to_fit_and_keys_give_way(size: tuple[int, int]) 
     assert drawn.boxes["message"].right <= size[0] - 8
 
 
+def test_a_long_message_takes_the_place_of_the_legend_before_it_is_cut() -> None:
+    short, long = (
+        "2 texels repaired",
+        "a-file-with-a-longer-name.json is 257 % off, but not at all in the convention of three: give --convention three, or another",
+    )
+    for words, kept in ((short, True), (long, False)):
+        drawn = draw_overlay(picture_of(message=message.warning(words)), compose(1280, 640))
+        assert words in text_of(drawn)
+        assert ("legend_radiance" in drawn.boxes) == kept
+
+
 @pytest.mark.parametrize(
     ("said", "ink", "marks"),
     [(message.done("saved a.png"), INK, 1), (message.warning("2 texels repaired"), WARNING, 1), ("a note", INK, 0)],
