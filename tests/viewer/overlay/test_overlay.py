@@ -375,7 +375,7 @@ def test_a_message_is_shortened_to_fit_and_keys_give_way(size: tuple[int, int]) 
 def test_a_long_message_takes_the_place_of_the_legend_before_it_is_cut() -> None:
     short, long = (
         "2 texels repaired",
-        "a-file-with-a-longer-name.json is 257 % off, but not at all in the convention of three: give --convention three, or another",
+        "a-file-with-a-longer-name.json is 257 % off, but not in the convention of three: name --convention three, or another",
     )
     for words, kept in ((short, True), (long, False)):
         drawn = draw_overlay(picture_of(message=message.warning(words)), compose(1280, 640))
