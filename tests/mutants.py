@@ -87,7 +87,16 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ("last block filled up with the one before", "self.values[0, :, len(directions) :] = 0", "pass"),
     ),
     "harmonics/evaluation/waves.py": (
+        ("T(k) of |z| in the south", "chebyshev[1::2] *= self.waves.south()[used]", "pass"),
         ("T(k) counted once for sin(k theta)/sin(theta)", "    odd[..., 0] /= 2\n", "    odd[..., 1:] /= 2\n"),
+    ),
+    "harmonics/areas/boundary.py": (
+        ("no area around the pole", "areas[::2] -= sums", "areas[::2] -= 0 * sums"),
+        ("no linear term", "areas[1::2, ..., 1] += sums", "areas[1::2, ..., 1] += 0 * sums"),
+    ),
+    "harmonics/areas/cycling.py": (
+        ("turned about y alone", "((-1j) ** (m % 4))", "(1.0 ** (m % 4))"),
+        ("m = 0 counted as often as others", "real[1:] *= np.sqrt(2)", "real *= np.sqrt(2)"),
     ),
     "harmonics/quadrature.py": (
         (
