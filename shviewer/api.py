@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.analysis.options import options_of, taken, whole
-from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
 from shviewer.errors import UsageError
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
@@ -159,11 +159,13 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
         count = found.about.n_bands or Recipe.n_bands
     recipe = Recipe(found, n_bands=count, **taken(options, Recipe))
     recipe.check()
-    if "suns" in options and not recipe.split_sun:
-        raise UsageError(f"suns {recipe.suns!r}: it says what split_sun takes; give split_sun=True, too")
     if (given := options.get("compare")) is not None:
         recipe = _comparing(recipe, given)
         recipe, _ = as_the_file_holds(recipe, quantity="quantity" not in options, bands=bands is None)
+    sampled = OF_SAMPLES if options.get("beside") == "method" else ()
+    for name in idle(recipe, (name for name in options if name not in sampled)):
+        missing = what_it_needs(name, recipe, {row: row for row in options_of(Recipe)})
+        raise UsageError(f"{name} {options[name]!r}: {missing}")
     return recipe
 
 

@@ -253,7 +253,7 @@ def test_lamps_are_taken_where_they_are_asked_for() -> None:
     ):
         with pytest.raises(shviewer.ShviewerError, match=words):
             shviewer.project("film_studio", 3, split_sun=True, suns=wrong)
-    with pytest.raises(shviewer.ShviewerError, match="give split_sun=True, too"):
+    with pytest.raises(shviewer.ShviewerError, match="it says what split_sun takes; give that, too"):
         shviewer.project("film_studio", 3, suns=1)
 
 

@@ -127,7 +127,8 @@ def test_every_command_is_one_that_the_program_understands(path: Path, capsys: p
         try:
             options = parse(rest)
             if mode in ("view", "screenshot", "sweep"):  # the values, without what has to be read or searched for
-                green: dict[str, object] = {"light": "green", "lights": ["green"], "like": None, "beside": None}
+                green: dict[str, object] = {"light": "green", "lights": ["green"], "like": None}
+                green["beside"] = "method" if options.beside == "method" else None
                 free = green | {"tolerance": None, "compare": None, "input_convention": ""}
                 state_from(argparse.Namespace(**{**vars(options), **free}), all_lights=False)
         except shviewer.ShviewerError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -20,6 +21,7 @@ from shviewer.analysis.options import (
 from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
+from shviewer.words import counted
 
 if TYPE_CHECKING:
     from shviewer.lights.coefficient_light import CoefficientLight
@@ -136,6 +138,34 @@ class Recipe:
     def check(self) -> None:
         """UsageError unless every option is within its range."""
         check_options(self)
+
+
+NEEDS: dict[str, tuple[Callable[[Recipe], bool], str]] = {
+    "suns": (lambda recipe: recipe.split_sun, "it says what {split_sun} takes; give that, too"),
+    "samples": (
+        lambda recipe: recipe.method != "best",
+        "the best method draws none; give {method} jittered or gauss-legendre, too",
+    ),
+    "seed": (lambda recipe: recipe.method == "jittered", "jittered samples have one; give {method} jittered, too"),
+    "muted": (
+        lambda recipe: len(recipe.muted_shown) == len(recipe.muted),
+        "bands are counted from 0, and there are {bands}; leave out what is above",
+    ),
+}
+"""Options that can be without any effect: whether a recipe lets them have one, and what is missing, {option} by its name."""
+
+OF_SAMPLES = ("samples", "seed")
+"""What any second reconstruction by another method takes, too."""
+
+
+def idle(recipe: Recipe, given: Iterable[str]) -> list[str]:
+    """The options among those given that change nothing in a recipe."""
+    return [name for name in given if name in NEEDS and not NEEDS[name][0](recipe)]
+
+
+def what_it_needs(name: str, recipe: Recipe, names: Mapping[str, str]) -> str:
+    """What is missing for an option to have an effect. names: what options are called where they were given."""
+    return NEEDS[name][1].format(bands=counted(recipe.n_bands, "band"), **names)
 
 
 def light_name(light: str | Light) -> str:

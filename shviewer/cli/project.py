@@ -19,7 +19,7 @@ from shviewer.cli.batch import error_in_percent, project_batch
 from shviewer.cli.below_zero import below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.options.inputs import lights_of, lights_within, replacing_of
-from shviewer.cli.options.recipes import recipe_from
+from shviewer.cli.options.recipes import check_effects, recipe_from
 from shviewer.cli.options.states import turn_from
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.convention import Convention
@@ -63,6 +63,7 @@ def run(options: argparse.Namespace) -> int:
 def _projected_of(options: argparse.Namespace, convention: Convention, light: str) -> Projected:
     """What the options make of a light. LightError or UsageError."""
     recipe, _ = recipe_from(options, light)
+    check_effects(options, recipe)
     if options.tolerance is not None:
         check_tolerance(recipe, convention)
     projected, angles = project_recipe(recipe), turn_from(options)

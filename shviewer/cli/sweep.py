@@ -6,8 +6,7 @@ import argparse
 
 from shviewer.cli.notes import print_notes
 from shviewer.cli.options.inputs import check_out, replacing_of
-from shviewer.cli.options.modes import DEFAULT_SWEEP
-from shviewer.cli.options.states import state_from
+from shviewer.cli.options.states import DEFAULT_SWEEP, state_from
 from shviewer.cli.status_line import status_line
 from shviewer.errors import UsageError
 from shviewer.viewer.animation.animation import (

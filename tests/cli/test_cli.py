@@ -18,7 +18,8 @@ import pytest
 from PIL import Image
 
 from shviewer.cli.main import main
-from shviewer.cli.options.modes import PARSERS, view_parser
+from shviewer.cli.options.modes import PARSERS, screenshot_parser, view_parser
+from shviewer.cli.options.states import state_from
 from shviewer.errors import (
     GraphicsError,
     LightError,
@@ -726,3 +727,35 @@ def test_info_and_project_take_the_lights_of_a_folder(
     assert main(["project", "probes", "-o", "out", "--jobs", "1"]) == 0
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["a.json", "b.json"]
     assert main(["project", "out", "-o", "out", "--jobs", "1"]) == 1, "its own inputs are never replaced"
+
+
+IDLE = (
+    ("--mute 9", "--mute 9: bands are counted from 0, and there are 5 bands"),
+    ("--mute 1,9", "--mute 1,9: bands are counted from 0"),
+    ("--samples 10", "--samples 10: the best method draws none; give --method jittered or gauss-legendre, too"),
+    ("--seed 3 --method gauss-legendre", "--seed 3: jittered samples have one"),
+    ("--suns 3", "--suns 3: it says what --split-sun takes; give that, too"),
+    ("--sanitize", "--sanitize: it repairs images, and green is none"),
+    ("--layout cube", "--layout cube: it is that of images, and green is none"),
+)
+
+
+@pytest.mark.parametrize(("words", "says"), IDLE)
+@pytest.mark.parametrize(
+    "mode", ["screenshot out.png green", "project green -o out.json", "sweep out.webp green --to 5"]
+)
+def test_an_option_that_changes_nothing_is_refused_with_what_is_missing(
+    mode: str, words: str, says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*mode.split(), *words.split()]) == 2
+    assert capsys.readouterr().err.startswith(f"shviewer: {says}")
+
+
+@pytest.mark.parametrize(
+    "words", ["--mute 4", "--samples 9 --seed 2 --beside method", "--seed 3 --method jittered", "--error-range 0.3"]
+)
+def test_one_that_changes_something_or_waits_for_a_key_is_not(words: str) -> None:
+    options = screenshot_parser().parse_intermixed_args(["out.png", "green", *words.split()])
+    state_from(options, all_lights=False)
+    for given, _ in IDLE[:5]:
+        state_from(view_parser().parse_intermixed_args(["green", *given.split()]), all_lights=True)

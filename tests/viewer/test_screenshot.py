@@ -80,7 +80,7 @@ def test_the_same_arguments_give_the_same_bytes(tmp_path: Path, suffix: str) -> 
 
 
 def test_a_png_tells_everything_that_made_it(tmp_path: Path) -> None:
-    arguments = "studio --bands 6 --mute 1,3,9 --method jittered --samples 1000 --seed 7 --exposure -1.5 --size 400 300"
+    arguments = "studio --bands 6 --mute 1,3 --method jittered --samples 1000 --seed 7 --exposure -1.5 --size 400 300"
     view = "--camera 30 -20 --rotate-light 90 0 --zoom 1.25"
     assert screenshot("a.png", *arguments.split(), *view.split(), cwd=tmp_path).returncode == 0
     with Image.open(tmp_path / "a.png") as image:

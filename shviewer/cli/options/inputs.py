@@ -114,9 +114,26 @@ def reading_from(options: argparse.Namespace, start: Reading | None = None) -> R
     }
     if options.input_convention:
         _check_convention(options, options.input_convention)
+    for flag, what, value in (
+        ("--sanitize", "it repairs", options.sanitize),
+        ("--layout", "it is that of", options.layout),
+    ):
+        own = "quick" in vars(options) and not options.lights  # a report has images of its own
+        if value and not own and not any(map(_may_be_image, lights_of(options))):
+            shown = f" {value}" if isinstance(value, str) else ""
+            raise UsageError(f"{flag}{shown}: {what} images, and {lights_of(options)[0]} is none; leave it out")
     named = {"sanitize": options.sanitize, "layout": options.layout, "convention": options.input_convention or None}
     limits = replace(start.limits, **_given(chosen))
     return replace(start, limits=limits, **_given(named))
+
+
+def _may_be_image(light: str) -> bool:
+    """Whether LIGHT is an image by its name, or a folder that may hold some."""
+    from shviewer.lights.find import split_light
+    from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
+
+    path = split_light(light)[0]
+    return path.suffix.lower() in IMAGE_SUFFIXES or not path.suffix
 
 
 def _given(values: dict[str, Any]) -> dict[str, Any]:

@@ -29,8 +29,6 @@ EXIT_CODES = """exit codes:
   6    a shader that does not compile
   130  interrupted (129 and 143: ended by SIGHUP or SIGTERM)"""
 
-DEFAULT_SWEEP = (1, 16)
-
 
 def _parser(program: str, description: str, epilog: str = "", usage: str | None = None) -> OneLineParser:
     """The parser of a mode, whose help ends with the exit codes and the epilog."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from shviewer.analysis.options import options_of
-from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
 from shviewer.cli.options.inputs import reading_from
 from shviewer.cli.options.values import number_of
 from shviewer.errors import UsageError
@@ -44,8 +44,6 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
         chosen |= {"window": window, "window_width": number_of(width, "window width") if separator else None}
     recipe = replace(start, light=light, reading=reading_from(options, start.reading), **chosen)
     recipe.check()
-    if "suns" in chosen and not recipe.split_sun:
-        raise UsageError(f"--suns {recipe.suns}: it says what --split-sun takes; give that, too")
     compared, said = vars(options).get("compare"), ""
     if compared:
         from shviewer.analysis.compared_files import compared_with
@@ -65,6 +63,17 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
         recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
     fits = options.tolerance is not None and options.n_bands is None
     return (_fitted(recipe) if fits else recipe), said
+
+
+def check_effects(options: argparse.Namespace, recipe: Recipe, beside: str = "off") -> None:
+    """UsageError for an option that changes nothing in what is written. beside: the second reconstruction in a picture."""
+    sampled = OF_SAMPLES if beside == "method" else ()
+    given = [name for name in chosen_of(options, Recipe) if name not in sampled]
+    for name in idle(recipe, given):
+        flags = {row.name: row.flag for row in options_of(Recipe).values()}
+        value = getattr(recipe, name)
+        shown = ",".join(map(str, sorted(value))) if isinstance(value, frozenset) else value
+        raise UsageError(f"{flags[name]} {shown}: {what_it_needs(name, recipe, flags)}")
 
 
 def _fitted(recipe: Recipe) -> Recipe:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.options.inputs import lights_of, pictured_by
-from shviewer.cli.options.recipes import START, chosen_of, recipe_from
+from shviewer.cli.options.recipes import START, check_effects, chosen_of, recipe_from
 from shviewer.cli.options.values import number_of
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from shviewer.viewer.view import View
 
 DEFAULT_SIZE = (1280, 640)
+DEFAULT_SWEEP = (1, 16)
 
 BESIDE_NEEDS = {
     "no-window": "there is no window to do without; give --window, too",
@@ -74,7 +75,16 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
         state = changed(state, turn=turn_of(state.view.light_rotation))
     if state.recipe != start.recipe:
         state = changed(state, trace=())
+    if not all_lights:  # in a window a key may give it its effect
+        check_effects(options, replace(state.recipe, n_bands=_most_bands(options, state)), state.view.beside)
     return changed(state, sweep_to=None, turning="") if all_lights else state  # a window does not play on
+
+
+def _most_bands(options: argparse.Namespace, state: State) -> int:
+    """The bands of a state, or those with which a sweep of them ends."""
+    given = vars(options)
+    sweeps = "last" in given and not (given["turntable"] or given["turn_light"])
+    return (given["last"] or DEFAULT_SWEEP[1]) if sweeps else state.recipe.n_bands
 
 
 def _view_from(options: argparse.Namespace, start: View) -> View:

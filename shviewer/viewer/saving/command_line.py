@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from shviewer.analysis.options import Option, options_of
-from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle
 from shviewer.errors import UsageError
 from shviewer.lights.find import built_in_lights, file_of, split_light
 from shviewer.lights.light import Light
@@ -44,10 +44,13 @@ def arguments_of(state: State, size: tuple[int, int]) -> list[str]:
         words += ["--for", recipe.quantity]  # of coefficients, it would be that of their file
     if recipe.compare is not None:
         words += ["--compare", _path(recipe.compare)]
+    sampled = OF_SAMPLES if view.beside == "method" else ()
+    without = [name for name in idle(recipe, options_of(Recipe)) if name not in (*sampled, "muted")]
     for holder in (recipe, view):
         for row in options_of(type(holder)).values():
-            if row.name not in ("n_bands", "quantity") and row.flag:
-                words += _option(row, getattr(holder, row.name), recipe)
+            if row.name not in ("n_bands", "quantity", *without) and row.flag:
+                value = frozenset(recipe.muted_shown) if row.name == "muted" else getattr(holder, row.name)
+                words += _option(row, value, recipe)
     words += [*_reading(recipe.reading), *_turn(view.light_rotation)]
     if recipe.turn is not None:
         words.append("--anew")
