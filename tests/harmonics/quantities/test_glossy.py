@@ -103,9 +103,12 @@ def test_quantities_have_one_name_each():
     assert kernel_of("glossy:0.40") == kernel_of("glossy:0.4")
 
 
-@pytest.mark.parametrize(
-    "name", ["glossy:0.05", "glossy:1.01", "glossy:-0.3", "glossy:nan", "glossy:", "glossy", "matte"]
-)
+def test_a_roughness_that_was_left_out_is_asked_for():
+    with pytest.raises(ValueError, match=r"^'glossy': did you mean glossy:0\.4\?"):
+        quantity_of("glossy")
+
+
+@pytest.mark.parametrize("name", ["glossy:0.05", "glossy:1.01", "glossy:-0.3", "glossy:nan", "glossy:", "matte"])
 def test_a_quantity_that_there_is_not_is_refused_with_the_rule(name):
     with pytest.raises(ValueError, match=rf"^'{name}': it must be radiance, .* R of 0.1 to 1"):
         quantity_of(name)
