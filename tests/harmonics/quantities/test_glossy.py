@@ -114,6 +114,11 @@ def test_a_quantity_that_there_is_not_is_refused_with_the_rule(name):
         quantity_of(name)
 
 
+def test_a_roughness_that_is_not_said_is_asked_for():
+    with pytest.raises(ValueError, match=r"^'glossy': did you mean glossy:0\.4\?$"):
+        quantity_of("glossy")
+
+
 def test_the_clamped_cosine_of_the_reference_is_ours():
     wanted = [float(value) for value in HARD_CASES["irradiance"]["A_l"]]
     assert_allclose(kernel_of("irradiance").factors(len(wanted)), wanted, rtol=1e-15, atol=1e-16)
