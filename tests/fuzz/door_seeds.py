@@ -103,7 +103,7 @@ SEEDS: dict[str, str] = {
     "arguments/list.argv": "screenshot\no.png\nbare.txt\n--convention\nthree,+x+z-y,no-phase",
     "arguments/sweep.argv": "sweep\no.webp\ngreen\n--from\n2\n--to\n7\n--seconds\n0.5\n--lobes",
     "arguments/turn.argv": "sweep\no.gif\ngreen\n--turntable\n--frames\n12\n--bands\n4\n--evaluate\nmap",
-    "arguments/info.argv": "info\ngreen\nnine.json\n--json\n--layout\nlat-long",
+    "arguments/info.argv": "info\nsky.hdr\nnine.json\n--json\n--layout\nlat-long",
     "arguments/images.argv": "info\nsky.hdr\nsky.exr:diffuse\n~/sky.png\n--sanitize",
     "arguments/project.argv": "project\ngreen\n-o\no.json\n--convention\nshviewer,4pi,m-swapped\n--axes\n+x+z-y",
     "arguments/program.argv": "project\nbare.txt\n-o\n-\n--format\nglsl\n--convention\nunity\n--input-convention\nambix,z-up",

@@ -58,7 +58,9 @@ def chances_of_rows(given: Array, wanted: Array, told: NDArray[np.bool_]) -> Arr
 def _chances(errors: Array, told: NDArray[np.bool_], norms: Array, rows: Array, exact: Array) -> Array:
     """Of lists: errors, norms and how many rows tell something, of each degree (k, n); and the lists (k, n**2, 3)."""
     products = exact.transpose(0, 2, 1) @ exact
-    channels = products.trace(axis1=1, axis2=2) ** 2 / (products**2).sum(axis=(1, 2))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of lists beyond what float64 can square
+        channels = products.trace(axis1=1, axis2=2) ** 2 / (products**2).sum(axis=(1, 2))
+    channels = np.where(np.isfinite(channels), channels, 1.0)
     counts = told & (norms > FAINT * norms.max(axis=1, keepdims=True))
     shares = np.clip(errors, ROUNDING, 1.0) ** np.maximum(rows * channels[:, None] - 1, 0.0) / 2
     return np.asarray(np.prod(np.where(counts, shares, 1.0), axis=1))

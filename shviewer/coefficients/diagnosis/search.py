@@ -123,7 +123,8 @@ def _with_slips(
                 rows.append(part)
     if not places:
         return simplest
-    slipped = Slipped(np.concatenate(given), np.concatenate(wanted), (1.0, *CONSTANTS.values()), CLEAN)
+    with np.errstate(all="ignore"):  # of numbers that float64 cannot square: nothing is near then
+        slipped = Slipped(np.concatenate(given), np.concatenate(wanted), (1.0, *CONSTANTS.values()), CLEAN)
     chances = slipped.chances * len(places) * (1 + len(CONSTANTS))
     counted = np.flatnonzero(chances <= CHANCE)
     if not counted.size:
