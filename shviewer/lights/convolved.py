@@ -25,6 +25,9 @@ from shviewer.lights.light import About, Light, LightBase
 
 UP = np.array([0.0, 0.0, 1.0])
 
+FEW_DIRECTIONS = 64
+"""Up to so many, the sum of bands takes less time than making a map."""
+
 
 @dataclass(frozen=True, eq=False)
 class ConvolvedLight(LightBase):
@@ -121,7 +124,14 @@ class ConvolvedMap(ConvolvedLight):
         return max(self.source.accuracy(), tail * float(np.sqrt(beyond / total)) if total else 0.0)
 
     def radiance(self, directions: Array) -> Array:
+        """As in Light; in few directions exactly, such as at the mark of a figure."""
+        if len(directions) <= FEW_DIRECTIONS:
+            return self._synthesis.in_directions(directions)
         return self.map.sample(directions)
+
+    @cached_property
+    def _synthesis(self) -> Synthesis:
+        return Synthesis(self.coefficients(self.bands))
 
     @cached_property
     def form(self) -> Bands | None:
