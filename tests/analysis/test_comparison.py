@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable
 from contextlib import nullcontext, suppress
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from shviewer.analysis.comparison import agrees, as_the_file_holds, caption, ver
 from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main
+from shviewer.cli.options.modes import screenshot_parser
+from shviewer.cli.options.states import state_from
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError
@@ -401,3 +404,30 @@ def test_what_a_glossy_surface_reflects_is_compared_as_that(tmp_path: Path) -> N
     assert main(["project", "venice_sunset", "--bands", "4", "--for", "glossy:0.4", "-o", str(file)]) == 0
     recipe = compared_with(Recipe(venice()), str(file))[0]
     assert verdict(venice(), recipe.compare) == "glossy.json agrees with the light's own to 0.0001 % over its 4 bands"
+
+
+@pytest.mark.parametrize("light", [(), ("green",)])
+def test_it_is_said_with_which_light_where_none_is_named(
+    light: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    np.save(tmp_path / "own.npy", find_light("green").coefficients(3))
+    words = ["out.png", *light, "--compare", str(tmp_path / "own.npy"), "--convention", "shviewer"]
+    state_from(screenshot_parser().parse_intermixed_args(words), all_lights=False)
+    said = f"no LIGHT is named, so that {tmp_path / 'own.npy'} is compared with green: name its own"
+    assert (said in capsys.readouterr().err) == (not light)
+
+
+@pytest.mark.parametrize("named", ["three", "unity", "shviewer,y-up,no-phase", "ambix"])
+def test_what_was_named_is_kept_where_one_thing_differs(named: str, tmp_path: Path) -> None:
+    """A(l) in place of radiance, or none in place of irradiance, is said of the convention that was named."""
+    meant = parse_convention(named)
+    exact = venice().coefficients(3)
+    other = "radiance" if meant.quantity == "irradiance-over-pi" else "irradiance"
+    np.save(tmp_path / "own.npy", np.asarray(replace(meant, quantity=other).from_ours(exact)))
+    file = CoefficientLight.read(tmp_path / "own.npy", Reading(convention=named))
+    said = verdict(venice(), file)
+    assert "not at all if its numbers are" in said
+    assert "multiplied by A(l), as " in said
+    assert "convention of" not in said
+    (hint,) = hints(said)
+    assert agrees(verdict(venice(), CoefficientLight.read(tmp_path / "own.npy", Reading(convention=hint))))

@@ -51,7 +51,10 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
         recipe, found = compared_with(recipe, compared)
         if not vars(options).get("like") and not (vars(options).get("lights") or vars(options).get("light")):
             found = "; ".join(
-                [f"no LIGHT is named, so that {compared} is compared with {light}", *filter(None, [found])]
+                [
+                    f"no LIGHT is named, so that {compared} is compared with {light}: name its own",
+                    *filter(None, [found]),
+                ]
             )
         if found:
             print(f"shviewer: {found}", file=sys.stderr)
