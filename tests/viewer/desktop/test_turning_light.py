@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shlex
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +15,6 @@ from PIL import Image
 from viewer.desktop.desktop import Viewer
 
 from shviewer.analysis.projected import project_recipe
-from shviewer.cli.main import main
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.harmonics.rotation import rotate
 from shviewer.harmonics.scattered import project_samples
@@ -156,7 +157,8 @@ def test_a_frame_is_its_state_so_that_a_saved_picture_can_be_made_again(tmp_path
     assert words(again) == words(shown)
     np.testing.assert_array_equal(project_recipe(shown.state.recipe).coefficients, shown.coefficients)
     line = shlex.split(command_line(shown, (320, 160)))
-    assert main(["screenshot", str(tmp_path / "a.png"), *line[3:]]) == 0
+    command = [sys.executable, "-m", "shviewer", "screenshot", str(tmp_path / "a.png"), *line[3:]]
+    subprocess.run(command, check=True)  # a process of its own: it makes an OpenGL context
     with Image.open(tmp_path / "a.png") as image:
         text = str(image.text["shviewer"])  # type: ignore[attr-defined]
     told = state_of_stamp(text)
