@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,6 +18,9 @@ from shviewer.coefficients.programs import SHADED_WITH
 from shviewer.errors import UsageError
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS
 from shviewer.words import counted, percent
+
+SEARCHED_TEXELS = 2**23
+"""The most texels of an image that is searched for suns only to name them here: more take a second, and their memory again."""
 
 ROUNDING = 1e-6
 """A minimum below zero by no more than this share of the largest coefficient counts as zero."""
@@ -42,7 +46,8 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
         f"the {shows} of its {counted(recipe.n_bands, 'band')} goes to {shown.minimum:.3g}, {percent(shown.error)} off"
     )
     remedies = []
-    if not recipe.split_sun and subject(replace(recipe, split_sun=True)).suns:
+    large = math.prod(subject(recipe).light.about.size or ()) > SEARCHED_TEXELS
+    if not large and not recipe.split_sun and subject(replace(recipe, split_sun=True)).suns:
         remedies.append(("--split-sun", replace(recipe, split_sun=True)))
     if recipe.window != "dering" and recipe.n_bands <= MAX_DERINGED_BANDS:
         remedies.append(("--window dering", replace(recipe, window="dering", window_width=None)))
@@ -54,7 +59,7 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
         if found.minimum > shown.minimum:
             rest = "the rest " if changed.split_sun != recipe.split_sun else ""
             says += f"; with {flag} to {found.minimum if found.negative else 0:.3g}, {rest}{percent(found.error)} off"
-    return says
+    return says + "; if it has a sun, --split-sun takes that out" * (large and not recipe.split_sun)
 
 
 def _shown(recipe: Recipe, quantity: str) -> _Shown:

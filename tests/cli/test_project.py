@@ -21,6 +21,7 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.rotation import turn
 from shviewer.lights.coefficient_light import CoefficientLight
+from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.words import percent
 
@@ -311,6 +312,15 @@ def test_a_reconstruction_below_zero_is_warned_of_with_the_remedies_and_their_pr
     assert f"; with --split-sun to {apart['minimum']:.3g}, the rest {percent(apart['relative-l2'])} off" in note
     assert f"; with --window dering to 0, {percent(calm['relative-l2'])} off" in note
     assert "goes to" not in silent
+
+
+def test_a_large_image_is_not_searched_for_suns_for_the_sake_of_a_note(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("shviewer.cli.below_zero.SEARCHED_TEXELS", 256 * 128 - 1)
+    monkeypatch.setattr(EnvironmentLight, "split_suns", lambda *_: pytest.fail("it is searched"))
+    assert project("venice_sunset", "--bands", "5", "-o", tmp_path / "a.json") == 0
+    assert capsys.readouterr().err.endswith("; if it has a sun, --split-sun takes that out\n")
 
 
 @pytest.mark.parametrize(
