@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -22,3 +24,15 @@ def hard_cases() -> Any:
 def kernels() -> Any:
     """Reference values of glossy kernels, encodings of irradiance and moving lights; README.md says where they come from."""
     return json.loads((DATA / "kernels.json").read_text())
+
+
+def project_files() -> list[str]:
+    """The files of the project, as git lists them; without git or a checkout the test is skipped."""
+    import pytest  # scripts that only ask for places need none
+
+    if shutil.which("git") is None:
+        pytest.skip("git is not installed: there is no list of the project's files")
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False)
+    if listed.returncode:
+        pytest.skip("not a git checkout, so there is no list of the project's files")
+    return [name for name in listed.stdout.decode().split("\0") if name]

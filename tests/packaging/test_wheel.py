@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from documents import links
 from PIL import Image
-from places import ROOT
+from places import ROOT, project_files
 
 
 def run(*command: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -59,13 +59,11 @@ def test_two_builds_are_alike_bit_for_bit(built: list[Path]) -> None:
 
 
 def test_the_sdist_holds_every_file_of_the_project(built: list[Path]) -> None:
-    listed = run("git", "ls-files", "-z", cwd=ROOT)
-    if listed.returncode:
-        pytest.skip("not a git checkout, so there is no list of the project's files")
+    files = project_files()
     (sdist,) = built[0].glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         held = {name.partition("/")[2] for name in archive.getnames()}
-    assert {name for name in listed.stdout.split("\0") if name and (ROOT / name).exists()} <= held
+    assert {name for name in files if (ROOT / name).exists()} <= held
 
 
 def test_the_page_of_the_package_leads_nowhere_that_is_not_there(built: list[Path]) -> None:
