@@ -44,3 +44,16 @@ def kind_of(text: str) -> str:
 def passes(text: str) -> bool:
     """Whether a message goes after some seconds by itself."""
     return kind_of(text) in ("", DONE)
+
+
+class Passing:
+    """The message that is seen, and since when."""
+
+    def __init__(self) -> None:
+        self._seen, self._since = "", 0.0
+
+    def over(self, text: str, now: float) -> bool:
+        """Whether a message has been seen for as long as it is shown."""
+        if text is not self._seen:
+            self._seen, self._since = text, now
+        return bool(text) and passes(text) and now - self._since >= SECONDS

@@ -56,7 +56,7 @@ def chances_of_rows(given: Array, wanted: Array, told: NDArray[np.bool_]) -> Arr
 
 
 def _chances(errors: Array, told: NDArray[np.bool_], norms: Array, rows: Array, exact: Array) -> Array:
-    """Of lists: errors, norms and how many rows tell something, of each degree (k, n); and the lists (k, n**2, 3)."""
+    """The chances (k,) of lists `exact` (k, n**2, 3), by the errors, norms and telling rows of each degree, (k, n)."""
     products = exact.transpose(0, 2, 1) @ exact
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of lists beyond what float64 can square
         channels = products.trace(axis1=1, axis2=2) ** 2 / (products**2).sum(axis=(1, 2))

@@ -81,7 +81,7 @@ class _Seen(NamedTuple):
     values: Array
     waves: Waves
     of_lobes: tuple[Array, float]
-    """Of a light of lobes `Lobes.factors`; of others nothing."""
+    """`Lobes.factors` of a light of lobes; nothing for others."""
 
 
 class ErrorGrid:

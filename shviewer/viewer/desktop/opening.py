@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from shviewer.analysis.recipe import light_name
@@ -11,6 +11,7 @@ from shviewer.errors import ShviewerError
 from shviewer.lights.find import built_in_lights, split_light
 from shviewer.lights.light import Light
 from shviewer.viewer.actions import show_light
+from shviewer.viewer.desktop.errands import Errands
 from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
@@ -37,19 +38,31 @@ def opened(state: State, *, as_image: bool) -> State:
     return started(changed(shown, reading=reading, sweep_to=None, turning="", message=message))
 
 
-class Opening:
-    """The lights to go through from one that was chosen, until one of them can be opened."""
+class Opening(Errands):
+    """The lights to go through from one that was chosen, behind the window, until one of them can be opened.
 
-    def __init__(self, *, as_image: bool) -> None:
+    A picture may have to look at the whole file of its light.
+    """
+
+    def __init__(self, wake: Callable[[], None] | None = None, *, as_image: bool = False) -> None:
+        super().__init__(wake)
         self._as_image = as_image
         self._others: list[str | Light] = []
         self._passed: list[str] = []
         """The names of those that could not be opened."""
 
-    def first(self, state: State, others: Sequence[str | Light]) -> State:
-        """The state of the light that was chosen, as `opened`, with those to go on to where it cannot be opened."""
+    def begin(
+        self,
+        state: State,
+        others: Sequence[str | Light],
+        then: Callable[[State], None],
+        failed: Callable[[ShviewerError], None],
+    ) -> None:
+        """Open the light that was chosen, as `opened`; `others` are gone on to by `next` where it cannot be."""
+        self.stop()
         self._others, self._passed = list(others), []
-        return opened(state, as_image=self._as_image)
+        words = f"opening {light_name(state.recipe.light)}"
+        self.run(words, lambda: opened(state, as_image=self._as_image), then, failed)
 
     def next(self, tried: State, error: ShviewerError, shown: State) -> State | None:
         """Go over a light that cannot be opened: the state `shown` with the next one that can be; None if there is none."""

@@ -12,7 +12,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
-from time import perf_counter
 from typing import ParamSpec
 
 from shviewer.analysis.recipe import light_name
@@ -33,7 +32,7 @@ from shviewer.viewer.desktop.turning import Turning
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
-from shviewer.viewer.message import DONE, ERROR, SECONDS, WARNING, Message, passes
+from shviewer.viewer.message import DONE, ERROR, WARNING, Message, Passing
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.screenshot import render_rgb
@@ -42,9 +41,6 @@ from shviewer.viewer.view import View
 from shviewer.words import one_line
 
 P = ParamSpec("P")
-
-LOOK_SECONDS = 0.2
-"""The least time between two looks at a watched file, also while events come."""
 
 PATIENCE = 0.05
 """The longest that a window waits for a task, in seconds."""
@@ -81,10 +77,9 @@ class Session:
         self.metronome = Metronome()
         self.turn = Turning()
         self._watch = Watch() if watch else None
-        self._looked_at = perf_counter()
         self._reading: Event | None = None
         """The wish to read the light's file again, set once it has been read; None if there is no such wish."""
-        self._opening = Opening(as_image=as_image)
+        self._opening = Opening(wake, as_image=as_image)
         self._refused: str | Light | None = None
         """The light that could not be read just now: the next key may say how to read it."""
         self._marks_faced = 0
@@ -93,10 +88,9 @@ class Session:
         """The still part of the state whose figures are not wanted any more: the search was stopped, or failed."""
         self._later: list[Callable[[], object]] = []
         """Commands that wait for the picture and all its figures."""
-        self.errands, self._openings = Errands(wake), Errands(wake)
+        self.errands = Errands(wake)
         self._said: Work | None = None
-        self._message, self._message_at = "", 0.0
-        """The message last seen, and when it came."""
+        self._message = Passing()
 
     @property
     def placed(self) -> State:
@@ -152,7 +146,7 @@ class Session:
     @property
     def working(self) -> bool:
         """Whether anything is done behind the window."""
-        return self._making.working or self.errands.working or self._openings.working
+        return self._making.working or self.errands.working or self._opening.working
 
     @property
     def waiting(self) -> bool:
@@ -184,13 +178,13 @@ class Session:
     @property
     def work(self) -> Work | None:
         """The same with how far it is, for the hairline; None where there is no status."""
-        return self._openings.work or (None if self._stepping else self._making.work) or self.errands.work
+        return self._opening.work or (None if self._stepping else self._making.work) or self.errands.work
 
     def stop(self) -> None:
         """End the task, and stay with the picture there is; where there is none, end what is written and copied."""
         work = self.work
-        if self._openings.working or not self._making.working:
-            (self._openings if self._openings.working else self.errands).stop()
+        if self._opening.working or not self._making.working:
+            (self._opening if self._opening.working else self.errands).stop()
             self.say(f"stopped {work.words if work is not None else ''}".rstrip())
         else:
             what = self._making.doing
@@ -220,8 +214,7 @@ class Session:
     def _open(self, state: State, others: Sequence[str | Light], *, again: bool = False) -> None:
         """Show the light that the state was given, or where it cannot be opened the next of the others.
 
-        A picture may have to look at the whole file of its light, so that it is opened behind the window. again: read the
-        light's file again.
+        again: read the light's file again.
         """
 
         def opened(found: State) -> None:
@@ -235,9 +228,7 @@ class Session:
             elif again:
                 self._reading = Event()
 
-        self._openings.stop()
-        words = f"opening {light_name(state.recipe.light)}"
-        self._openings.run(words, lambda: self._opening.first(state, others), opened, refused)
+        self._opening.begin(state, others, opened, refused)
 
     def _pass_over(self, tried: State, error: ShviewerError) -> bool:
         """Go on from a light that cannot be opened to the next of those that were asked for; return whether there is one."""
@@ -252,27 +243,24 @@ class Session:
     def tick(self, now: float) -> bool:
         """Take a step of what plays and a look at a watched file, where they are due; return whether anything changed."""
         last, reading, said = self.state, self._reading, self._said
-        self._openings.take()
+        self._opening.take()
         self.errands.take()
         self._said = self.work
-        if self.state.view.message is not self._message:
-            self._message, self._message_at = self.state.view.message, now
-        elif self._message and passes(self._message) and now - self._message_at >= SECONDS:
+        if self._message.over(self.state.view.message, now):
             self.state = changed(self.state, message="")
         if not self._making.working and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
         ready = self._shown and not self._making.working and not self._later
         if self.turn.beats(bool(self.state.view.turning), now, ready=ready):
             self.state = step_turn(self.placed)  # from where the camera is, or it would go round with the light
-        if self._watch is not None and now - self._looked_at >= LOOK_SECONDS:
-            self._looked_at = now
-            self._look()
+        if self._watch is not None and self._watch.due(now):
+            self._look(self._watch)
         return self._making.news or self.state is not last or self._reading is not reading or self._said != said
 
-    def _look(self) -> None:
+    def _look(self, watch: Watch) -> None:
         """Look at the watched file: read it again if it has changed, and say once that it is gone."""
-        recipe, watch = self.state.recipe, self._watch
-        if watch is None or not isinstance(recipe.light, str):
+        recipe = self.state.recipe
+        if not isinstance(recipe.light, str):
             return
         before = watch.gone
         if watch.changed(recipe.light, version_read(recipe)):
@@ -293,7 +281,7 @@ class Session:
         patience: the seconds to wait for it since it was first wished for; None: as long as it takes.
         """
         if patience is None:
-            self._openings.finish()
+            self._opening.finish()
         while self._make(by_map, patience):
             if not self.picture.complete:  # what needs all figures does not get them
                 self._later.clear()

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from time import perf_counter
+
 from shviewer.files import FileVersion
 from shviewer.lights.find import file_version
+
+LOOK_SECONDS = 0.2
+"""The least time between two looks at a file, also while events come."""
 
 
 class Watch:
@@ -16,8 +21,16 @@ class Watch:
     def __init__(self) -> None:
         self._seen: tuple[str, FileVersion | None] | None = None
         self._reported: tuple[str, FileVersion | None] | None = None
+        self._looked_at = perf_counter()
         self.gone = False
         """Whether the file that was read is no longer there."""
+
+    def due(self, now: float) -> bool:
+        """Whether it is time for another look, which is then taken to be made."""
+        due = now - self._looked_at >= LOOK_SECONDS
+        if due:
+            self._looked_at = now
+        return due
 
     def changed(self, text: str, read: FileVersion | None) -> bool:
         """Whether the file of the light `text` is no longer the version `read`, and has come to rest."""

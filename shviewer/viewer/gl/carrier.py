@@ -12,6 +12,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from queue import SimpleQueue
 from threading import Event, Thread
 from typing import Any, Protocol
@@ -134,7 +135,7 @@ class Carrier:
     def carry(self, array: NDArray[np.generic], dtype: str) -> Load:
         """Begin with the texture of an array, as half floats ("f2") or as it is ("f4")."""
         load = Load(self, array, dtype)
-        self._works.put(lambda: self._fill(load))
+        self._works.put(partial(self._fill, load))
         return load
 
     def retire(self, load: Load) -> None:
@@ -148,7 +149,7 @@ class Carrier:
         """Hear that a frame was drawn with what is in use now."""
         retired, self._retired = self._retired, []
         for load in retired:
-            self._works.put(lambda load=load: self._free(load))  # type: ignore[misc]
+            self._works.put(partial(self._free, load))
 
     def end(self) -> None:
         """Free what is retired, and end the thread."""

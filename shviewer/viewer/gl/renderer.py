@@ -18,6 +18,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Pane, Sphere
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
 from shviewer.viewer.gl.carrier import Carrier
+from shviewer.viewer.gl.layer_renderer import LayerRenderer
 from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS, Program
 from shviewer.viewer.gl.shared import (
     BACKGROUND,
@@ -57,15 +58,13 @@ class Renderer:
         self.carrier = carrier
         self.programs: dict[tuple[str | int, ...], Program] = {}
         """Programs of sphere.frag, by the choices they were made for."""
-        self.layer_program = Program(context, "layer.frag")
+        self.layers = LayerRenderer(context)
         self.surfaces: SurfaceRenderer | None = None
         """Made when the first surface is drawn."""
         self.sh_buffer, self.beside_buffer = (context.buffer(reserve=SH_TERMS * VEC4) for _ in range(2))
         self.lobe_buffer = context.buffer(reserve=LOBE_SLOTS * 3 * VEC4)
         self.original_map, self.compared_map = (ArrayTexture(context, carrier) for _ in range(2))
         self.reconstruction_map, self.beside_map, self.colour_map = (ArrayTexture(context) for _ in range(3))
-        self.layers: dict[int, tuple[Layer, ArrayTexture]] = {}
-        """The layers of the last frame and their textures, by the identity of the image."""
         self.colours: dict[str, NDArray[np.float32]] = {}
         self.picture: Picture | None = None
         self.coefficients: Array | None = None
@@ -144,21 +143,21 @@ class Renderer:
             self._draw_panes(target, composition, picture, linear)
         target.viewport = (0, 0, composition.width, composition.height)
         if not linear:
-            self._draw_layers(target, composition, layers)
+            self.layers.draw(target, composition, layers)
         if self.carrier is not None:
             self.carrier.drawn()
 
     def draw_text(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
         """Draw layers over the background alone, as long as there is no picture."""
         self._clear(target, composition, _GROUND)
-        self._draw_layers(target, composition, layers)
+        self.layers.draw(target, composition, layers)
 
     def release(self) -> None:
         """Free everything this object made."""
-        resources: tuple[Program | SurfaceRenderer | moderngl.Buffer | ArrayTexture, ...] = (
+        resources: tuple[Program | SurfaceRenderer | LayerRenderer | moderngl.Buffer | ArrayTexture, ...] = (
             *self.programs.values(),
             *((self.surfaces,) if self.surfaces else ()),
-            self.layer_program,
+            self.layers,
             self.sh_buffer,
             self.beside_buffer,
             self.lobe_buffer,
@@ -167,7 +166,6 @@ class Renderer:
             self.reconstruction_map,
             self.beside_map,
             self.colour_map,
-            *(texture for _, texture in self.layers.values()),
         )
         for resource in resources:
             resource.release()
@@ -273,28 +271,6 @@ class Renderer:
             chosen: dict[str, str | int] = dict(zip((*CHOICES, "PROFILES", "SAMPLES"), key, strict=True))
             self.programs[key] = Program(self.context, "sphere.frag", chosen)
         return self.programs[key]
-
-    def _draw_layers(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
-        """Draw layers one over the other; the texture of an image lives as long as it is drawn in every frame."""
-        wanted = {id(layer.image) for layer in layers}
-        spare = [self.layers.pop(key)[1] for key in list(self.layers) if key not in wanted]
-        self.context.enable(moderngl.BLEND)
-        self.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        for layer in layers:
-            if id(layer.image) not in self.layers:
-                texture = spare.pop() if spare else ArrayTexture(self.context)
-                texture.follow(layer.image)
-                self.layers[id(layer.image)] = layer, texture
-            self.layers[id(layer.image)][1].use(SAMPLERS["layer"])
-            height, width = layer.image.shape[:2]
-            corner = layer.left, composition.height - layer.top
-            self.layer_program.set(corner=corner)
-            target.viewport = (corner[0], corner[1] - height, width, height)
-            self.layer_program.draw()
-        self.context.disable(moderngl.BLEND)
-        target.viewport = (0, 0, composition.width, composition.height)
-        for texture in spare:
-            texture.release()
 
     def _colours(self, name: str) -> NDArray[np.float32]:
         """A colour map as a texture: one row of linear RGB."""

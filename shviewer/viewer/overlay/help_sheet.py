@@ -62,7 +62,7 @@ def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list
     lowest = 0.0
     for number, column in enumerate(shown):
         left, y = round(margin + number * pitch), rule + at.px(28)
-        for row in column:
+        for row in _aligned(column, pitch - at.px(APART), size):
             pieces += _row(row, state, left, y, pitch - at.px(APART), size)
             y += max(len(row.lines), 1) * at.px(ROW)
         lowest = max(lowest, y)
@@ -71,6 +71,13 @@ def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list
         words = shortened_to(foot, at.width - 2 * margin, at.px(12))
         pieces.append(Text("help_foot", margin, round(last), words, at.px(12), FAINT))
     return pieces
+
+
+def _aligned(column: list[Row], room: float, size: float) -> list[Row]:
+    """The rows of a column, their sentences in one line below each other if all have room there."""
+    after = max((row.after for row in column), default=0.0)
+    widest = max((width_of(line, size) for row in column for line in row.lines), default=0.0)
+    return [row._replace(after=after) for row in column] if after + widest <= room else column
 
 
 def _row(row: Row, state: State, x: float, y: float, room: float, size: float) -> list[Piece]:

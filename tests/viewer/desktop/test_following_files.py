@@ -13,7 +13,7 @@ import pytest
 from lights.images.hdr_files import exr_file, hdr_file, random_texels
 from viewer.desktop.desktop import Viewer, output_of, screenshot
 
-from shviewer.viewer.desktop.session import LOOK_SECONDS
+from shviewer.viewer.desktop.watching import LOOK_SECONDS
 
 Start = Callable[..., Viewer]
 A_FEW_LOOKS = 1.2
