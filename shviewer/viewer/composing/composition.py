@@ -6,6 +6,7 @@ Panes stand in as many rows as makes them largest; the numbers under the hairlin
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -82,6 +83,7 @@ class Composition:
         return self.px(margin_of(self.width / self.scale))
 
 
+@lru_cache(maxsize=8)
 def compose(
     width: int,
     height: int,
@@ -98,9 +100,9 @@ def compose(
     whole_sphere: panes are maps with map_centre, azimuth and elevation in degrees, in their middle.
     """
     scale = max(content_scale, min(width / DESIGN_WIDTH, height / DESIGN_HEIGHT))
-    design = Design(width / scale, height / scale, n_spheres, whole_sphere)
-    rows, mode = design.best()
-    return _Placed(design, rows, mode).composition(width, height, scale, zoom, map_centre)
+    return _placed(Design(width / scale, height / scale, n_spheres, whole_sphere)).composition(
+        width, height, scale, zoom, map_centre
+    )
 
 
 def frame_for(view: View, width: int, height: int, content_scale: float = 1.0) -> Composition:
@@ -125,7 +127,8 @@ def frame_for(view: View, width: int, height: int, content_scale: float = 1.0) -
 class _Placed:
     """A design with its rows and its numbers: everything has a place."""
 
-    def __init__(self, design: Design, rows: int, mode: Mode) -> None:
+    def __init__(self, design: Design) -> None:
+        rows, mode = design.best()
         self.design, self.rows, self.mode = design, rows, mode
         self.size = design.size(rows, mode)
         self.pane_width = design.pane_width(rows, mode)
@@ -265,6 +268,11 @@ class _Placed:
             tuple(_clear(line.scaled(scale), sphere, 11 * scale, 8 * scale) for line in lines),
             foot and _clear(foot.scaled(scale), sphere, 9 * scale, 1.5 * scale),
         )
+
+
+@lru_cache(maxsize=8)
+def _placed(design: Design) -> _Placed:
+    return _Placed(design)
 
 
 def _clear(line: Line, sphere: Sphere | None, high: float, gap: float) -> Line:

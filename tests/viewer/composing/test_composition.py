@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
-from shviewer.viewer.composing.composition import Composition, compose
+from shviewer.viewer.composing.composition import Composition, compose, frame_for
 from shviewer.viewer.composing.panes import Box, Sphere
+from shviewer.viewer.view import View
 
 SIZES = [
     *[(400, 300), (500, 300), (640, 320), (640, 480), (700, 400), (700, 600), (800, 480), (899, 479), (900, 300)],
@@ -221,3 +223,11 @@ def test_a_sphere_touches_a_box_only_where_it_is_seen() -> None:
     assert not sphere.touches(Box(71, 49, 90, 51))
     assert not sphere.touches(Box(65, 65, 90, 90))  # beside the rim, though within its square
     assert not sphere.touches(Box(45, 61, 55, 69))  # cut away
+
+
+def test_a_frame_is_laid_out_once_for_a_view() -> None:
+    """Whatever asks for it: a frame of the window asked three times, which cost it more Python than its uniforms."""
+    seen = View(zoom=1.25, whole_sphere=True)
+    assert frame_for(seen, 1111, 555) is frame_for(seen, 1111, 555)
+    assert frame_for(replace(seen, marks=False), 1111, 555) is frame_for(seen, 1111, 555)
+    assert frame_for(replace(seen, zoom=1.5), 1111, 555) == compose(1111, 555, 1.5, whole_sphere=True)
