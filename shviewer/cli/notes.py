@@ -1,8 +1,9 @@
-"""Notes on stderr: what was done to a light, how well compared coefficients agree with it, and what its file holds."""
+"""Notes on stderr: what was done to a light, how well compared coefficients agree with it, and what was written."""
 
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shviewer.analysis.comparison import verdict_of
@@ -36,6 +37,12 @@ def warn_below_zero(projected: Projected) -> None:
     """Print what of the numbers that were written is shown below zero."""
     if projected.below_zero:
         _say(f"note: {projected.name}: {projected.below_zero}")
+
+
+def say_written(out: Path, what: str) -> None:
+    """Say on a terminal which file was written and what it is; a pipe gets what needs attention alone."""
+    if sys.stderr.isatty():
+        _say(f"wrote {out}: {what}")
 
 
 def _say(text: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from shviewer.cli.notes import print_notes
+from shviewer.cli.notes import print_notes, say_written
 from shviewer.cli.options.inputs import check_out, replacing_of
 from shviewer.cli.options.states import state_from
 from shviewer.cli.status_line import speaking
@@ -15,6 +15,7 @@ from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.saving.sphere_maps import write_sphere_map
 from shviewer.viewer.screenshot import save_picture
+from shviewer.viewer.state import describe_numbers
 
 
 def run(options: argparse.Namespace) -> int:
@@ -43,13 +44,14 @@ def run(options: argparse.Namespace) -> int:
         )
     with speaking():
         picture = prepare(state, written=not options.no_overlay)
+    pixels = None
     if whole:
         write_sphere_map(picture, width, options.out)
-        print_notes(state.recipe)
-        return 0
-    composition = frame_for(state.view, *options.size)
-    pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
+    else:
+        composition = frame_for(state.view, *options.size)
+        pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
     print_notes(state.recipe)
+    say_written(options.out, f"{width} x {height}, {describe_numbers(state)}")
     if options.reference is None or pixels is None:
         return 0
     verdict = compare_with_reference(pixels, options.reference, difference, options.threshold)

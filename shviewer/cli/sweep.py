@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from shviewer.cli.notes import print_notes
+from shviewer.cli.notes import print_notes, say_written
 from shviewer.cli.options.inputs import check_out, replacing_of
 from shviewer.cli.options.states import DEFAULT_SWEEP, state_from
 from shviewer.cli.status_line import status_line
@@ -18,6 +18,7 @@ from shviewer.viewer.animation.animation import (
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_FRAMES, TURN_SECONDS
 from shviewer.viewer.animation.turning import light_turn
 from shviewer.viewer.composing.composition import frame_for
+from shviewer.viewer.state import describe_numbers
 
 
 def run(options: argparse.Namespace) -> int:
@@ -46,6 +47,11 @@ def run(options: argparse.Namespace) -> int:
             replacing=replacing_of(options),
         )
     print_notes(state.recipe)
+    width, height = options.size
+    seconds, shown = sum(animation.milliseconds) / 1000, describe_numbers(animation.states[-1])
+    if (first := animation.states[0].recipe.n_bands) != animation.states[-1].recipe.n_bands:
+        shown = f"{first} to {shown}"
+    say_written(options.out, f"{len(animation.states)} frames of {width} x {height}, {seconds:g} s, {shown}")
     return 0
 
 

@@ -248,8 +248,9 @@ def step_sweep(state: State) -> State:
     if state.view.sweep_to is None:
         return state
     stepped = with_bands(changed(state, message=""), state.recipe.n_bands + 1)
-    going_on = state.recipe.n_bands < stepped.recipe.n_bands < state.view.sweep_to
-    return changed(stepped, sweep_to=state.view.sweep_to if going_on else None)
+    view, going_on = state.view, state.recipe.n_bands < stepped.recipe.n_bands < state.view.sweep_to
+    to = view.sweep_to if going_on else None
+    return changed(stepped, sweep_to=to, error_range=view.error_range, range_held=view.range_held)
 
 
 def turn_light(state: State, seeds: str) -> State:

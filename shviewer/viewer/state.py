@@ -18,6 +18,9 @@ IN_RECIPE = frozenset(part.name for part in fields(Recipe))
 IN_VIEW = frozenset(part.name for part in fields(View))
 
 
+RANGED = ("error", "encode")
+"""Fields of the view that the range of the error depends on, beside the recipe."""
+
 START, FRONT = Recipe(), View()
 
 
@@ -73,16 +76,26 @@ class State:
 
 
 def changed(state: State, **values: Any) -> State:
-    """The state with other values for fields of its recipe or its view. TypeError for a name that neither has."""
+    """The state with other values for fields of its recipe or its view. TypeError for a name that neither has.
+
+    What is known of another recipe goes, unless it is among the values: changes of a turn, and a range that was held.
+    """
     recipe = {name: values.pop(name) for name in IN_RECIPE & values.keys()}
     view = {name: values.pop(name) for name in IN_VIEW & values.keys()}
     if recipe:
         before, state = state.recipe, replace(state, recipe=replace(state.recipe, **recipe))
-        if state.view.trace and state.recipe != before:  # it is of another
-            view = {"trace": ()} | view
+        if (state.view.trace or state.view.range_held) and state.recipe != before:
+            view = {"trace": (), **released(state.view)} | view
+    elif any(view.get(name, getattr(state.view, name)) != getattr(state.view, name) for name in RANGED):
+        view = released(state.view) | view
     if view:
         state = replace(state, view=replace(state.view, **view))
     return replace(state, **values) if values else state
+
+
+def released(view: View) -> dict[str, Any]:
+    """The fields of the view that let a range of the error go, if one is held."""
+    return {"error_range": None, "range_held": False} if view.range_held else {}
 
 
 def started(state: State) -> State:
@@ -98,6 +111,11 @@ def state_of(*lights: str | Light, **values: Any) -> State:
     """The state at the start with these lights, showing `light` or else the first; other values as in `changed`."""
     lights = lights or (values.get("light", Recipe.light),)
     return changed(State(lights=lights), **{"light": lights[0], **values})
+
+
+def describe_numbers(state: State) -> str:
+    """ "5 bands", or "encoding zh3" """
+    return f"encoding {state.view.encode}" if state.view.encode else counted(state.recipe.n_bands, "band")
 
 
 def describe_muted(recipe: Recipe) -> str:

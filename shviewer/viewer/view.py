@@ -163,6 +163,8 @@ class View:
     """While a sweep plays, the number of bands at which it ends."""
     turning: str = ""
     """While the light turns, one of SEEDS: what its jittered samples are in each frame."""
+    range_held: bool = False
+    """Whether the error's range is that of what plays, or played: it goes as soon as something else is shown."""
     trace: tuple[float, ...] = ()
     """How far the coefficients moved in each of the last frames of a turn, turned back, over the norm of the light."""
     help_visible: bool = False

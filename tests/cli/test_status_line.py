@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -41,3 +44,23 @@ def test_quick_work_is_not_spoken_of(monkeypatch: pytest.MonkeyPatch, capsys: py
     monkeypatch.setattr(status_line, "QUIET", 60)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert "reading" not in work(capsys)
+
+
+WRITTEN = {
+    "screenshot p.png green": "wrote p.png: 160 x 80, 5 bands",
+    "screenshot p.exr green --for irradiance --encode l1": "wrote p.exr: 160 x 80, encoding l1",
+    "sweep s.webp green --turntable --frames 2": "wrote s.webp: 2 frames of 160 x 80, 0.16 s, 5 bands",
+}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no pseudo-terminals of this kind")
+@pytest.mark.parametrize("command", WRITTEN)
+def test_what_was_written_is_said_on_a_terminal_and_stdout_stays_empty(tmp_path: Path, command: str) -> None:
+    ours, theirs = os.openpty()
+    run = [sys.executable, "-m", "shviewer", *command.split(), "--size", "160", "80"]
+    done = subprocess.run(run, cwd=tmp_path, stderr=theirs, stdout=subprocess.PIPE, check=True, timeout=60)
+    os.close(theirs)
+    said = os.read(ours, 2**16).decode()
+    os.close(ours)
+    assert said.rstrip().endswith(f"shviewer: {WRITTEN[command]}")
+    assert done.stdout == b""

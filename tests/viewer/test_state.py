@@ -265,6 +265,7 @@ def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> 
         sweep_to=12,
         turning="fresh",
         trace=(0.5,),
+        range_held=True,
         help_visible=True,
         help_page=1,
         sheet="plane",

@@ -40,7 +40,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     from shviewer.viewer.beside import recipe_beside
     from shviewer.viewer.camera import turn_of
     from shviewer.viewer.message import warning
-    from shviewer.viewer.state import State, changed
+    from shviewer.viewer.state import State, changed, released
 
     pictured = pictured_by(options)
     start = pictured.state if pictured else State()
@@ -74,7 +74,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     if options.anew or state.recipe.turn is not None:
         state = changed(state, turn=turn_of(state.view.light_rotation))
     if state.recipe != start.recipe:
-        state = changed(state, trace=())
+        state = changed(state, trace=(), **released(state.view))
     if not all_lights:  # in a window a key may give it its effect
         check_effects(options, replace(state.recipe, n_bands=_most_bands(options, state)), state.view.beside)
     return changed(state, sweep_to=None, turning="") if all_lights else state  # a window does not play on
@@ -90,11 +90,15 @@ def _most_bands(options: argparse.Namespace, state: State) -> int:
 def _view_from(options: argparse.Namespace, start: View) -> View:
     """The view that the options ask for, but for a basis function, which is checked as soon as its bands are known."""
     from shviewer.viewer.camera import rolled_towards
+    from shviewer.viewer.state import released
     from shviewer.viewer.view import View
 
     chosen: dict[str, Any] = {"basis": None} | chosen_of(options, View)
     if options.error_range is not None:
         chosen["error_range"] = _error_range(options.error_range, options.error or start.error)
+        chosen["range_held"] = False
+    elif options.error not in (None, start.error):
+        chosen |= released(start)
     if options.camera:
         chosen["camera"] = options.camera[0] % 360, _elevation(options.camera[1])
     if options.map_centre:

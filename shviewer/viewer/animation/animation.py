@@ -67,15 +67,36 @@ def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECON
             raise UsageError(f"--{option} {n_bands}: the viewer shows 1 to {MAX_BANDS} bands")
     if first > last:
         raise UsageError(f"--from {first} --to {last}: a sweep adds bands; let --from be at most --to")
+    states = with_one_range(_swept(state, first, last))
+    shown = in_milliseconds(seconds)
+    about = {"kind": "bands", "from": first, "to": last}
+    return checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
+
+
+def _swept(state: State, first: int, last: int) -> list[State]:
+    """The state with `first` to `last` bands, each with a range of its own."""
     step = changed(with_bands(state, first), sweep_to=last if first < last else None)
     states = [step]
     while step.view.sweep_to is not None:
         step = step_sweep(step)
         states.append(step)
-    states = with_one_range(states)
-    shown = in_milliseconds(seconds)
-    about = {"kind": "bands", "from": first, "to": last}
-    return checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
+    return states
+
+
+def wants_range(state: State) -> bool:
+    """Whether the state is a frame of what plays in the window, and has yet to be given the range of all its frames."""
+    view = state.view
+    plays = view.sweep_to is not None or bool(view.turning)
+    return plays and view.error != "off" and view.error_range is None
+
+
+def ranged(state: State) -> State:
+    """The state, if it wants that, with the range that its frames have in a file."""
+    if not wants_range(state):
+        return state
+    to = state.view.sweep_to
+    (first, *_) = with_one_range([state] if to is None else _swept(state, 1, to))
+    return changed(state, error_range=first.view.error_range, range_held=True)
 
 
 def with_one_range(states: list[State]) -> list[State]:
@@ -88,7 +109,7 @@ def with_one_range(states: list[State]) -> list[State]:
     end = max(error_end(state) for state in states)
     digit = 10.0 ** (math.floor(math.log10(end)) - 1)
     error_range = min(float(f"{digit * math.ceil(end / digit - 1e-9):.2g}"), BRIGHTEST)
-    return [changed(state, error_range=error_range) for state in states]
+    return [changed(state, error_range=error_range, range_held=True) for state in states]
 
 
 def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SECONDS) -> Animation:

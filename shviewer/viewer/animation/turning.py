@@ -33,9 +33,9 @@ def step_turn(state: State) -> State:
 
 
 def _standing(state: State, rotation: Quaternion, seed: int) -> State:
-    """The state with its light projected where `rotation` has it; changes that are known stay."""
-    turn = turn_of(rotation)
-    return changed(state, light_rotation=rotation, turn=turn, seed=seed, trace=state.view.trace)
+    """The state with its light projected where `rotation` has it; changes that are known stay, and so does the range."""
+    kept = {name: getattr(state.view, name) for name in ("trace", "error_range", "range_held")}
+    return changed(state, light_rotation=rotation, turn=turn_of(rotation), seed=seed, **kept)
 
 
 def only_turned(one: Recipe, other: Recipe) -> bool:
@@ -67,7 +67,7 @@ class _Turn:
         """The picture of a frame, with the changes up to it."""
         while self.known < number or self.last is None:
             at = 0 if self.last is None else self.known + 1
-            found = reconstruction_of(self.states[at].recipe)
+            found = reconstruction_of(self.states[at].recipe, encoding=self.states[at].view.encode)
             if self.last is not None:
                 state = changed(self.states[at], trace=self.states[self.known].view.trace)
                 self.states[at] = followed(state, found.subject.light, self.last, found.coefficients)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from threading import Event
 
 from shviewer.analysis.subjects import read_again
+from shviewer.viewer.animation.animation import ranged, wants_range
 from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import foresee
@@ -57,7 +58,7 @@ class Making:
 
     def want(self, state: State, by_map: bool, reading: Event | None) -> None:
         """Begin with the pictures of a state, unless they are at work already. reading: set once its light was read again."""
-        wish = still(state), reading
+        wish = still(state), wants_range(state), reading
         if self._task is None or wish != self._wish:
             self.end()
             self._wish, self._taken = wish, None
@@ -88,10 +89,13 @@ class Making:
 
 
 def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[Made]:
-    """The pictures of a state as `stages` has them, with everything ready that their text needs; each with `by_map`."""
+    """The pictures of a state as `stages` has them, with everything ready that their text needs; each with `by_map`.
+
+    What plays is given the range of its error first.
+    """
     if reading is not None and not reading.is_set():
         read_again(state.recipe)
         reading.set()  # a later wish need not read it once more
-    for picture in stages(state, by_map=by_map):
+    for picture in stages(ranged(state), by_map=by_map):
         foresee(picture)
         yield picture, by_map

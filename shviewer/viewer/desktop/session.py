@@ -20,6 +20,7 @@ from shviewer.errors import ShviewerError, within_memory
 from shviewer.lights.light import Light
 from shviewer.lights.several import several
 from shviewer.viewer.actions import Command, open_light, step_sweep
+from shviewer.viewer.animation.animation import wants_range
 from shviewer.viewer.animation.metronome import Metronome
 from shviewer.viewer.animation.turning import followed, is_next, only_turned, step_turn
 from shviewer.viewer.composing.composition import Composition
@@ -156,7 +157,8 @@ class Session:
     @property
     def _shown(self) -> bool:
         """Whether the picture is that of the state, with its figures or without."""
-        return self._reading is None and still(self.state) == still(self.picture.state)
+        same = still(self.state) == still(self.picture.state)
+        return self._reading is None and same and not wants_range(self.state)
 
     @property
     def _stepping(self) -> bool:
@@ -248,7 +250,8 @@ class Session:
         self._said = self.work
         if self._message.over(self.state.view.message, now):
             self.state = changed(self.state, message="")
-        if not self._making.working and self.metronome.beats(self.state.view.sweep_to is not None, now):
+        settled = not (self._making.working or wants_range(self.state))
+        if settled and self.metronome.beats(self.state.view.sweep_to is not None, now):
             self.state = step_sweep(self.state)
         ready = self._shown and not self._making.working and not self._later
         if self.turn.beats(bool(self.state.view.turning), now, ready=ready):
@@ -332,6 +335,9 @@ class Session:
         last, state = self.picture, self.state
         if state.view.turning and made.light is last.light and is_next(last.state.recipe, made.state.recipe):
             state = self.state = followed(state, made.light, last.coefficients, made.coefficients)
+        if wants_range(state):
+            shown = made.state.view
+            state = self.state = changed(state, error_range=shown.error_range, range_held=shown.range_held)
         picture = made.seen(state)
         if picture.light is not last.light:
             again = self._reading is not None if again is None else again

@@ -25,6 +25,7 @@ BESIDE: dict[str, Kind] = {
     "cursor": Whole(0, MAX_BANDS - 1, "cursor {}", f"bands are counted from 0 to {MAX_BANDS - 1}"),
     "cursor_visible": Flag(),
     "help_visible": Flag(),
+    "range_held": Flag(),
     "help_page": Whole(0, 99, "page {} of the help", "pages are counted from 0"),
     "sheet": Choice(SHEETS),
     "turning": Choice(("", *SEEDS)),

@@ -246,7 +246,7 @@ def test_the_command_writes_the_frames_of_the_screenshot_command(tmp_path: Path)
 
 
 @pytest.mark.usefixtures("session_renderer")
-def test_on_a_terminal_a_bar_runs_and_is_wiped_at_the_end(tmp_path: Path) -> None:
+def test_on_a_terminal_a_bar_runs_and_is_wiped_before_it_is_said_what_was_written(tmp_path: Path) -> None:
     reading, writing = pty.openpty()
     command = [sys.executable, "-m", "shviewer", "sweep", "a.gif", "--to", "3", "--size", "128", "64"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=writing, stdout=writing) as process:
@@ -260,7 +260,7 @@ def test_on_a_terminal_a_bar_runs_and_is_wiped_at_the_end(tmp_path: Path) -> Non
     os.close(reading)
     assert process.returncode == 0
     lines = said.decode().split("\r\x1b[K")
-    assert lines[0] == lines[-1] == ""
+    assert (lines[0], lines[-1]) == ("", "shviewer: wrote a.gif: 3 frames of 128 x 64, 3.5 s, 1 to 3 bands\r\n")
     assert [re.sub(r" +\d+ s left", "", line) for line in lines[1:-1]] == [
         f"[{'#' * filled}{'.' * (24 - filled)}]  frame {1 + k % 3} of 3" for k, filled in enumerate(range(0, 24, 4))
     ]

@@ -73,11 +73,13 @@ def words(picture: Picture, pace: float | None = None) -> dict[str, str]:
     return {text.name: text.text for text in draw_overlay(picture, AT, pace=pace).texts}
 
 
-def test_every_beat_is_a_frame_of_the_turn_that_a_file_has() -> None:
+@pytest.mark.parametrize("encode", ["", "hallucinated"])
+def test_every_beat_is_a_frame_of_the_turn_that_a_file_has(encode: str) -> None:
     """A beat is due a period after the first look at the clock."""
-    window = Clock(**SAMPLED)
+    options = SAMPLED | ({"quantity": "irradiance", "encode": encode, "n_bands": 3} if encode else {})
+    window = Clock(**options)
     shown = window.pass_by(5)
-    animation = light_turn(state_of("green", **SAMPLED), 72, 0.08, fresh=True)
+    animation = light_turn(state_of("green", **options), 72, 0.08, fresh=True)
     assert animation.picture is not None
     wanted = animation.picture(4)
     assert azimuth(shown) == pytest.approx(20.0, abs=1e-9)
