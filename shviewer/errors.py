@@ -32,6 +32,15 @@ class LightError(ShviewerError):
 
 
 @contextmanager
+def refused_as(kind: type[ShviewerError], before: str = "") -> Iterator[None]:
+    """Let a ValueError of the block be an error of that kind, its words after `before`."""
+    try:
+        yield
+    except ValueError as error:
+        raise kind(f"{before}{error}") from error
+
+
+@contextmanager
 def within_memory(what: str = "") -> Iterator[None]:
     """Let running out of memory be a LightError of what was being made."""
     try:

@@ -15,17 +15,18 @@ coefficients of a function, those of another program are, step by step,
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.coefficients.parts.axes import Axes, alternating, mirrored_orders, orders, turn
+from shviewer.coefficients.parts.axes import Axes, alternating, mirrored_orders, turn
 from shviewer.coefficients.parts.channels import RGB, channel_places
-from shviewer.coefficients.parts.quantities import RADIANCE, is_over_pi, to_quantity
+from shviewer.coefficients.parts.quantities import is_over_pi, to_quantity
 from shviewer.coefficients.parts.rows import ACN, ORDERS, Order, row_order
 from shviewer.coefficients.parts.scales import SCALES
-from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.basis import Array, count_bands, orders
+from shviewer.harmonics.quantities.names import RADIANCE
 
 UNREAL = 1e-6
 """How far complex coefficients may be from those of a real function, relative to the largest of them."""
@@ -158,9 +159,6 @@ class Convention:
             raise ValueError(f"{self.name} has complex coefficients; choose a convention with real ones")
         phase = np.ones(n_bands**2) if self.phase else alternating(orders(n_bands))[:, 0]
         return np.asarray(phase / self._scale(n_bands))
-
-    def holding(self, quantity: str) -> Convention:
-        return replace(self, quantity=quantity)
 
 
 def to_complex(coefficients: Array) -> NDArray[np.complex128]:

@@ -79,7 +79,8 @@ from functools import partial
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import Axes
 from shviewer.coefficients.parts.channels import FLAT_BY_CHANNEL
-from shviewer.coefficients.parts.quantities import IRRADIANCE, OVER_PI, RADIANCE, RADIANCE_OVER_PI
+from shviewer.coefficients.parts.quantities import OVER_PI, RADIANCE_OVER_PI
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 
 OURS = Convention()
 

@@ -23,14 +23,15 @@ from shviewer.coefficients.lists.scan import plain_numbers
 from shviewer.coefficients.lists.structures import read_structure, rows_of_numbers
 from shviewer.coefficients.lists.text import read_list
 from shviewer.coefficients.numbers import Listed, as_table, in_sequence
-from shviewer.coefficients.parts.quantities import RADIANCE, whole
+from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.parts.rows import ACN, row_order
-from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, read_stamp, safe
+from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, Value, read_stamp, safe
 from shviewer.coefficients.suffixes import HOLDS
 from shviewer.coefficients.texts import parse_convention
-from shviewer.errors import LightError
+from shviewer.errors import LightError, refused_as
 from shviewer.files import decoding, naming, read_bytes
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.limits import DEFAULT_LIMITS, Limits
 
 MAX_FILE_BYTES = 8 * 2**20
@@ -100,10 +101,8 @@ def interpreted(listed: Listed, named: str, *, overrule: bool = False) -> Coeffi
             convention = parse_convention(named)
             notes = (*notes, f"says that its convention is {stamp['convention']}; read as {named}")
     elif named or listed.implied:
-        try:
+        with refused_as(LightError):
             convention = parse_convention(named or listed.implied)
-        except ValueError as error:
-            raise LightError(str(error)) from error
         notes = notes if named else (*notes, listed.implied_by)
     else:
         raise LightError(
@@ -130,10 +129,8 @@ def interpreted(listed: Listed, named: str, *, overrule: bool = False) -> Coeffi
             raise LightError(f"{error}; leave {convention.order} out, its rows name their l and m") from error
     if np.abs(table).max() > LARGEST:
         raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")
-    try:
+    with refused_as(LightError):
         return CoefficientFile(table, convention, convention.to_ours(table), stamp, notes, not (stamp or named), listed)
-    except ValueError as error:
-        raise LightError(str(error)) from error
 
 
 def _read_json(data: bytes) -> Listed:
@@ -171,7 +168,7 @@ def _read_text(data: bytes, table: bool = False) -> Listed:
 
 def _comments(text: str) -> Stamp:
     """The stamp in the comments; empty if there is none."""
-    found: dict[str, str | int | float | None] = {}
+    found: dict[str, Value] = {}
     for line in text.splitlines() if SCHEMA_KEY in text else ():
         match = re.match(r"\s*(?:#|//|\*)\s?([a-z][a-z0-9-]*): (.*)$", line)
         if match:

@@ -10,8 +10,9 @@ import math
 import re
 from collections.abc import Callable, Sequence
 
+from shviewer.coefficients.parts.scales import LEADING
 from shviewer.coefficients.reading import TABLE_BEGINS, TABLE_ENDS
-from shviewer.harmonics.basis import Array, index, normalisation
+from shviewer.harmonics.basis import Array, degree_order, index, normalisation
 
 MAX_GLSL_BANDS = 32
 """The most bands in a shader: as many as the window sums in its own; more belong in a texture."""
@@ -20,9 +21,6 @@ Row = tuple[int, int, list[str]]
 """A coefficient: l, m and the numbers as text."""
 
 POLYNOMIALS = ("", "y", "z", "x", "x * y", "y * z", "3.0 * z * z - 1.0", "x * z", "x * x - y * y")
-LEADING = (1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 0.5, 1.0, 1.0)
-"""The factors with which these polynomials are Im or Re (x + iy)^m times G(l, m)."""
-
 UNITY = 1e-15
 """A constant that differs from 1 by less is left out: the coefficient holds it already."""
 
@@ -91,11 +89,10 @@ def glsl_source(
 
 def _polynomials(row: _RowText, factors: Array, n_bands: int) -> list[str]:
     terms = [row(0, 0) + _times("", float(factors[0] * normalisation(n_bands)[0, 0]))]
-    for l in range(1, n_bands):
-        for m in range(-l, l + 1):
-            place = index(l, m)
-            constant = float(factors[place] * normalisation(n_bands)[l, abs(m)] * LEADING[place])
-            terms.append(row(l, m) + _times(POLYNOMIALS[place], constant))
+    for place in range(1, n_bands**2):
+        l, m = degree_order(place)
+        constant = float(factors[place] * normalisation(n_bands)[l, abs(m)] * LEADING[place])
+        terms.append(row(l, m) + _times(POLYNOMIALS[place], constant))
     return ["    return " + "\n         + ".join(terms) + ";"]
 
 

@@ -27,11 +27,12 @@ units of the radiance, or of the irradiance before it is divided by pi. An unkno
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.quantities import QUANTITIES, is_over_pi
 from shviewer.coefficients.texts import convention_text, parse_convention
-from shviewer.errors import LightError
+from shviewer.errors import LightError, refused_as
 from shviewer.harmonics.quantities.names import GLOSSY, quantity_of
 from shviewer.words import one_line
 
@@ -104,10 +105,8 @@ def read_stamp(stamp: Stamp) -> Convention:
             f"convention {text!r}, quantity {quantity!r}: a stamp needs both, the latter one of {', '.join(QUANTITIES)} or "
             "glossy:R, such as glossy:0.4"
         )
-    try:
+    with refused_as(LightError):
         convention = parse_convention(text)
-    except ValueError as error:
-        raise LightError(str(error)) from error
     if convention.quantity not in (None, quantity):
         raise LightError(
             f"convention {text} holds {convention.quantity}, but quantity says {quantity}: correct one of them"
@@ -115,4 +114,4 @@ def read_stamp(stamp: Stamp) -> Convention:
     for key, words in _in_words(convention, str(quantity)).items():
         if key in stamp and stamp[key] != words:
             raise LightError(f"{key} says {stamp[key]!r}, but convention {text} means {words!r}: correct one of them")
-    return convention.holding(str(quantity))
+    return replace(convention, quantity=str(quantity))

@@ -71,7 +71,7 @@ def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
         fixed = CONVENTIONS[convention.name].quantity
         if fixed not in (None, modifier):
             raise ValueError(f"{modifier} contradicts {convention.name}, which takes {fixed}")
-        return "quantity", convention.holding(modifier)
+        return "quantity", replace(convention, quantity=modifier)
     if modifier in NAMED_AXES or modifier[:1] in ("+", "-"):
         return "axes", replace(convention, axes=Axes.named(modifier))
     if modifier in CHANNEL_ORDERS:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.stamp import Value
 from shviewer.harmonics.basis import count_bands
 
 
@@ -135,22 +136,18 @@ def unity_vectors(numbers: NDArray[np.generic]) -> dict[str, tuple[float, float,
 
 
 def with_use(
-    stamp: dict[str, str | int | float | None],
-    numbers: NDArray[np.generic],
-    convention: Convention,
-    kind: str,
-    names: tuple[str, str],
-) -> dict[str, str | int | float | None]:
+    stamp: dict[str, Value], numbers: NDArray[np.generic], convention: Convention, kind: str, names: tuple[str, str]
+) -> dict[str, Value]:
     """The stamp with what to type after `layout`, and for Unity its vectors.
 
     numbers: (n**2, 3), as they are written; names: symbol and function, as for `use_of`.
     """
-    added: dict[str, str | int | float | None] = {}
+    added: dict[str, Value] = {}
     if line := use_of(convention, kind, count_bands(numbers), *names):
         added["use"] = line
     if convention.name == "unity":
         vectors = unity_vectors(numbers).items()
         added["unity-vectors"] = "; ".join(f"{name} = ({', '.join(map(repr, vector))})" for name, vector in vectors)
-    place = [*stamp].index("layout") + 1 if "layout" in stamp else len(stamp)
     items = list(stamp.items())
+    place = [*stamp].index("layout") + 1 if "layout" in stamp else len(items)
     return dict([*items[:place], *added.items(), *items[place:]])

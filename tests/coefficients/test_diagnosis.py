@@ -14,11 +14,11 @@ from shviewer.coefficients.diagnosis.orientations import orientations, undoing
 from shviewer.coefficients.diagnosis.search import Explanation, explain
 from shviewer.coefficients.diagnosis.sentences import words
 from shviewer.coefficients.numbers import Listed
-from shviewer.coefficients.parts.axes import Axes, alternating, mirrored_orders, orders, turn
+from shviewer.coefficients.parts.axes import Axes, alternating, mirrored_orders, turn
 from shviewer.coefficients.parts.rows import ORDERS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.texts import convention_text, parse_convention
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, orders
 from shviewer.lights.find import find_light
 
 MISTAKES = {

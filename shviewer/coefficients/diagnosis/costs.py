@@ -13,9 +13,10 @@ from shviewer.coefficients.diagnosis.orientations import FLIPS, HALF_TURN, TURNS
 from shviewer.coefficients.diagnosis.ways import Taken, sequence_of
 from shviewer.coefficients.parts.axes import Axes, all_axes
 from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, FLAT_BY_CHANNEL
-from shviewer.coefficients.parts.quantities import QUANTITIES, RADIANCE, is_over_pi, whole
+from shviewer.coefficients.parts.quantities import QUANTITIES, is_over_pi, whole
 from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.quantities.names import RADIANCE
 
 ONE = 1.0
 ALSO_THE_PHASE = 1.02

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shviewer.coefficients.parts.axes import NAMED_AXES, Axes, all_axes, alternating, mirrored_orders, orders, turn
-from shviewer.harmonics.basis import Array
+from shviewer.coefficients.parts.axes import NAMED_AXES, Axes, all_axes, alternating, mirrored_orders, turn
+from shviewer.harmonics.basis import Array, orders
 
 USUAL_AXES = {"+y+z+x": "z forward", "+z+x+y": "y polar"} | {text: name for name, text in NAMED_AXES.items()}
 """Axes that programs have; any others cost as much as two mistakes."""

@@ -19,7 +19,7 @@ from shviewer.coefficients.diagnosis.chance import CHANCE, chance
 from shviewer.coefficients.diagnosis.costs import CHANNELS
 from shviewer.coefficients.diagnosis.costs import costs as costs_of
 from shviewer.coefficients.diagnosis.slips import ONE_OF_TEN, Slip, Slipped
-from shviewer.coefficients.diagnosis.tried import CONSTANTS, Place, Tried, constant_cost, constant_of
+from shviewer.coefficients.diagnosis.tried import CONSTANTS, Place, Tried, constant_costs, constant_of
 from shviewer.coefficients.diagnosis.ways import ways
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.parts.rows import row_order
@@ -90,7 +90,7 @@ def _simplest(tried: list[Tried], exact: Array, named: Convention | None) -> Exp
     for one in tried:
         near = one.misfits <= good
         if near.any():
-            total = np.where(near, one.costs + CHANNELS[:, None, None] + one.constant_costs(good), np.inf)
+            total = np.where(near, one.costs + CHANNELS[:, None, None] + constant_costs(one.constants, good), np.inf)
             first = int(total.argmin())
             if total.flat[first] < most - 1e-9:
                 channels, orientation, combination = map(int, np.unravel_index(first, total.shape))
@@ -101,7 +101,7 @@ def _simplest(tried: list[Tried], exact: Array, named: Convention | None) -> Exp
     within = sum(
         int((CHANNELS[:, None, None] + one.costs <= most + 1e-9).sum()) * (1 + len(CONSTANTS)) for one in tried
     )
-    convention, meant = one.convention(place, one.constant(place, good), named)
+    convention, meant = one.convention(place, constant_of(float(one.constants[place]), good), named)
     by_chance = within * chance(*one.by_degree(place), exact)
     return Explanation(convention, meant, float(one.misfits[place]), by_chance, most)
 
@@ -132,14 +132,14 @@ def _with_slips(
     least = min(float(slipped.errors[counted].min()), simplest.error if simplest and sure else np.inf)
     good = max(ALIKE * least, TINY)
     near = counted[slipped.errors[counted] <= good]
-    factors = slipped.factors[near].tolist()
-    costs = slipped.costs[near] + [constant_cost(factor, good) for factor in factors]
+    factors = slipped.factors[near]
+    costs = slipped.costs[near] + constant_costs(factors, good)
     costs += [_cost(*places[candidate]) for candidate in slipped.candidates[near]]
     if not near.size or (simplest and sure and simplest.error <= good and simplest.cost <= costs.min() + 1e-9):
         return simplest
     best = int(costs.argmin())
     one, place = places[slipped.candidates[near[best]]]
-    convention, meant = one.convention(place, constant_of(factors[best], good), named)
+    convention, meant = one.convention(place, constant_of(float(factors[best]), good), named)
     order = np.argsort(row_order(convention.order, count_bands(exact))).tolist()
     slips = tuple(sorted(Slip(order[row], order[holds], sign) for row, holds, sign in slipped.slips(near[best])))
     error, by_chance = float(slipped.errors[near[best]]), float(chances[near[best]])

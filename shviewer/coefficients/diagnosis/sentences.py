@@ -11,10 +11,11 @@ from shviewer.coefficients.diagnosis.orientations import TURNS, axes_name, betwe
 from shviewer.coefficients.diagnosis.slips import Slip
 from shviewer.coefficients.diagnosis.tried import CONSTANTS
 from shviewer.coefficients.parts.channels import BY_CHANNEL, INTERLEAVED
-from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, is_over_pi, whole
+from shviewer.coefficients.parts.quantities import is_over_pi, whole
 from shviewer.coefficients.parts.rows import ORDERS
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.harmonics.basis import degree_order
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.words import all_of
 
 NO_PHASE = "without the Condon-Shortley phase"

@@ -20,13 +20,14 @@ from shviewer.coefficients.diagnosis.costs import ANY_FACTOR, BENT, CHANNELS, NA
 from shviewer.coefficients.diagnosis.orientations import Orientation, orientations, undoing
 from shviewer.coefficients.diagnosis.ways import Taken, Way
 from shviewer.coefficients.parts.channels import CHANNEL_ORDERS, FLAT_BY_CHANNEL, channel_places
-from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, is_over_pi, whole
+from shviewer.coefficients.parts.quantities import is_over_pi, whole
 from shviewer.coefficients.parts.rows import ACN
 from shviewer.coefficients.parts.scales import SCALES
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.texts import in_our_terms, parse_convention
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.filters import irradiance_factors
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 
 NO_FACTOR = 0.02
 """A constant that differs from 1 by no more is no mistake: it is said beside the agreement."""
@@ -72,17 +73,6 @@ class Tried:
         self.misfits = np.sqrt(np.maximum(1 - np.nan_to_num(share), 0.0))
         if way.taken.shift:  # what is shifted has no factor: it would shift, too
             self.misfits[np.abs(self.constants - 1) > NO_FACTOR] = np.inf
-
-    def constant_costs(self, good: float) -> Array:
-        off = np.abs(self.constants - 1)
-        costs = np.where(off <= NO_FACTOR, 0.0, ANY_FACTOR)
-        for value in CONSTANTS.values():
-            costs = np.where(np.abs(self.constants / value - 1) <= good, NAMED_FACTOR, costs)
-        return np.asarray(costs)
-
-    def constant(self, place: Place, good: float) -> float:
-        """The factor of the numbers: 1, one of CONSTANTS, or any, to six digits."""
-        return constant_of(float(self.constants[place]), good)
 
     def by_degree(self, place: Place) -> tuple[Array, NDArray[np.bool_]]:
         """The relative error of each degree, each with its best constant, and whether the degree tells anything."""
@@ -141,11 +131,10 @@ def constant_of(found: float, good: float) -> float:
     return float(f"{near[0]:.10g}" if near else f"{found:.7g}")
 
 
-def constant_cost(found: float, good: float) -> float:
-    """What such a factor costs."""
-    if abs(found - 1) <= NO_FACTOR:
-        return 0.0
-    return NAMED_FACTOR if any(abs(found / value - 1) <= good for value in CONSTANTS.values()) else ANY_FACTOR
+def constant_costs(found: Array, good: float) -> Array:
+    """What such factors cost, of the same shape."""
+    named = np.any([np.abs(found / value - 1) <= good for value in CONSTANTS.values()], axis=0)
+    return np.where(np.abs(found - 1) <= NO_FACTOR, 0.0, np.where(named, NAMED_FACTOR, ANY_FACTOR))
 
 
 def _row_factors(scale: str, n_bands: int) -> Array:

@@ -15,7 +15,7 @@ from shviewer.coefficients.parts.channels import BY_CHANNEL, FLAT_BY_CHANNEL, IN
 from shviewer.coefficients.parts.rows import ACN, ORDERS, row_order
 from shviewer.coefficients.parts.scales import FUMA_BANDS, POLYNOMIAL_BANDS, SCALES
 from shviewer.coefficients.texts import SHIFT
-from shviewer.errors import LightError
+from shviewer.errors import LightError, refused_as
 from shviewer.harmonics.basis import Array, count_bands
 
 FUMA_ORDERS = (ACN, "order-fuma", "order-fuma-inverse")
@@ -86,7 +86,5 @@ def _sequences(listed: Listed, usual: str) -> Iterator[tuple[str, Numbers]]:
 
 def _complex(listed: Listed) -> Iterator[Way]:
     table = as_table(listed.numbers, complex_pairs=True)
-    try:
+    with refused_as(LightError):
         yield Way(from_complex(table), Taken(scales=("orthonormal",), complex=True))
-    except ValueError as error:
-        raise LightError(str(error)) from error

@@ -15,7 +15,8 @@ from itertools import permutations, product
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.basis import Array, count_bands, degrees
+from shviewer.harmonics.basis import Array, count_bands, degrees, orders
+from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.rotation import rotate
 
 NAMED_AXES = {"z-up": "+x+y+z", "y-up": "+x+z-y", "z-up-left": "+x-y+z", "y-up-left": "+x+z+y"}
@@ -100,12 +101,6 @@ def turn(coefficients: Array, axes: Axes) -> Array:
     return _about_z(turned, matrix, n_bands)
 
 
-def orders(n_bands: int) -> NDArray[np.int64]:
-    """The order m of each coefficient, shape (n_bands**2,)."""
-    l = degrees(n_bands)
-    return np.arange(n_bands**2) - l * (l + 1)
-
-
 def alternating(exponents: NDArray[np.int64]) -> Array:
     """(-1)^exponent as a column, (k, 1)."""
     return np.where(exponents % 2, -1.0, 1.0)[:, None]
@@ -118,9 +113,7 @@ def mirrored_orders(n_bands: int) -> NDArray[np.int64]:
 
 def _about_z(coefficients: Array, matrix: Array, n_bands: int) -> Array:
     """Turn about z by a multiple of 90 degrees: cos(m phi) becomes cos(m (phi - angle)), and so with sin."""
-    quarters = next(
-        k for k in range(4) if np.array_equal(matrix[:2, 0], np.array([(1, 0), (0, 1), (-1, 0), (0, -1)][k]))
-    )
+    quarters = [(1, 0), (0, 1), (-1, 0), (0, -1)].index(tuple(matrix[:2, 0].tolist()))
     m = orders(n_bands)
     eighth = (quarters * np.abs(m)) % 4
     cosine, sine = np.array([1, 0, -1, 0])[eighth], np.array([0, 1, 0, -1])[eighth]
@@ -132,6 +125,5 @@ def _about_z(coefficients: Array, matrix: Array, n_bands: int) -> Array:
 
 def _without_noise(before: Array, after: Array) -> Array:
     """`after` with 0 where it holds the rounding of a zero."""
-    starts = np.arange(count_bands(before)) ** 2
-    norm = np.sqrt(np.add.reduceat(before**2, starts, axis=0))
-    return np.where(np.abs(after) > NOISE * np.repeat(norm, 2 * np.arange(len(starts)) + 1, axis=0), after, 0.0)
+    norm = np.sqrt(band_power(before))
+    return np.where(np.abs(after) > NOISE * norm[degrees(len(norm))], after, 0.0)

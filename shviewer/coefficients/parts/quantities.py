@@ -7,14 +7,12 @@ import numpy as np
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.quantities.kernels import kernel_of
-from shviewer.harmonics.quantities.names import GLOSSY
+from shviewer.harmonics.quantities.names import GLOSSY, IRRADIANCE, RADIANCE
 
-RADIANCE, RADIANCE_OVER_PI, IRRADIANCE, OVER_PI = QUANTITIES = (
-    "radiance",
-    "radiance-over-pi",
-    "irradiance",
-    "irradiance-over-pi",
-)
+_PER_PI = "-over-pi"
+
+RADIANCE_OVER_PI, OVER_PI = RADIANCE + _PER_PI, IRRADIANCE + _PER_PI
+QUANTITIES = (RADIANCE, RADIANCE_OVER_PI, IRRADIANCE, OVER_PI)
 """Those beside glossy ones, such as "glossy:0.4" (harmonics/quantities/names.py).
 
 The last is the radiance of a white Lambertian surface; the second what a program holds that divides it before A(l).
@@ -22,8 +20,6 @@ The last is the radiance of a white Lambertian surface; the second what a progra
 
 LOST = 1e-9
 """A factor below, of a kernel that is known to 1e-13, leaves no radiance to recover."""
-
-_PER_PI = "-over-pi"
 
 
 def whole(quantity: str) -> str:

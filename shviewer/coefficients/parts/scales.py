@@ -6,10 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from shviewer.coefficients.parts.axes import orders
-from shviewer.harmonics.basis import Array, degrees, normalisation
+from shviewer.harmonics.basis import Array, degrees, normalisation, orders
 
 POLYNOMIAL_BANDS = 3
+LEADING = np.array([1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 0.5, 1.0, 1.0])
+"""The factors that make 1, y, z, x, xy ... Im or Re (x + iy)^m times G(l, m): Im (x + iy)^2 is 2xy, P(2) (3z^2-1)/2."""
+
 FUMA_BANDS = 4
 
 _FUMA_WEIGHTS = {
@@ -58,10 +60,7 @@ def _polynomial(n_bands: int) -> Array:
     if n_bands > POLYNOMIAL_BANDS:
         raise ValueError(f"{n_bands} bands: coefficients of polynomials are defined for 1 to {POLYNOMIAL_BANDS}")
     l, m = degrees(n_bands), np.abs(orders(n_bands))
-    leading = np.array(
-        [1.0, 1.0, 1.0, 1.0, 2.0, 1.0, 0.5, 1.0, 1.0]
-    )  # Re, Im (x + iy)^2 are x^2-y^2, 2xy; P(2) = (3z^2-1)/2
-    return np.asarray(np.abs(normalisation(n_bands)[l, m]) * leading[: n_bands**2])
+    return np.asarray(np.abs(normalisation(n_bands)[l, m]) * LEADING[: n_bands**2])
 
 
 SCALES: dict[str, tuple[Callable[[int], Array], str]] = {
