@@ -31,6 +31,7 @@ from shviewer.harmonics.evaluation.indices import (
     degrees,
     index,
     normalise,
+    orders,
 )
 from shviewer.harmonics.evaluation.recurrence import evaluate_by_recurrence, normalisation
 from shviewer.harmonics.evaluation.waves import FEWEST_BANDS, FEWEST_DIRECTIONS, MOST_BANDS, evaluate_by_waves
@@ -48,6 +49,7 @@ __all__ = [
     "index",
     "normalisation",
     "normalise",
+    "orders",
 ]
 
 MAX_VALUES = 2**28

@@ -8,12 +8,11 @@ is left, which Gauss-Legendre nodes integrate to rounding once its pieces are kn
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.quadrature import gauss_unit
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
 
 NODES = 64
@@ -52,7 +51,7 @@ def _ring_by_ring(first: Profile, second: Profile, angle: Array) -> Array:
     if isinstance(first, Gaussian):
         edges += [np.full(angle.shape, step / np.sqrt(first.sharpness)) for step in (1, 2, 4, 8, 16)]
     pieces = np.sort(np.clip(np.stack([*edges, np.full(angle.shape, np.pi)]), 0, first.half_angle), axis=0)
-    nodes, weights = _gauss_legendre_unit(NODES)
+    nodes, weights = gauss_unit(NODES)
     bend, slope = (1 - np.cos(np.pi * nodes)) / 2, np.pi / 2 * np.sin(np.pi * nodes)
     low, length = pieces[:-1, :, None], np.diff(pieces, axis=0)[..., None]
     t = low + length * bend  # piece, angle, node
@@ -77,10 +76,3 @@ def _ring_integral(profile: Profile, t: Array, angle: Array) -> Array:
     slope, offset = profile.parameters
     floor = max(0.0, -slope - offset)  # above zero everywhere where nothing is clamped
     return np.asarray(2 * (slope * (rise * half_arc - swing * (half_arc - np.sin(half_arc))) + floor * half_arc))
-
-
-@lru_cache(maxsize=1)
-def _gauss_legendre_unit(count: int) -> tuple[Array, Array]:
-    """Gauss-Legendre nodes and weights on [0, 1]."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return (nodes + 1) / 2, weights / 2

@@ -144,6 +144,13 @@ def clenshaw_curtis_rows(rows: int) -> tuple[Array, Array]:
     return theta, weights
 
 
+@lru_cache(maxsize=8)
+def gauss_unit(count: int) -> tuple[Array, Array]:
+    """Gauss-Legendre nodes in (0, 1) and their weights, sum 1: (count,) each."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return (nodes + 1) / 2, weights / 2
+
+
 @lru_cache(maxsize=16)
 def gauss_legendre_rows(rows: int) -> tuple[Array, Array]:
     """Gauss-Legendre nodes as angles (rows,), ascending, and their weights (rows,), read-only.
@@ -153,10 +160,8 @@ def gauss_legendre_rows(rows: int) -> tuple[Array, Array]:
     the time of a row, where numpy takes the cube and loses four digits of the weights there.
     """
     beta = np.pi * (np.arange((rows + 1) // 2) + 0.75)
-    zero = (
-        beta + 1 / (8 * beta) - 124 / 3 / (8 * beta) ** 3 + 120928 / 15 / (8 * beta) ** 5
-    )  # of the Bessel function J(0)
-    psi = zero / (rows + 0.5)
+    zero_of_bessel = beta + 1 / (8 * beta) - 124 / 3 / (8 * beta) ** 3 + 120928 / 15 / (8 * beta) ** 5
+    psi = zero_of_bessel / (rows + 0.5)
     theta = psi + (psi / np.tan(psi) - 1) / (8 * psi * (rows + 0.5) ** 2)
     for _ in range(NEWTON_STEPS):
         delta = 2 * np.sin(theta / 2) ** 2

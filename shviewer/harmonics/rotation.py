@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_basis
+from shviewer.harmonics.basis import Array, check_bands, count_bands, degrees, evaluate_basis
+from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.projection import BLOCK_VALUES
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.progress import tell
@@ -49,11 +50,10 @@ def _power_kept(before: Array, after: Array) -> Array:
 
     A rotation keeps it exactly, the sum over the points to a few roundings, which would add up over many rotations.
     """
-    starts = np.arange(count_bands(before)) ** 2
-    power, kept = (np.add.reduceat(columns**2, starts, axis=0) for columns in (before, after))
+    power, kept = band_power(before), band_power(after)
     with np.errstate(divide="ignore", invalid="ignore"):
         factors = np.where(kept > 0, np.sqrt(power / kept), 1.0)
-    return np.asarray(np.repeat(factors, 2 * np.arange(len(starts)) + 1, axis=0))
+    return np.asarray(factors[degrees(len(factors))])
 
 
 def turn(azimuth: float, elevation: float, roll: float = 0.0) -> Array:

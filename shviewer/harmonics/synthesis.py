@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from shviewer.harmonics.basis import Array, count_bands, normalise
 from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths
 from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
-from shviewer.harmonics.theta_series import azimuth_functions, to_waves
+from shviewer.harmonics.theta_series import azimuth_functions, degrees_and_orders, to_waves
 
 BLOCK_VALUES = 2**14
 """How many directions times bands are evaluated at a time, so that they stay in the cache."""
@@ -171,10 +171,7 @@ class Synthesis:
 def _to_orders(coefficients: Array) -> Array:
     """Coefficients, at index l(l+1) +- m, arranged as (m, l, {cos, sin}, 3)."""
     n_bands = count_bands(coefficients)
-    degree, order = np.tril_indices(n_bands)
-    centre = degree * (degree + 1)
+    degree, order, sine = degrees_and_orders(n_bands)
     table = np.zeros((n_bands, n_bands, 2, 3))
-    table[order, degree, 1] = coefficients[centre - order]
-    table[order, degree, 0] = coefficients[centre + order]
-    table[0, :, 1] = 0
+    table[order, degree, sine] = coefficients
     return table

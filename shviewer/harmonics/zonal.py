@@ -178,9 +178,7 @@ class Gaussian:
         k = self.sharpness
         start = n_bands + 40 + int(10 * np.sqrt(min(k, 1e8)))
         slope = (2 * start + 2) / k
-        ratio = 2 / (
-            slope + np.sqrt(slope**2 + 4)
-        )  # the recurrence's fixed point: exact to 1/k**2, enough where k > 1e8
+        ratio = 2 / (slope + np.sqrt(slope**2 + 4))  # the recurrence's fixed point, exact to 1/k**2: enough for k > 1e8
         ratios = np.ones(n_bands)
         for l in range(start, 0, -1):
             ratio = 1 / ((2 * l + 1) / k + ratio)

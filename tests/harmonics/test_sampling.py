@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 from scipy.special import eval_legendre
 
-from shviewer.harmonics.quadrature import directions_from_angles
-from shviewer.harmonics.sampling.cells import NODES, POINTS, Cells, gauss, locate, project, sectors, shares, to_nodes
+from shviewer.harmonics.quadrature import directions_from_angles, gauss_unit
+from shviewer.harmonics.sampling.cells import NODES, POINTS, Cells, locate, project, sectors, shares, to_nodes
 from shviewer.harmonics.sampling.look import LOOK_COLUMNS, LOOK_ROWS, SEEN_DEGREES, look, turned
 from shviewer.harmonics.sampling.sampled import Sampled, sample
 from shviewer.harmonics.sampling.spread import project_points
@@ -90,7 +90,7 @@ def test_cells_project_a_band_limited_function_whether_they_are_divided_or_not()
 
     def weighted(some: Cells) -> np.ndarray:
         values = some.evaluate(radiance)
-        return values * (some.weights()[:, :, None] * gauss(POINTS)[1])[..., None]
+        return values * (some.weights()[:, :, None] * gauss_unit(POINTS)[1])[..., None]
 
     whole[half] = weighted(cells[half])
     to_nodes(cells[~half].divided(), weighted(cells[~half].divided()), divided)
@@ -100,9 +100,9 @@ def test_cells_project_a_band_limited_function_whether_they_are_divided_or_not()
 
 
 def test_shares_are_one_at_their_own_point_and_carry_polynomials() -> None:
-    assert_allclose(shares(gauss(8)[0], 8), np.eye(8), rtol=0, atol=1e-13)
+    assert_allclose(shares(gauss_unit(8)[0], 8), np.eye(8), rtol=0, atol=1e-13)
     places = np.array([0.0, 0.3, 1.0])
-    assert_allclose(shares(places, 8) @ gauss(8)[0] ** 7, places**7, rtol=0, atol=1e-12)
+    assert_allclose(shares(places, 8) @ gauss_unit(8)[0] ** 7, places**7, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("depth", [0, 2])
@@ -148,7 +148,7 @@ def test_points_that_are_spread_onto_a_grid_have_the_waves_of_the_points(depth: 
     for _ in range(depth):
         cells = cells.divided()
         cells = cells[rng.integers(0, len(cells), 8)]
-    at, share = gauss(POINTS)
+    at, share = gauss_unit(POINTS)
     smooth = 1 + np.multiply.outer(at, at)  # what a root's points are read as is a polynomial
     weighted = rng.standard_normal((len(cells), 1, 1, 3)) * (np.multiply.outer(share, share) * smooth)[..., None]
     n_bands = 12

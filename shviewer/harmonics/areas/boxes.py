@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_values, points_from_series
 from shviewer.harmonics.basis import Array, normalise
+from shviewer.harmonics.quadrature import angles_from_directions
 
 PHASE = 4.6
 """The phase, in radians, of the shortest wave from the middle of a box to its edge."""
@@ -53,8 +54,7 @@ def wave_sums(directions: Array, values: Array, n_bands: int) -> Array:
     """
     channels, mirrors = values.shape[-1], np.array(values.shape[:3])
     units = normalise(directions)
-    x, y, z = np.abs(units).T
-    theta, phi = np.arctan2(np.hypot(x, y), z), np.arctan2(y, x)
+    theta, phi = angles_from_directions(np.abs(units))
     boxes = max(1, ceil((n_bands - 1) * pi / (4 * PHASE)))
     width = pi / 2 / boxes
     strip, box = (np.minimum((angle / width).astype(np.int64), boxes - 1) for angle in (theta, phi))
@@ -71,10 +71,10 @@ def wave_sums(directions: Array, values: Array, n_bands: int) -> Array:
     n_sides = int(np.prod(3 - mirrors))
     place = (strip * boxes + box) * n_sides + sides
     order = np.argsort(place, kind="stable")
-    place, columns = place[order], columns.reshape(-1, len(x))
+    place, columns = place[order], columns.reshape(-1, len(units))
     edges = np.searchsorted(place, np.arange(boxes + 1) * (boxes * n_sides))
     result = np.zeros((n_bands, 2, channels, n_bands))
-    memory = np.empty((n_sides, boxes, DEGREES, len(columns), DEGREES)) if len(x) else np.empty(0)
+    memory = np.empty((n_sides, boxes, DEGREES, len(columns), DEGREES)) if len(units) else np.empty(0)
     for row in np.flatnonzero(np.diff(edges)).tolist():
         first, last = (int(place[i]) // n_sides - row * boxes for i in (edges[row], edges[row + 1] - 1))
         used = slice(first, last + 1)

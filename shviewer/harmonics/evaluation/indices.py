@@ -44,6 +44,12 @@ def degrees(n_bands: int) -> NDArray[np.int64]:
     return np.repeat(np.arange(n_bands), 2 * np.arange(n_bands) + 1)
 
 
+def orders(n_bands: int) -> NDArray[np.int64]:
+    """The order m of each coefficient, shape (n_bands**2,)."""
+    l = degrees(n_bands)
+    return np.arange(n_bands**2) - l * (l + 1)
+
+
 def normalise(directions: ArrayLike) -> Array:
     """Unit vectors along `directions`, shape (..., 3), whatever their length, down to subnormal and up to 1e308.
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.both_sides import Found, largest_magnitude
+from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import row_angles
 from shviewer.harmonics.synthesis import Synthesis
 
@@ -54,5 +55,4 @@ class Bands:
 def band_heights(coefficients: Array) -> Array:
     """A bound of each band's values, (n, channels), of coefficients (n**2, channels)."""
     l = np.arange(count_bands(coefficients))
-    norms = np.sqrt(np.add.reduceat(coefficients**2, l**2, axis=0))
-    return np.asarray(np.sqrt((2 * l + 1) / (4 * np.pi))[:, None] * norms)
+    return np.asarray(np.sqrt((2 * l + 1) / (4 * np.pi))[:, None] * np.sqrt(band_power(coefficients)))

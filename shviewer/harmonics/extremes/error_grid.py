@@ -124,7 +124,7 @@ class ErrorGrid:
         return Extremes(
             max_error=error.value,
             max_error_bound=None if self.form is None else max(error.value, error.bound),
-            max_error_direction=_triple(error.direction),
+            max_error_direction=triple(error.direction),
             peak=self.peak,
             **lows._asdict(),
         )
@@ -146,7 +146,7 @@ class ErrorGrid:
         return Lows(
             minimum=lowest.value,
             minimum_bound=min(lowest.value, lowest.bound),
-            minimum_direction=_triple(lowest.direction),
+            minimum_direction=triple(lowest.direction),
             negative_area=float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share),
             negative_energy=self._negative_energy(seen.values, seen.shown),
         )
@@ -261,6 +261,7 @@ def _highest_in_blocks(values: Array) -> tuple[NDArray[np.int64], NDArray[np.int
     return best // (columns // 8) * 8 + inside // 8, best % (columns // 8) * 8 + inside % 8
 
 
-def _triple(direction: Array) -> Triple:
-    x, y, z = (float(component) for component in direction)
-    return x, y, z
+def triple(values: Array) -> Triple:
+    """Three numbers of an array (3,) as Python's own."""
+    first, second, third = values.tolist()
+    return first, second, third

@@ -122,9 +122,8 @@ def _across(slope: Array, bend: Array, alone: Array, edge: float) -> Array:
     bins = len(slope)
     lit = int(edge * bins / np.pi) if edge < np.pi else bins
     number = np.arange(bins)
-    by_north, waves_by_north, by_south = (
-        np.maximum.accumulate(values) for values in (bend, alone, bend[::-1])
-    )  # the largest on the way from a pole; beyond an edge there are waves alone, whose slope never jumped
+    # the largest on the way from a pole; beyond an edge there are waves alone, whose slope never jumped
+    by_north, waves_by_north, by_south = map(np.maximum.accumulate, (bend, alone, bend[::-1]))
     north = np.where(number < lit, by_north, waves_by_north)
     south = np.where((number > lit) | (lit == bins), by_south[::-1], np.inf)
     nearer = np.minimum(number, bins - 1 - number) * (np.pi / bins)  # the end of a bin that is nearer to a pole

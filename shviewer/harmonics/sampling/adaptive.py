@@ -14,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.quadrature import Radiance, directions_from_angles
+from shviewer.harmonics.quadrature import Radiance, directions_from_angles, gauss_unit
 from shviewer.harmonics.sampling.cells import (
     NODES,
     POINTS,
     Cells,
-    gauss,
     highest_terms,
     locate,
     project,
@@ -139,7 +138,7 @@ class _Work:
         values = cells.evaluate(self.radiance)
         self.evaluations += values.size // 3
         weights = cells.weights()
-        weighted = values * (weights[:, :, None] * gauss(POINTS)[1])[..., None]
+        weighted = values * (weights[:, :, None] * gauss_unit(POINTS)[1])[..., None]
         size = np.abs(values).max(axis=(1, 2))
         self.peak = max(self.peak, float(size.max()))
         highest, at_sides = highest_terms(values)
@@ -210,7 +209,7 @@ class _Work:
 
     def _note_brightest(self, cells: Cells, values: Array, size: Array) -> None:
         """Note the brightest point of each root."""
-        at, _ = gauss(POINTS)
+        at, _ = gauss_unit(POINTS)
         top = size.max(axis=1)
         order = np.lexsort((-top, cells.root))
         first = order[np.unique(cells.root[order], return_index=True)[1]]

@@ -12,14 +12,13 @@ integral of f K for every K that is such a polynomial, as the basis is in a root
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.quadrature import Radiance, angles_from_directions, directions_from_angles
+from shviewer.harmonics.quadrature import Radiance, angles_from_directions, directions_from_angles, gauss_unit
 from shviewer.harmonics.row_transform import by_parity
 from shviewer.harmonics.sampling.look import BLOCK, LOOK_COLUMNS, N_STRIPS, STRIP_ROWS, strides
 from shviewer.harmonics.theta_series import from_waves
@@ -29,13 +28,6 @@ POINTS, NODES = 8, 12
 
 HIGHEST = 2
 """How many of the POINTS terms of a polynomial tell whether there should be more."""
-
-
-@lru_cache(maxsize=4)
-def gauss(count: int) -> tuple[Array, Array]:
-    """Gauss points in (0, 1) and their weights, sum 1."""
-    points, weights = leggauss(count)
-    return (points + 1) / 2, weights / 2
 
 
 def sectors() -> Indices:
@@ -118,13 +110,13 @@ class Cells:
 
     def weights(self) -> Array:
         """Steradians of the points: (n, POINTS of theta), for each of the points of phi."""
-        at, share = gauss(POINTS)
+        at, share = gauss_unit(POINTS)
         height = np.pi / (N_STRIPS * 2.0**self.depth)
         return np.asarray(np.sin(self.theta(at)) * share * height * self.width[:, None])
 
     def evaluate(self, radiance: Radiance) -> Array:
         """Values at the points: (n, POINTS of theta, POINTS of phi, 3)."""
-        at, _ = gauss(POINTS)
+        at, _ = gauss_unit(POINTS)
         values = np.empty((len(self), POINTS, POINTS, 3))
         step = BLOCK // POINTS**2
         for start in range(0, len(self), step):
@@ -143,7 +135,7 @@ def shares(at: Array, count: int) -> Array:
 
     They are the sums over k < count of w (2k+1) P(k)(point) P(k)(place), since Gauss weights w make the P(k) orthogonal.
     """
-    points, weights = gauss(count)
+    points, weights = gauss_unit(count)
     at_points = legvander(2 * points - 1, count - 1) * (2 * np.arange(count) + 1) * weights[:, None]
     return np.asarray(legvander(2 * at - 1, count - 1) @ at_points.T)
 
@@ -165,7 +157,7 @@ def highest_terms(values: Array) -> tuple[Array, Array]:
     The first is of all rows and columns of points, by channel; the second of those next to the left, the right, the upper and
     the lower side, over all channels. The terms are those of Legendre polynomials.
     """
-    points, weights = gauss(POINTS)
+    points, weights = gauss_unit(POINTS)
     degrees = np.arange(POINTS)[-HIGHEST:]
     analysis = (2 * degrees[:, None] + 1) * (legvander(2 * points - 1, POINTS - 1) * weights[:, None]).T[-HIGHEST:]
     columns = np.abs(analysis @ values.reshape(len(values), POINTS, -1)).max(axis=1).reshape(len(values), POINTS, 3)
@@ -176,7 +168,7 @@ def highest_terms(values: Array) -> tuple[Array, Array]:
 
 def to_nodes(cells: Cells, weighted: Array, sums: Array) -> None:
     """Add weighted values (n, POINTS, POINTS, 3) of cells to the nodes of their roots, sums (roots, NODES, NODES, 3)."""
-    at, _ = gauss(POINTS)
+    at, _ = gauss_unit(POINTS)
     order = np.argsort(cells.root, kind="stable")
     for start in range(0, len(cells), 1024):
         part = order[start : start + 1024]
@@ -199,7 +191,7 @@ def project(layers: list[Array], n_bands: int) -> Array:
     by_order = np.zeros((n_bands, 2, 3, n_bands))
     firsts = np.cumsum(counts) - counts
     for layer in layers:
-        at, _ = gauss(layer.shape[1])
+        at, _ = gauss_unit(layer.shape[1])
         for count in np.unique(counts):
             strips = np.flatnonzero(counts == count)
             which = (firsts[strips][:, None] + np.arange(count)).ravel()

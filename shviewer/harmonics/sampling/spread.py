@@ -15,8 +15,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.quadrature import gauss_unit
 from shviewer.harmonics.row_transform import by_parity
-from shviewer.harmonics.sampling.cells import POINTS, Cells, gauss, sectors, shares
+from shviewer.harmonics.sampling.cells import POINTS, Cells, sectors, shares
 from shviewer.harmonics.sampling.look import N_STRIPS
 from shviewer.harmonics.theta_series import from_waves
 
@@ -57,8 +58,8 @@ def project_points(layers: Iterable[tuple[Cells, Array]], n_bands: int) -> Array
 def _add(cells: Cells, weighted: Array, steps: int, edge: int, grid: Array) -> None:
     """Spread cells whose roots are equally wide onto the grid (3, rows of `steps`), `edge` rows of it before theta = 0."""
     count = POINTS if cells.depth else ROOT_POINTS
-    at, share = gauss(count)
-    before = gauss(POINTS)[1]
+    at, share = gauss_unit(count)
+    before = gauss_unit(POINTS)[1]
     finer = shares(at, POINTS) * share[:, None] / before
     a_turn = steps / (2 * np.pi)
     reach = [int(a_turn * side) + WIDTH + 2 for side in (np.pi / (N_STRIPS * 2.0**cells.depth), cells.width[0])]
@@ -87,7 +88,7 @@ def _bumps(places: Array, reach: int) -> tuple[Indices, Array]:
 
 def _bump_wave(n_bands: int, steps: int) -> Array:
     """The integral of the bump times cos(k x), x in radians of which there are `steps` to a turn, per step: (n_bands,)."""
-    at, share = gauss(64)
+    at, share = gauss_unit(64)
     x = 2 * at - 1
     bump = np.exp(SHARPNESS * (np.sqrt(1 - x * x) - 1))
     return np.asarray(WIDTH * np.cos(np.arange(n_bands)[:, None] * (np.pi * WIDTH / steps) * x) @ (share * bump))
