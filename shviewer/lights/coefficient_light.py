@@ -12,12 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from shviewer.coefficients.parts.quantities import RADIANCE, recovered_radiance
+from shviewer.coefficients.parts.quantities import recovered_radiance
 from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
 from shviewer.coefficients.texts import convention_text
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.convolved import ConvolvedSum, FiniteSum, RadianceLight, convolved
 from shviewer.lights.lat_long import LatLongMap

@@ -104,6 +104,11 @@ class ConvolvedLight(LightBase):
         return MAP_ROWS if self.bands <= FEWEST_BANDS else 2 * MAP_ROWS - 1
 
     @cached_property
+    def synthesis(self) -> Synthesis:
+        """The sum of its bands."""
+        return Synthesis(self.coefficients(self.bands))
+
+    @cached_property
     def map(self) -> LatLongMap:
         return self.map_of_bands(self.coefficients(self.bands))
 
@@ -126,12 +131,8 @@ class ConvolvedMap(ConvolvedLight):
     def radiance(self, directions: Array) -> Array:
         """As in Light; in few directions exactly, such as at the mark of a figure."""
         if len(directions) <= FEW_DIRECTIONS:
-            return self._synthesis.in_directions(directions)
+            return self.synthesis.in_directions(directions)
         return self.map.sample(directions)
-
-    @cached_property
-    def _synthesis(self) -> Synthesis:
-        return Synthesis(self.coefficients(self.bands))
 
     @cached_property
     def form(self) -> Bands | None:
@@ -162,12 +163,8 @@ class FiniteSum(LightBase):
         return self.synthesis.on_rows(theta, n_columns)
 
 
-class ConvolvedSum(FiniteSum, ConvolvedLight):
+class ConvolvedSum(ConvolvedLight, FiniteSum):
     """Coefficients convolved: a finite sum, like the light itself."""
-
-    @cached_property
-    def synthesis(self) -> Synthesis:
-        return Synthesis(self.coefficients(self.bands))
 
 
 class RadianceLight(LightBase):

@@ -41,7 +41,7 @@ class ConvolvedLobes(ConvolvedLight):
         if self.map_rows > MAP_ROWS:
             return self.map_of_bands(
                 self.coefficients(self.bands)
-            )  # of narrow kernels, whose kink is less than 1e-3 of them
+            )  # the kink of narrow kernels is less than 1e-3 of them
         slope = self.kernel.slope_at_horizon
         smooth = self.kernel.factors(self.bands) - slope * irradiance_factors(self.bands)
         rest = self.map_of_bands(self.source.coefficients(self.bands) * per_coefficient(smooth))

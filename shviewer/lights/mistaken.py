@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import row_angles
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.images.display.colour import srgb_from_linear
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.light import Light
@@ -62,15 +63,9 @@ def _spoiled(pixels: NDArray[np.float32], layout: Layout, how: tuple[str, ...]) 
     for start in range(0, len(taken), BLOCK_ROWS):
         block = pixels[start * step : (start + BLOCK_ROWS) * step]
         for one in how:
-            block = np.minimum(block, 1) if one == CLAMPED else _encoded(block)
+            block = np.minimum(block, 1) if one == CLAMPED else srgb_from_linear(np.maximum(block, 0))
         taken[start : start + BLOCK_ROWS] = block.reshape(-1, step, width // step, step, 3).mean(axis=(1, 3))
     return taken, LatLongLayout(*taken.shape[:2]) if step > 1 else layout
-
-
-def _encoded(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """By the curve of sRGB (IEC 61966-2-1), which goes on above 1; what is negative is 0."""
-    values = np.maximum(values, 0)
-    return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055).astype(np.float32)
 
 
 def _alike(values: NDArray[np.float32], layout: Layout) -> NDArray[np.float32]:

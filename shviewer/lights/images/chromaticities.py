@@ -40,8 +40,7 @@ def rec709_from(chromaticities: ArrayLike) -> NDArray[np.float64]:
     Raises LightError for values that make no RGB space.
     """
     checked = _checked(chromaticities)
-    rec709_from_xyz = np.linalg.inv(_xyz_from_rgb(REC709))
-    return rec709_from_xyz @ _adaptation(checked[3], REC709[3]) @ _xyz_from_rgb(checked)
+    return np.asarray(_rec709_from_xyz(checked[3]) @ _xyz_from_rgb(checked))
 
 
 def convert(pixels: NDArray[np.float32], matrix: NDArray[np.float64] | None) -> None:
@@ -74,9 +73,7 @@ def rec709_from_columns(columns: NDArray[np.float64]) -> NDArray[np.float64]:
     white = np.array([x, y]) / (x + y + z)
     if not np.all(_BRADFORD @ _three_coordinates(white) > 0.0):
         raise LightError("its white is no colour")
-    adapted = _adaptation(white, REC709[3]) @ columns / y
-    matrix: NDArray[np.float64] = np.linalg.inv(_xyz_from_rgb(REC709)) @ adapted
-    return matrix
+    return np.asarray(_rec709_from_xyz(white) @ columns / y)
 
 
 def xyz_from_rgb(chromaticities: ArrayLike) -> NDArray[np.float64]:
@@ -94,8 +91,7 @@ def luminance_weights(chromaticities: ArrayLike) -> NDArray[np.float64]:
     chromaticities: (4, 2), CIE xy of red, green, blue and white.
     Raises LightError for values that make no RGB space.
     """
-    weights: NDArray[np.float64] = xyz_from_rgb(chromaticities)[1]
-    return weights
+    return np.asarray(xyz_from_rgb(chromaticities)[1])
 
 
 def _checked(chromaticities: ArrayLike) -> NDArray[np.float64]:
@@ -125,8 +121,7 @@ def _xyz_from_rgb(chromaticities: NDArray[np.float64]) -> NDArray[np.float64]:
 def _amounts_for_white(chromaticities: NDArray[np.float64]) -> NDArray[np.float64]:
     """(3,): how much of each primary makes the white of luminance 1."""
     white = _three_coordinates(chromaticities[3])
-    amounts: NDArray[np.float64] = np.linalg.solve(_three_coordinates(chromaticities[:3]).T, white / white[1])
-    return amounts
+    return np.linalg.solve(_three_coordinates(chromaticities[:3]).T, white / white[1])
 
 
 def _three_coordinates(xy: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -134,8 +129,8 @@ def _three_coordinates(xy: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate([xy, 1.0 - xy.sum(axis=-1, keepdims=True)], axis=-1)
 
 
-def _adaptation(old_white: NDArray[np.float64], new_white: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(3, 3): XYZ as it looks under one white to XYZ that looks the same under another, both given as xy."""
-    old, new = (_BRADFORD @ _three_coordinates(white) / white[1] for white in (old_white, new_white))
-    adaptation: NDArray[np.float64] = np.linalg.inv(_BRADFORD) @ ((new / old)[:, None] * _BRADFORD)
-    return adaptation
+def _rec709_from_xyz(white: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3): XYZ as it looks under a white, given as xy, to linear Rec. 709 that looks the same under D65."""
+    old, new = (_BRADFORD @ _three_coordinates(one) / one[1] for one in (white, REC709[3]))
+    adaptation = np.linalg.inv(_BRADFORD) @ ((new / old)[:, None] * _BRADFORD)
+    return np.asarray(np.linalg.inv(_xyz_from_rgb(REC709)) @ adaptation)

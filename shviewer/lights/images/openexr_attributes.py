@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from shviewer.errors import LightError
 
-_FIRST_HEADER = 8  # bytes; before it a magic number and the version field
-_SEVERAL_PARTS = 0x1000  # a flag of the version field
+FIRST_HEADER = 8  # bytes; before it a magic number and the version field
+TILED, LONG_NAMES, SEVERAL_PARTS = 0x200, 0x400, 0x1000  # flags of the version field
 _LONGEST_NAME = 255
 _MOST_ATTRIBUTES = 2**15  # of all parts; files of hundreds of passes have thousands
 _MOST_OF_A_PART = 2**12  # the library takes a time that grows with their square: 0.1 s
@@ -58,9 +58,9 @@ class RawHeader(NamedTuple):
 
 def read_attributes(data: bytes) -> list[RawHeader]:
     """The header of every part. Raises LightError if the bytes end before the headers do, or they have no end."""
-    headers = [_header(data, _FIRST_HEADER, _MOST_ATTRIBUTES)]
+    headers = [_header(data, FIRST_HEADER, _MOST_ATTRIBUTES)]
     left = _MOST_ATTRIBUTES - len(headers[0].attributes)
-    if count_in(data[4:_FIRST_HEADER]) & _SEVERAL_PARTS:
+    if count_in(data[4:FIRST_HEADER]) & SEVERAL_PARTS:
         while data[headers[-1].end : headers[-1].end + 1] != b"\0":
             headers.append(_header(data, headers[-1].end, left))
             left -= len(headers[-1].attributes)

@@ -13,9 +13,7 @@ import struct
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.lights.images.openexr_attributes import Attribute, broken, count_in, read_attributes
-
-_TILED, _LONG_NAMES = 0x200, 0x400  # flags of the version field
+from shviewer.lights.images.openexr_attributes import LONG_NAMES, TILED, Attribute, broken, count_in, read_attributes
 
 
 def part_alone(data: bytes, index: int) -> bytes:
@@ -32,7 +30,7 @@ def part_alone(data: bytes, index: int) -> bytes:
 
     table = headers[-1].end + 1 + 8 * sum(counts[:index])
     pieces = _chunks(data, table, counts[index], index, tiled)
-    flags = (count_in(data[4:8]) & _LONG_NAMES) | (_TILED if tiled else 0)
+    flags = (count_in(data[4:8]) & LONG_NAMES) | (TILED if tiled else 0)
     head = data[:4] + struct.pack("<I", 2 | flags) + data[start:end]
     sizes = np.array([len(piece) for piece in pieces], np.int64)
     starts = len(head) + 8 * len(pieces) + np.cumsum(sizes) - sizes

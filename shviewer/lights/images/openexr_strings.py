@@ -12,10 +12,14 @@ import struct
 
 import numpy as np
 
-from shviewer.lights.images.openexr_attributes import Attribute, channels_in, read_attributes
-
-_LONG_NAMES, _SEVERAL_PARTS = 0x400, 0x1000  # flags of the version field
-_FIRST_HEADER = 8  # bytes; before it a magic number and the version field
+from shviewer.lights.images.openexr_attributes import (
+    FIRST_HEADER,
+    LONG_NAMES,
+    SEVERAL_PARTS,
+    Attribute,
+    channels_in,
+    read_attributes,
+)
 
 
 def with_readable_strings(data: bytes) -> bytes:
@@ -26,16 +30,16 @@ def with_readable_strings(data: bytes) -> bytes:
     if readable == stored:
         return data
     version = int.from_bytes(data[4:8], "little")
-    end = b"\0" if version & _SEVERAL_PARTS else b""
+    end = b"\0" if version & SEVERAL_PARTS else b""
     written = b"".join(map(_written, readable)) + end
     old_table = headers[-1].end + len(end)
-    new_table = _FIRST_HEADER + len(written)
+    new_table = FIRST_HEADER + len(written)
     offsets = np.frombuffer(data, "<u8", (len(data) - old_table) // 8, old_table)
     # The chunks follow the tables: these end where the first of the chunks that they list begins.
     ends = old_table + 8 * (1 + np.arange(len(offsets), dtype=np.uint64))
     count = int(np.argmax(ends >= np.minimum.accumulate(offsets))) + 1 if len(offsets) else 0
     moved = (offsets[:count].view("<i8") + (new_table - old_table)).tobytes()
-    head = data[:4] + struct.pack("<I", version | _LONG_NAMES) + written
+    head = data[:4] + struct.pack("<I", version | LONG_NAMES) + written
     return b"".join([head, moved, data[old_table + 8 * count :]])
 
 

@@ -39,6 +39,11 @@ def linear_from_srgb(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
+def srgb_from_linear(linear: NDArray[np.floating]) -> NDArray[np.floating]:
+    """The curve [sRGB], which goes on above 1; of any shape and precision."""
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
 @dataclass(frozen=True, eq=False)
 class Colour:
     """How codes become linear Rec. 709. Without arguments: sRGB."""
