@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from shviewer.analysis.options import options_of, taken, whole
 from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
-from shviewer.errors import UsageError
+from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.limits import check_brightness
@@ -112,10 +112,8 @@ def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False,
 def _check_convention(text: str) -> None:
     from shviewer.coefficients.texts import parse_convention
 
-    try:
+    with refused_as(UsageError):
         parse_convention(text)
-    except ValueError as error:
-        raise UsageError(str(error)) from error
 
 
 def _array_light(array: NDArray[np.generic]) -> Light:
@@ -136,10 +134,8 @@ def _array_light(array: NDArray[np.generic]) -> Light:
         check_brightness(float(np.abs(array).max()), "image")  # before float32 makes it infinite
         return EnvironmentLight(np.ascontiguousarray(array, dtype=np.float32))
     if array.ndim == 2 and array.shape[1] == 3:
-        try:
+        with refused_as(UsageError):
             count_bands(array)
-        except ValueError as error:
-            raise UsageError(str(error)) from error
         return CoefficientLight(np.array(array, dtype=np.float64))
     raise UsageError(
         f"an array of shape {array.shape}: coefficients are (n**2, 3), a lat-long image is (height, width, 3)"

@@ -61,13 +61,6 @@ def theta_phi_degrees(direction: Iterable[float]) -> tuple[float, float]:
     return math.degrees(math.atan2(math.hypot(x, y), z)), math.degrees(math.atan2(y, x)) + 0.0
 
 
-def three_digits(value: float) -> str:
-    """A time or a size with three digits, and no exponent."""
-    if value == 0 or value >= 100:
-        return f"{value:.0f}"
-    return f"{value:.{min(6, max(0, 2 - math.floor(math.log10(value))))}f}"
-
-
 def brief_percent(share: float) -> str:
     """A share of 1 in two digits: "104 %", "1.4 %", "0.0001 %", and never a power of ten."""
     text = f"{100 * share:.2g}" if share < 0.1 else f"{100 * share:.0f}"

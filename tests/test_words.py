@@ -13,7 +13,6 @@ from shviewer.words import (
     meant,
     shortened,
     theta_phi_degrees,
-    three_digits,
 )
 
 
@@ -23,11 +22,6 @@ from shviewer.words import (
         (counted(1, "band"), "1 band"),
         (counted(0, "band"), "0 bands"),
         (counted(25, "coefficient"), "25 coefficients"),
-        (three_digits(0), "0"),
-        (three_digits(0.012345), "0.0123"),
-        (three_digits(1e-9), "0.000000"),
-        (three_digits(4.5678), "4.57"),
-        (three_digits(1234.5), "1234"),
         (brief_percent(1.04), "104 %"),
         (brief_percent(0.0144), "1.4 %"),
         (brief_percent(1e-6), "0.0001 %"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from math import ceil, sqrt
 from pathlib import Path
 
@@ -10,7 +11,6 @@ from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.recognised import Recognised, recognise
 from shviewer.analysis.subjects import load_light
-from shviewer.analysis.suspecting import others_of
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.reading import interpreted, read_numbers
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
@@ -19,6 +19,7 @@ from shviewer.files import naming, version_of
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import built_in_lights, read_from
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
+from shviewer.lights.mistaken import mistaken
 from shviewer.limits import MAX_BANDS
 from shviewer.words import one_line
 
@@ -54,7 +55,7 @@ def _recognised(recipe: Recipe, listed: Listed) -> Recognised:
     """The convention in which the numbers fit the radiance of the light that is projected."""
     light = load_light(replace(recipe, quantity="radiance"))
     most = min(MAX_BANDS, max(1, ceil(sqrt(listed.numbers.size))))  # the bands of a grey list; others have fewer
-    return recognise(listed, project(light, *BEST, most).coefficients, others_of(light, most))
+    return recognise(listed, project(light, *BEST, most).coefficients, partial(mistaken, light, most))
 
 
 def _kind(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,15 +12,16 @@ from shviewer.analysis.cache import remember
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.analysis.suspecting import FITS, held_as, others_of, suspect
+from shviewer.analysis.suspecting import FITS, held_as, suspect
 from shviewer.coefficients.diagnosis.search import EXPLAINED
 from shviewer.coefficients.numbers import Listed
-from shviewer.coefficients.parts.quantities import RADIANCE
 from shviewer.coefficients.programs import OURS
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
+from shviewer.lights.mistaken import mistaken
 from shviewer.limits import MAX_BANDS
 from shviewer.words import all_of, brief_percent
 
@@ -85,7 +87,7 @@ def verdict(light: Light, given: CoefficientLight) -> str:
     file = given.file
     listed, named = (file.listed, file.convention) if file and file.listed else (Listed(given.given), OURS)
     try:
-        found = suspect(listed, exact, named, others_of(light, given.n_bands))
+        found = suspect(listed, exact, named, partial(mistaken, light, given.n_bands))
     except LightError:  # of numbers that are no table
         found = None
     if found is None or found.error > EXPLAINED * min(1.0, off / norm if norm else np.inf):

@@ -15,7 +15,7 @@ from shviewer.analysis.cache import remember
 from shviewer.analysis.projections import BEST, Projection, Way, project, sampling_of
 from shviewer.analysis.recipe import Recipe, Shown
 from shviewer.analysis.subjects import load_light, through
-from shviewer.errors import UsageError
+from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS, dering
 from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes, Lows
@@ -138,12 +138,17 @@ def errors_of(light: Light, method: Way, samples: int, seed: int) -> Array:
     """The relative L2 error for every band count searched: (MAX_BANDS,), for samples, which are rarely good for more,
     (MAX_DIRECT_BANDS,), of given coefficients all that there are.
     """
+    exact, shown = searched_coefficients(light, method, samples, seed)
+    return errors_by_band_count(light.products(), exact[: len(shown)], shown)
+
+
+def searched_coefficients(light: Light, method: Way, samples: int, seed: int) -> tuple[Array, Array]:
+    """The exact coefficients of MAX_BANDS bands, and those of a method, as many as a search for bands goes through."""
     exact = project(light, *BEST, MAX_BANDS).coefficients
     if method == "best":
-        return errors_by_band_count(light.products(), exact, exact)
+        return exact, exact
     n_bands = min(method.n_bands, MAX_BANDS) if isinstance(method, CoefficientLight) else MAX_DIRECT_BANDS
-    shown = project(light, method, samples, seed, n_bands).coefficients
-    return errors_by_band_count(light.products(), exact[: n_bands**2], shown)
+    return exact, project(light, method, samples, seed, n_bands).coefficients
 
 
 @remember(most=64)
@@ -205,10 +210,8 @@ def _window_factors(coefficients: Array, name: str, width: float | None) -> Arra
     if name == "dering":
         if n_bands > MAX_DERINGED_BANDS:
             raise UsageError(f"{n_bands} bands: dering takes at most {MAX_DERINGED_BANDS}")
-        try:
+        with refused_as(UsageError, "dering: "):
             return dering(coefficients).factors
-        except ValueError as error:
-            raise UsageError(f"dering: {error}") from error
     return window(name, n_bands, width or n_bands)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from shviewer.analysis.subjects import subject
 from shviewer.analysis.values import Values, values_of
 from shviewer.coefficients.stamp import stamp_of
 from shviewer.errors import LightError, ShviewerError
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes.error_grid import Triple, triple
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.lights.find import file_version, split_light
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
@@ -26,8 +26,6 @@ from shviewer.words import theta_phi_degrees
 
 TOLERANCES = (0.10, 0.05, 0.01)
 SHOWN_BANDS = 9
-
-Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -146,10 +144,6 @@ def describe(text: str, reading: Reading) -> Information:
             raise refusal from None
 
 
-def as_json_object(information: Information) -> dict[str, object]:
-    return asdict(information)
-
-
 def _describe(text: str, reading: Reading) -> Information:
     recipe = Recipe(text, reading)
     found = reconstruction_of(recipe, ahead=MAX_BANDS)
@@ -172,12 +166,12 @@ def _describe(text: str, reading: Reading) -> Information:
         refused=None,
         notes=light.notes,
         values=values,
-        mean=_triple(mean),
+        mean=triple(mean),
         mean_luminance=float(mean @ LUMINANCE),
         peak=0.0 + (values.maximum if values.maximum >= -values.minimum else values.minimum),
-        peak_direction=_triple(peak),
+        peak_direction=triple(peak),
         peak_theta_phi_degrees=theta_phi_degrees(peak),
-        irradiance_up=_triple(light.irradiance_up()),
+        irradiance_up=triple(light.irradiance_up()),
         method=found.projection.method,
         energy_share=found.sums.energy_share[:SHOWN_BANDS],
         bands_needed=_needed(recipe),
@@ -203,11 +197,11 @@ def _served(recipe: Recipe) -> tuple[RoughnessServed, ...]:
 def _sun(sun: Sun, total: float) -> SunInformation:
     """A sun as `shviewer info` tells it. total: the light's flux, the mean of the channels."""
     return SunInformation(
-        direction=_triple(sun.axis),
+        direction=triple(sun.axis),
         theta_phi_degrees=theta_phi_degrees(sun.axis),
         width_degrees=float(np.degrees(2 * sun.half_angle)),
-        radiance=_triple(sun.radiance),
-        irradiance=_triple(sun.irradiance),
+        radiance=triple(sun.radiance),
+        irradiance=triple(sun.irradiance),
         share_of_flux=float(sun.flux.mean()) / total,
         clipped=sun.clipped,
     )
@@ -227,8 +221,3 @@ def _coefficients(about: About) -> CoefficientInformation | None:
         stamp=dict(file.stamp),
         **{key: str(stamp[key]) for key in keys},
     )
-
-
-def _triple(values: Array) -> Triple:
-    red, green, blue = (float(value) for value in values)
-    return red, green, blue

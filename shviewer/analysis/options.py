@@ -12,7 +12,7 @@ from dataclasses import field, fields
 from operator import index
 from typing import Any, NamedTuple, Protocol, TypeVar
 
-from shviewer.errors import UsageError
+from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics.quantities import names
 from shviewer.words import meant
 
@@ -171,10 +171,8 @@ class Quantity:
     def taken(self, name: str, value: Any) -> Any:
         if not isinstance(value, str):
             raise UsageError(f"{name} {value!r}: {names.RULE}")
-        try:
+        with refused_as(UsageError, f"{name} "):
             return names.quantity_of(value)
-        except ValueError as error:
-            raise UsageError(f"{name} {error}") from error
 
     def check(self, name: str, value: Any) -> None:
         if self.taken(name, value) != value:

@@ -16,14 +16,15 @@ from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import Subject
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.channels import SEQUENCES
-from shviewer.coefficients.parts.quantities import IRRADIANCE, RADIANCE, whole
+from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.stamp import Value, stamp_of
 from shviewer.coefficients.suns import sun_keys
 from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import encode
-from shviewer.errors import LightError, UsageError
+from shviewer.errors import LightError, UsageError, refused_as
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.error_grid import Lows, Triple
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.harmonics.rotation import check_rotation, rotate
 from shviewer.lights.find import file_of
 from shviewer.lights.suns.sun import Sun
@@ -121,10 +122,8 @@ class Projected(InNotebooks):
 
         convention: as --convention takes it. UsageError if it is unknown or contradictory, or for more bands than it has.
         """
-        try:
+        with refused_as(UsageError):
             return self._in(parse_convention(convention))
-        except ValueError as error:
-            raise UsageError(str(error)) from error
 
     def turned(self, rotation: ArrayLike) -> Projected:
         """The same of the light carried along by a rotation, a 3 x 3 matrix, v_out = M v_in. ValueError for another matrix.
@@ -146,10 +145,8 @@ class Projected(InNotebooks):
         A file that the light was read from is never replaced, and one that shviewer did not write only by `force`.
         UsageError for another suffix or a convention that does not fit, OutputError if it cannot be written.
         """
-        try:
+        with refused_as(UsageError):
             chosen = parse_convention(convention)
-        except ValueError as error:
-            raise UsageError(str(error)) from error
         out = Path(path)
         data = self.encode(chosen, out.suffix.lower()[1:])
         Replacing(self.inputs, force).check(out)
@@ -160,11 +157,9 @@ class Projected(InNotebooks):
 
         UsageError if the convention has too few bands, cannot hold the quantity, or cannot be written as `kind`.
         """
-        try:
+        with refused_as(UsageError):
             numbers = self._in(convention)
             return encode(numbers, self.stamp(convention, count_bands(numbers)), convention, kind, self.name)
-        except ValueError as error:
-            raise UsageError(str(error)) from error
 
     def _in(self, convention: Convention) -> NDArray[np.generic]:
         """The rows in a convention. ValueError if it cannot have them."""

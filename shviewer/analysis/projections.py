@@ -14,7 +14,7 @@ import numpy as np
 
 from shviewer.analysis.cache import MEMORY, remember
 from shviewer.analysis.recipe import Recipe, Shown
-from shviewer.errors import UsageError
+from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.harmonics.projection import project_product
@@ -194,10 +194,8 @@ def encoded(light: Light, projection: Projection, name: str) -> Projection:
     from shviewer.harmonics.quantities.encodings import BANDS, ENCODINGS, Stored
 
     encoding = ENCODINGS[name]
-    try:
+    with refused_as(UsageError, f"encode {name}: "):
         numbers = encoding.store(projection.radiance[: BANDS**2])
-    except ValueError as error:
-        raise UsageError(f"encode {name}: {error}") from error
     coefficients = np.zeros_like(projection.coefficients)
     coefficients[: encoding.bands**2] = encoding.expand(numbers)
     return replace(projection, coefficients=coefficients, stored=Stored(name, numbers))

@@ -14,17 +14,15 @@ from itertools import groupby
 import numpy as np
 
 from shviewer.analysis.cache import remember
-from shviewer.analysis.figures import Needs, needs
-from shviewer.analysis.projections import BEST, Way, project, sampling_of
+from shviewer.analysis.figures import needs, searched_coefficients
+from shviewer.analysis.projections import Way, sampling_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import band_power, smallest_band_count
 from shviewer.harmonics.quantities.kernels import kernel_of
 from shviewer.harmonics.quantities.names import RADIANCE, glossy
-from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
-from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 
 ROUGHNESS = tuple(round(0.01 * step, 2) for step in range(10, 101))
 """The roughnesses that are asked, from smooth to rough."""
@@ -75,8 +73,8 @@ class Staircase:
 
 def staircase(recipe: Recipe) -> Staircase:
     """The staircase of the recipe's light for its tolerance, by its method or the coefficients that it compares."""
-    found: Needs = needs(replace(recipe, quantity=RADIANCE))
-    errors = errors_by_roughness(load_light(replace(recipe, quantity=RADIANCE)), *sampling_of(recipe))
+    recipe = replace(recipe, quantity=RADIANCE)
+    found, errors = needs(recipe), errors_by_roughness(load_light(recipe), *sampling_of(recipe))
     counts = tuple(smallest_band_count(row, recipe.tolerance) for row in errors)
     return Staircase(recipe.tolerance, counts, found.radiance, found.irradiance, errors.shape[1])
 
@@ -87,9 +85,7 @@ def errors_by_roughness(light: Light, method: Way, samples: int, seed: int) -> A
 
     (roughness, bands), as many bands as `errors_of` searches.
     """
-    n_bands = min(method.n_bands, MAX_BANDS) if isinstance(method, CoefficientLight) else MAX_DIRECT_BANDS
-    exact = project(light, *BEST, MAX_BANDS).coefficients
-    shown = exact if method == "best" else project(light, method, samples, seed, n_bands).coefficients
+    exact, shown = searched_coefficients(light, method, samples, seed)
     power = band_power(exact).sum(axis=1)
     added = band_power(shown - exact[: len(shown)]).sum(axis=1)
     beyond = max(float(np.trace(light.products())) - float(power.sum()), 0.0)

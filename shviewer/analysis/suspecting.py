@@ -13,15 +13,14 @@ from shviewer.coefficients.diagnosis.search import ALIKE, EXPLAINED, Explanation
 from shviewer.coefficients.diagnosis.sentences import differences, slips_in_words, words
 from shviewer.coefficients.diagnosis.slips import mended
 from shviewer.coefficients.numbers import Listed
-from shviewer.coefficients.parts.quantities import RADIANCE
 from shviewer.coefficients.reading import CoefficientFile, interpreted
 from shviewer.coefficients.texts import convention_text
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.quantities.kernels import kernel_of
-from shviewer.lights.light import Light
-from shviewer.lights.mistaken import MISTAKES, mistaken
+from shviewer.harmonics.quantities.names import RADIANCE
+from shviewer.lights.mistaken import MISTAKES
 from shviewer.words import all_of
 
 FITS = 0.02
@@ -83,11 +82,6 @@ def suspect(listed: Listed, exact: Array, named: Convention | None, others: Othe
         if found and found.error <= EXPLAINED and (best is None or found.error < best.error / ALIKE):
             best = found
     return best
-
-
-def others_of(light: Light, n_bands: int) -> Others:
-    """The lights that are taken for this one by mistake."""
-    return lambda: mistaken(light, n_bands)
 
 
 def held_as(exact: Array, quantity: str) -> Array:

@@ -12,6 +12,7 @@ from shviewer.analysis.figures import error_grid, grid_rows
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.climbing import SEARCH_ROUNDS, climb
 from shviewer.harmonics.metrics import LUMINANCE
+from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.lights.light import Light
 
 DARK_PERCENTILE = 0.01
@@ -53,8 +54,7 @@ def _grid_values(light: Light) -> tuple[Values, Array]:
     n_rows, n_columns = values.shape[:2]
     areas = np.repeat(4 * np.pi * grid.row_share, n_columns)
     row, column = divmod(int(np.abs(values).max(axis=2).argmax()), n_columns)
-    theta, phi = grid.theta[row], grid.phi[column]
-    start = np.array([[np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)]])
+    start = directions_from_angles(grid.theta[[row]], grid.phi[[column]])
     found = climb(lambda d: np.abs(light.radiance(d)).max(axis=1), start, np.pi / n_rows, SEARCH_ROUNDS)[1]
     candidates = np.concatenate([grid.landmarks, start, found])
     there = light.radiance(candidates)

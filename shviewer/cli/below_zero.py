@@ -13,10 +13,11 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import subject, through
 from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.parts.quantities import IRRADIANCE, whole
+from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.programs import SHADED_WITH
 from shviewer.errors import UsageError
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS
+from shviewer.harmonics.quantities.names import IRRADIANCE
 from shviewer.words import counted, percent
 
 SEARCHED_TEXELS = 2**23

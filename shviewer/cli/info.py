@@ -5,14 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import asdict
 from functools import partial
 
 from shviewer.analysis.information import (
     BandsNeeded,
     CoefficientInformation,
     Information,
-    Triple,
-    as_json_object,
     describe,
 )
 from shviewer.analysis.values import DARK_PERCENTILE, Values
@@ -21,6 +20,7 @@ from shviewer.cli.options.inputs import lights_within, reading_from
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
 from shviewer.errors import LightError, ShviewerError
+from shviewer.harmonics.extremes.error_grid import Triple
 from shviewer.words import counted, one_line
 
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
             objects.append({"light_argument": text, "error": refused})
         else:
             refused, code = found.refused, LightError.exit_code
-            objects.append(as_json_object(found))
+            objects.append(asdict(found))
             if not options.json:
                 print(("\n" if number else "") + as_text(found), flush=True)
         if refused is not None:

@@ -28,7 +28,7 @@ from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import FORMATS
-from shviewer.errors import OutputError, UsageError
+from shviewer.errors import OutputError, UsageError, refused_as
 from shviewer.harmonics.quantities.names import in_words
 from shviewer.harmonics.rotation import turn
 from shviewer.outputs import Replacing, file_stem, write_atomically
@@ -73,10 +73,8 @@ def _projected_of(options: argparse.Namespace, convention: Convention, light: st
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
     """The convention that --convention, --axes, --no-phase and --for name together. UsageError if they contradict."""
-    try:
+    with refused_as(UsageError):
         convention = parse_convention(",".join([text, *([axes] if axes else []), *(["no-phase"] if no_phase else [])]))
-    except ValueError as error:
-        raise UsageError(str(error)) from error
     if convention.quantity and quantity not in (None, whole(convention.quantity)):
         raise UsageError(f"--for {quantity} contradicts --convention {text}, which takes {convention.quantity}")
     own = CONVENTIONS[convention.name]

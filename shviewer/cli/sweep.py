@@ -9,12 +9,7 @@ from shviewer.cli.options.inputs import check_out, replacing_of
 from shviewer.cli.options.states import DEFAULT_SWEEP, state_from
 from shviewer.cli.status_line import status_line
 from shviewer.errors import UsageError
-from shviewer.viewer.animation.animation import (
-    ENCODERS,
-    band_sweep,
-    save_animation,
-    turntable,
-)
+from shviewer.viewer.animation.animation import ENCODERS, band_sweep, save_animation, turntable
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_FRAMES, TURN_SECONDS
 from shviewer.viewer.animation.turning import light_turn
 from shviewer.viewer.composing.composition import frame_for
@@ -25,17 +20,17 @@ def run(options: argparse.Namespace) -> int:
     _check_sweep(options)
     check_out(options, "sweep", tuple(ENCODERS))
     state = state_from(options, all_lights=False)
+    turns = options.turntable or options.turn_light
+    frames = TURN_FRAMES if options.frames is None else options.frames
+    seconds = options.seconds if options.seconds is not None else TURN_SECONDS if turns else SWEEP_SECONDS
     if options.turntable:
-        frames = TURN_FRAMES if options.frames is None else options.frames
-        animation = turntable(state, frames, TURN_SECONDS if options.seconds is None else options.seconds)
+        animation = turntable(state, frames, seconds)
     elif options.turn_light:
-        frames = TURN_FRAMES if options.frames is None else options.frames
-        seconds = TURN_SECONDS if options.seconds is None else options.seconds
         animation = light_turn(state, frames, seconds, fresh=options.seeds != "same")
     else:
-        first = DEFAULT_SWEEP[0] if options.first is None else options.first
-        last = DEFAULT_SWEEP[1] if options.last is None else options.last
-        animation = band_sweep(state, first, last, SWEEP_SECONDS if options.seconds is None else options.seconds)
+        given = (options.first, options.last)
+        first, last = (usual if n is None else n for n, usual in zip(given, DEFAULT_SWEEP, strict=True))
+        animation = band_sweep(state, first, last, seconds)
     composition = frame_for(state.view, *options.size)
     with status_line() as line:
         save_animation(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import shviewer
 from shviewer.analysis.figures import needs
-from shviewer.analysis.information import as_json_object, describe
+from shviewer.analysis.information import describe
 from shviewer.cli.info import as_text
 from shviewer.errors import LightError
 from shviewer.lights.find import built_in_lights
@@ -193,7 +193,7 @@ def test_a_black_light_has_neither_range_nor_bands(tmp_path: Path) -> None:
     assert "black             100 %" in said
     assert re.search(r"peak +0 at", said)
     assert not re.search(r"-0(\.0*)?(?![.\d])", said)
-    json.dumps(as_json_object(found), allow_nan=False)
+    json.dumps(asdict(found), allow_nan=False)
 
 
 @pytest.mark.parametrize("level", [0.7, 991.0, 1000.0, 1023.0])
@@ -237,7 +237,7 @@ def test_the_text_is_aligned_and_fits_a_screen(light: str) -> None:
 
 def test_the_json_says_what_the_text_says(tmp_path: Path, pixels: Pixels) -> None:
     found = describe(write_exr(tmp_path / "sky.exr", pixels), DEFAULT_READING)
-    said = json.loads(json.dumps(as_json_object(found), allow_nan=False))
+    said = json.loads(json.dumps(asdict(found), allow_nan=False))
     assert said["values"]["maximum"] == 900
     assert said["size"] == [64, 32]
     assert [need["tolerance"] for need in said["bands_needed"]] == [0.1, 0.05, 0.01]
@@ -265,7 +265,7 @@ def test_a_coefficient_file_is_described_with_its_convention_and_where_it_comes_
     ):
         assert line in text
     assert [need.radiance for need in found.bands_needed] == [4, 4, 4]
-    assert json.loads(json.dumps(as_json_object(found)))["coefficients"]["stamp"]["light"] == "green"
+    assert json.loads(json.dumps(asdict(found)))["coefficients"]["stamp"]["light"] == "green"
 
 
 def test_a_bare_list_is_described_as_what_it_was_said_to_be(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shviewer.errors import LightError, UsageError
+from shviewer.errors import LightError, UsageError, refused_as
 from shviewer.outputs import Replacing, may_be_replaced
 from shviewer.words import meant
 
@@ -151,10 +151,8 @@ def _check_convention(options: argparse.Namespace, convention: str) -> None:
     from shviewer.coefficients.texts import parse_convention
     from shviewer.lights.find import split_light
 
-    try:
+    with refused_as(UsageError):
         parse_convention(convention)
-    except ValueError as error:
-        raise UsageError(str(error)) from error
     given, lights = vars(options), lights_of(options)
     if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
         return
