@@ -1,6 +1,7 @@
 """See a light beside its spherical-harmonic reconstruction, with error figures that can be trusted.
 
     find_light(what) -> Light                        a name, a file, a function, coefficients or an image
+    info(light) -> Information                       what it is in figures, and how many bands it needs
     project(light, bands) -> Projected               coefficients, error figures, and files with the convention stamped on them
     reconstruct(coefficients, directions)            radiance (k, 3)
     evaluate_basis(directions, bands)                every Y(l, m), (..., bands**2); the convention is in harmonics/basis.py
@@ -21,7 +22,7 @@ TYPE_CHECKING = False
 
 if TYPE_CHECKING:
     from shviewer.analysis.projected import Projected
-    from shviewer.api import evaluate_basis, find_light, project, reconstruct, report
+    from shviewer.api import evaluate_basis, find_light, info, project, reconstruct, report
     from shviewer.errors import ShviewerError
     from shviewer.pictures import screenshot, view
 
@@ -31,6 +32,7 @@ __all__ = [
     "__version__",
     "evaluate_basis",
     "find_light",
+    "info",
     "project",
     "reconstruct",
     "report",
@@ -41,7 +43,7 @@ __all__ = [
 _HOMES = {
     "ShviewerError": "shviewer.errors",
     "Projected": "shviewer.analysis.projected",
-    **dict.fromkeys(("evaluate_basis", "find_light", "project", "reconstruct", "report"), "shviewer.api"),
+    **dict.fromkeys(("evaluate_basis", "find_light", "info", "project", "reconstruct", "report"), "shviewer.api"),
     **dict.fromkeys(("screenshot", "view"), "shviewer.pictures"),
 }
 
@@ -64,4 +66,4 @@ def _drawing(shown: object) -> bytes:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOMES})
+    return sorted(__all__)

@@ -27,6 +27,7 @@ from shviewer.limits import check_brightness
 from shviewer.words import meant
 
 if TYPE_CHECKING:  # each function imports what it needs: mathematics alone loads no light, and a projection no OpenGL
+    from shviewer.analysis.information import Information
     from shviewer.analysis.projected import Projected
     from shviewer.benchmark.run import Summary
     from shviewer.lights.light import Light
@@ -36,8 +37,8 @@ LightLike: TypeAlias = "str | os.PathLike[str] | Light | Callable[[Any], ArrayLi
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
-NAMED_ELSEWHERE = ("n_bands", "tolerance")
-"""Options that the functions take as an argument of another name, or not at all."""
+NAMED_ELSEWHERE = ("n_bands",)
+"""Options that the functions take as an argument of another name."""
 
 
 def with_options(*holders: type) -> Callable[[_Function], _Function]:
@@ -61,6 +62,10 @@ def reconstruct(coefficients: ArrayLike, directions: ArrayLike) -> Array:
     try:
         if hasattr(coefficients, "coefficients"):
             raise UsageError(f"{type(coefficients).__name__} holds more than numbers: give its .coefficients")
+        if np.iscomplexobj(coefficients):
+            raise UsageError(
+                "complex coefficients: those of real functions are real; of a file, convention='scipy' has it read"
+            )
         numbers = np.asarray(coefficients, dtype=np.float64)
         if numbers.ndim != 2 or numbers.shape[1] != 3:
             raise UsageError(f"coefficients of shape {numbers.shape}: they are (n**2, 3), rows of red, green and blue")
@@ -92,12 +97,9 @@ def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False,
     """
     from shviewer.lights import find
     from shviewer.lights.function import FunctionLight
-    from shviewer.lights.reading import LAYOUT_CHOICES, Reading
+    from shviewer.lights.reading import Reading
 
-    if layout not in LAYOUT_CHOICES:
-        raise UsageError(f"layout {layout!r}: {meant(str(layout), LAYOUT_CHOICES)}")
-    if convention:
-        _check_convention(convention)
+    _check_reading(convention, layout)
     if isinstance(what, str | os.PathLike):
         return find.find_light(os.fspath(what), Reading(sanitize=sanitize, layout=layout, convention=convention))
     if isinstance(what, np.ndarray):
@@ -109,11 +111,14 @@ def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False,
     raise UsageError(f"a light of type {type(what).__name__}: give a name, a path, a function, an array or a Light")
 
 
-def _check_convention(text: str) -> None:
+def _check_reading(convention: str, layout: str) -> None:
     from shviewer.coefficients.texts import parse_convention
+    from shviewer.lights.reading import LAYOUT_CHOICES
 
+    if layout not in LAYOUT_CHOICES:
+        raise UsageError(f"layout {layout!r}: {meant(str(layout), LAYOUT_CHOICES)}")
     with refused_as(UsageError):
-        parse_convention(text)
+        parse_convention(convention or "shviewer")
 
 
 def _array_light(array: NDArray[np.generic]) -> Light:
@@ -157,12 +162,28 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
     recipe.check()
     if (given := options.get("compare")) is not None:
         recipe = _comparing(recipe, given)
-        recipe, _ = as_the_file_holds(recipe, quantity="quantity" not in options, bands=bands is None)
+        any_bands = bands is None and "tolerance" not in options
+        recipe, _ = as_the_file_holds(recipe, quantity="quantity" not in options, bands=any_bands)
+    if bands is None and "tolerance" in options:
+        recipe = _fitted(recipe)
     sampled = OF_SAMPLES if options.get("beside") == "method" else ()
     for name in idle(recipe, (name for name in options if name not in sampled)):
         missing = what_it_needs(name, recipe, {row: row for row in options_of(Recipe)})
         raise UsageError(f"{name} {options[name]!r}: {missing}")
     return recipe
+
+
+def _fitted(recipe: Recipe) -> Recipe:
+    """The recipe with as many bands as its tolerance needs, or with a warning, those that come nearest."""
+    from shviewer.analysis.figures import needs
+
+    found = needs(recipe)
+    if found.shown is None:
+        best = f"{100 * found.best:.3g} % with {found.best_bands} bands"
+        warnings.warn(
+            f"no count up to {found.searched} is within {100 * found.tolerance:g} %: the best is {best}", stacklevel=4
+        )
+    return replace(recipe, n_bands=found.shown or found.best_bands)
 
 
 def _comparing(recipe: Recipe, given: LightLike) -> Recipe:
@@ -181,6 +202,8 @@ def _comparing(recipe: Recipe, given: LightLike) -> Recipe:
 def project(light: LightLike, bands: int | None = None, **options: Any) -> Projected:
     """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
 
+    With `tolerance`, such as 0.05 or "5%", and no `bands` as many as keep the relative L2 error within it.
+
     `Projected.coefficients` is (bands**2, 3) float64 in the convention of harmonics/basis.py, row l(l+1) + m; `save` writes a
     file and `numbers` converts, both for other programs, too. ShviewerError for a mistake that a caller can put right;
     a warning where `split_sun` finds no sun.
@@ -189,11 +212,28 @@ def project(light: LightLike, bands: int | None = None, **options: Any) -> Proje
     from shviewer.analysis.projected import project_recipe
     from shviewer.analysis.subjects import subject
 
+    if bands is not None and "tolerance" in options:
+        raise UsageError(f"bands {bands} and tolerance {options['tolerance']}: give one of them")
     recipe = recipe_of(light, bands, options)
     found = project_recipe(recipe)
     if refusal := subject(recipe).refusal:
         warnings.warn(refusal, stacklevel=2)
     return found
+
+
+def info(light: LightLike, *, convention: str = "", sanitize: bool = False, layout: str = "auto") -> Information:
+    """What `shviewer info --json` says of a light, as an object with the same names.
+
+    convention, sanitize, layout: as in `find_light`. An image that is refused for its values is described as `sanitize`
+    repairs it, with the reason in `refused`. LightError for any other bad light.
+    """
+    from shviewer.analysis.information import describe
+    from shviewer.lights.reading import Reading
+
+    if not isinstance(light, str | os.PathLike):
+        return describe(find_light(light, convention=convention, layout=layout), Reading())
+    _check_reading(convention, layout)
+    return describe(os.fspath(light), Reading(sanitize=sanitize, layout=layout, convention=convention))
 
 
 def report(

@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ import shviewer
 from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.api import NAMED_ELSEWHERE
+from shviewer.cli.main import main
 from shviewer.errors import ShviewerError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.environment import EnvironmentLight
@@ -96,7 +98,7 @@ def test_a_light_may_be_a_text_a_path_a_function_an_array_or_a_light(tmp_path: P
         ("green", {"window_width": "wide"}, "window_width 'wide': it must be a finite number"),
         ("green", {"window": 3}, "window 3: it must be a text"),
         ("green", {"muted": 1}, "muted 1: it must be several bands"),
-        ("green", {"camera": (1, 2)}, "option 'camera': it must be one of quantity, "),
+        ("green", {"camera": (1, 2)}, "option 'camera': it must be one of tolerance, quantity, "),
         ("green", {"compare": "studio"}, "studio is a built-in light; compare= takes coefficients"),
         ("green", {"compare": lambda directions: directions}, "it must be coefficients"),
     ],
@@ -269,3 +271,52 @@ def test_a_layout_or_a_convention_that_is_none_is_refused_whatever_the_light_is(
     (tmp_path / "sh.txt").write_text("1 1 1")
     with pytest.raises(shviewer.ShviewerError, match=says):
         shviewer.find_light(tmp_path / what if what == "sh.txt" else what, **option)
+
+
+def test_complex_coefficients_are_refused_and_not_halved() -> None:
+    found = shviewer.project("studio", 3)
+    with pytest.raises(ShviewerError, match="complex coefficients: those of real functions are real"):
+        shviewer.reconstruct(found.numbers("scipy"), [0, 0, 1])
+
+
+def test_a_tolerance_chooses_the_bands_as_on_the_command_line() -> None:
+    assert shviewer.project("green", tolerance="5%").n_bands == 15
+    assert shviewer.project("green", tolerance=0.05, quantity="irradiance").n_bands == 3
+    with pytest.warns(UserWarning, match="no count up to 128 is within 5 %: the best is 95.7 % with 128 bands"):
+        assert shviewer.project("sun-sky", tolerance=0.05).n_bands == 128
+    for options, says in (
+        ({"tolerance": 5}, "did you mean|between 0 and 1"),
+        ({"tolerance": "wide"}, "tolerance 'wide': it must be a finite number"),
+        ({"bands": 3, "tolerance": 0.1}, "bands 3 and tolerance 0.1: give one of them"),
+    ):
+        with pytest.raises(ShviewerError, match=says):
+            shviewer.project("green", **options)  # type: ignore[arg-type]
+
+
+def test_info_is_that_of_the_command_line_and_of_any_light(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info", "venice_sunset", "--json"]) == 0
+    (said,) = json.loads(capsys.readouterr().out)
+    found = shviewer.info("venice_sunset")
+    assert json.loads(json.dumps(asdict(found))) == said
+    assert shviewer.info(np.ones((4, 3))).bands_needed[0].radiance == 2
+    assert shviewer.info(lambda directions: directions[:, 2] ** 2).irradiance_up[0] == pytest.approx(np.pi / 2)
+    with pytest.raises(ShviewerError, match="layout 'cubic'"):
+        shviewer.info("venice_sunset", layout="cubic")
+
+
+@pytest.mark.parametrize(
+    ("light", "shown"),
+    [
+        ("green", "<green: two soft lobes (Green 2003)>"),
+        ("venice_sunset", "<venice_sunset: environment map, 256 x 128>"),
+        (np.ones((9, 3)), "<coefficients: 3 bands, shviewer>"),
+        (abs, "<abs: Python function>"),
+    ],
+)
+def test_a_light_at_the_prompt_is_one_line(light: Any, shown: str) -> None:
+    assert repr(shviewer.find_light(light)) == shown
+    assert repr(shviewer.find_light(light).irradiance()) == shown
+
+
+def test_completion_at_the_prompt_offers_what_is_promised() -> None:
+    assert dir(shviewer) == sorted(shviewer.__all__)

@@ -18,7 +18,7 @@ from shviewer.harmonics.extremes.error_grid import Triple, triple
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.lights.find import file_version, split_light
 from shviewer.lights.images.radiance_files import IMAGE_SUFFIXES
-from shviewer.lights.light import About
+from shviewer.lights.light import About, Light
 from shviewer.lights.reading import Reading
 from shviewer.lights.suns.sun import Sun
 from shviewer.limits import MAX_BANDS
@@ -128,37 +128,39 @@ class Information:
     """The convention and origin of a coefficient file; None for other lights."""
 
 
-def describe(text: str, reading: Reading) -> Information:
-    """The information on the light that `text` names. LightError if it cannot be shown.
+def describe(light: str | Light, reading: Reading) -> Information:
+    """The information on a light, or on the one that a text names. LightError if it cannot be shown.
 
     An image that is refused for its values is described as `sanitize` repairs it, with the reason in `refused`.
     """
     try:
-        return _describe(text, reading)
+        return _describe(light, reading)
     except LightError as refusal:
-        if reading.sanitize or split_light(text)[0].suffix.lower() not in (*IMAGE_SUFFIXES, ".npy"):
+        named = isinstance(light, str) and split_light(light)[0].suffix.lower() in (*IMAGE_SUFFIXES, ".npy")
+        if reading.sanitize or not named:
             raise
         try:
-            return replace(_describe(text, replace(reading, sanitize=True)), refused=str(refusal))
+            return replace(_describe(light, replace(reading, sanitize=True)), refused=str(refusal))
         except ShviewerError:
             raise refusal from None
 
 
-def _describe(text: str, reading: Reading) -> Information:
-    recipe = Recipe(text, reading)
+def _describe(given: str | Light, reading: Reading) -> Information:
+    recipe = Recipe(given, reading)
     found = reconstruction_of(recipe, ahead=MAX_BANDS)
     light = found.subject.light
     about = light.about
     values, peak = values_of(light)
     mean = found.projection.coefficients[0] / (2 * np.sqrt(np.pi))
-    file = file_version(text)
+    text = given if isinstance(given, str) else ""
+    file = file_version(text) if text else None
     split = subject(replace(recipe, split_sun=True))
     total = float(mean.mean()) * 4 * np.pi
     return Information(
         light_argument=text,
         light=light.name,
         description=light.description,
-        file=str(split_light(text)[0]),
+        file=str(split_light(text)[0]) if text else "",
         file_bytes=file.size if file is not None else 0,
         encoding=about.encoding,
         size=about.size,

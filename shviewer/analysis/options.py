@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import field, fields
 from operator import index
 from typing import Any, NamedTuple, Protocol, TypeVar
@@ -148,6 +149,12 @@ class Number(NamedTuple):
 
 class Share(Number):
     """A number that may be given in percent."""
+
+    def taken(self, name: str, value: Any) -> Any:
+        if isinstance(value, str) and value.endswith("%"):
+            with suppress(ValueError):
+                value = float(value[:-1]) / 100
+        return super().taken(name, value)
 
 
 class Flag:

@@ -45,10 +45,7 @@ def project_batch(
     jobs: int | None,
 ) -> int:
     """Project every light and write it into `folder`, made if need be; return the exit code. jobs: as in `jobs.in_order`."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{folder}: no folder can be made: {error.strerror}; choose another place") from error
+    make_folder(folder)
     rows: list[Row] = []
     outcomes = in_order(partial(_projected_alone, projected_of), lights, jobs)
     with status_line() as line:
@@ -76,6 +73,14 @@ def project_batch(
                 rows.append(Row(light, str(path), projected))
     print(summary(rows))
     return FAILED if any(row.projected is None for row in rows) else 0
+
+
+def make_folder(folder: Path) -> None:
+    """Make the folder, if need be. OutputError if that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: no folder can be made: {error.strerror}; choose another place") from error
 
 
 def _projected_alone(projected_of: Callable[[str], Projected], light: str) -> Projected:

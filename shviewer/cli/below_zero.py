@@ -27,18 +27,24 @@ ROUNDING = 1e-6
 """A minimum below zero by no more than this share of the largest coefficient counts as zero."""
 
 
+OWN = 0.01
+"""A minimum that is below the negative one of the light itself by no more than this share of it is the light's own."""
+
+
 class _Shown(NamedTuple):
     """What a program shows of a recipe."""
 
     minimum: float
     negative: bool
-    """Whether it is below zero by more than rounding."""
+    """Whether it is below zero, and below the light itself, by more than rounding."""
     error: float
     """The relative L2 error."""
 
 
 def below_zero(recipe: Recipe, convention: Convention) -> str:
-    """One line on how far below zero what the convention's program shows is, and on the remedies; "" if it is not."""
+    """One line on how far below zero what the convention's program shows is, and on the remedies; "" if no farther than the
+    light itself.
+    """
     shows = IRRADIANCE if convention.name in SHADED_WITH else whole(convention.quantity or recipe.quantity)
     shown = _shown(recipe, shows)
     if not shown.negative:
@@ -59,7 +65,8 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
             continue
         if found.minimum > shown.minimum:
             rest = "the rest " if changed.split_sun != recipe.split_sun else ""
-            says += f"; with {flag} to {found.minimum if found.negative else 0:.3g}, {rest}{percent(found.error)} off"
+            to = f"to {found.minimum:.3g}" if found.negative else "not below 0"
+            says += f"; with {flag} {to}, {rest}{percent(found.error)} off"
     return says + "; if it has a sun, --split-sun takes that out" * (large and not recipe.split_sun)
 
 
@@ -71,5 +78,6 @@ def _shown(recipe: Recipe, quantity: str) -> _Shown:
         error = irradiance_error(light, found.projection, recipe.shown)
         light = through(light, quantity)
         coefficients = light.from_source(coefficients)
-    minimum = error_grid(light, grid_rows(recipe.n_bands)).lows(coefficients).minimum
-    return _Shown(minimum, minimum < -ROUNDING * float(np.abs(coefficients).max()), error)
+    grid = error_grid(light, grid_rows(recipe.n_bands))
+    minimum, own = grid.lows(coefficients).minimum, min(0.0, float(grid.original.min()))
+    return _Shown(minimum, minimum < (1 + OWN) * own - ROUNDING * float(np.abs(coefficients).max()), error)

@@ -31,7 +31,8 @@ def run(topics: Sequence[str]) -> int:
 
         pydoc.pager(text)
     else:
-        print(text, end="")
+        encoding = (sys.stdout and sys.stdout.encoding) or "utf-8"
+        print(text.encode(encoding, "backslashreplace").decode(encoding), end="")  # not every one has all characters
     return 0
 
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from functools import partial
 from time import perf_counter
 from typing import TypeVar
@@ -55,7 +56,7 @@ def in_order(work: Callable[[str], T], lights: Sequence[str], jobs: int | None) 
 
 def _attempt(work: Callable[[str], T], light: str) -> T | ShviewerError:
     try:
-        with within_memory(light):
+        with redirect_stdout(sys.stderr), within_memory(light):  # code of a light may print; stdout is for results
             return work(light)
     except ShviewerError as error:
         return error

@@ -30,7 +30,8 @@ def print_notes(recipe: Recipe) -> None:
 def print_notes_on(projected: Projected, axes: Axes) -> None:
     """Print the notes on a light that was projected, and what was left out of it. axes: those of the file."""
     for note in (*projected.notes, *(sun_left_out(sun.directional_light, axes) for sun in projected.suns)):
-        _say(f"note: {projected.name}: {note}")
+        named = note.startswith(f"{projected.name} ")  # "sky has no sun: ..." says it itself
+        _say(f"note: {note}" if named else f"note: {projected.name}: {note}")
 
 
 def warn_below_zero(projected: Projected) -> None:

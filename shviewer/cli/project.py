@@ -15,7 +15,7 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.cli.batch import error_in_percent, project_batch
+from shviewer.cli.batch import error_in_percent, make_folder, project_batch
 from shviewer.cli.below_zero import below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.options.inputs import lights_of, lights_within, replacing_of
@@ -109,7 +109,7 @@ def _project_one(
     projected_of: Callable[[str], Projected],
     replacing: Replacing,
 ) -> None:
-    """Project and write one light; `out` is a file, a folder that exists, or "-"."""
+    """Project and write one light; `out` is a file, a folder that exists or ends in /, or "-"."""
 
     def noted() -> Projected:
         with speaking():
@@ -128,8 +128,9 @@ def _project_one(
         warn_below_zero(projected)
         return
     path = Path(out)
-    if os.path.isdir(path):
+    if os.path.isdir(path) or out.endswith(("/", os.sep)):
         projected = noted()
+        make_folder(path)
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
         replacing.check(path)
     else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from threading import Event, Thread
 
 from shviewer.ending import at_the_end
@@ -50,8 +50,10 @@ def status_line() -> Iterator[StatusLine | None]:
 
 @contextmanager
 def speaking() -> Iterator[None]:
-    """Say on a terminal what the body does, once that has taken QUIET seconds; the body itself prints nothing."""
-    with status_line() as line:
+    """Say on a terminal what the body does, once that has taken QUIET seconds; what the code of a light prints is kept from
+    stdout, which is for results.
+    """
+    with redirect_stdout(sys.stderr), status_line() as line:
         if line is None:
             yield
             return

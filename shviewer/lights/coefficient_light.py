@@ -30,7 +30,7 @@ from shviewer.words import counted, one_line
 MAP_SIZE = (1025, 2048)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CoefficientLight(FiniteSum, RadianceLight):
     """The light of given coefficients; `given`: radiance in our convention, (n**2, 3), float64."""
 

@@ -29,7 +29,11 @@ FEW_DIRECTIONS = 64
 """Up to so many, the sum of bands takes less time than making a map."""
 
 
-@dataclass(frozen=True, eq=False)
+ROUNDING = 1e-13
+"""The share of the norm of its source below which a convolved light is rounding."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ConvolvedLight(LightBase):
     """`source` convolved with `kernel`."""
 
@@ -74,7 +78,9 @@ class ConvolvedLight(LightBase):
         return self.source.irradiance_up()
 
     def from_source(self, coefficients: Array) -> Array:
-        return coefficients * per_coefficient(self.kernel.factors(count_bands(coefficients)))
+        """As in Light. What is only the rounding of the source, as all that surfaces see of Y(3, m), is nothing."""
+        found = coefficients * per_coefficient(self.kernel.factors(count_bands(coefficients)))
+        return found if (found**2).sum() > ROUNDING**2 * np.trace(self.source.products()) else 0 * found
 
     @property
     def most_bands(self) -> int:

@@ -42,7 +42,7 @@ MAX_TEXTURE_SIDE = 16384
 """The largest side of a texture that every desktop GPU of the last ten years takes."""
 
 
-@dataclass(frozen=True, eq=False, init=False)
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class EnvironmentLight(RadianceLight):
     """The light of an image. `radiance` interpolates between texel centres; coefficients and norm are those of the areas."""
 

@@ -46,7 +46,7 @@ DirectionFunction = Callable[[Array], ArrayLike]
 """Unit directions (k, 3) -> radiance (k, 3), or (k,) for grey."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FunctionLight(RadianceLight):
     """The light of a `function` that takes unit directions (k, 3) and returns radiance (k, 3), or (k,) for grey.
 
@@ -81,6 +81,8 @@ class FunctionLight(RadianceLight):
         if sampled.accuracy > UNCERTAIN:
             points = f"{sampled.evaluations} points leave the figures uncertain by {sampled.accuracy:.2%}"
             notes.append(f"not smooth: {points}; {self._missed}")
+        if not self._steady:
+            notes.append("its values for the same directions differ from call to call: what is shown is one of many")
         if self._news:
             radiance, direction = max(self._news)
             theta, phi = theta_phi_degrees(np.array(direction))
@@ -149,6 +151,11 @@ class FunctionLight(RadianceLight):
         if len(self._held[0]) < n_bands**2:
             self._held[0] = self._sampled.with_more_bands(self.radiance, n_bands)
         return self._held[0][: n_bands**2]
+
+    @cached_property
+    def _steady(self) -> bool:
+        """Whether it gives the same values for the same directions."""
+        return np.array_equal(self.radiance(np.eye(3)), self.radiance(np.eye(3)))
 
     @cached_property
     def _held(self) -> list[Array]:

@@ -155,6 +155,9 @@ class About:
 class LightBase(InNotebooks, ABC):
     """The answers of a light that has no better ones."""
 
+    def __repr__(self: Light) -> str:
+        return f"<{self.name}: {self.description}>"
+
     @property
     def about(self) -> About:
         return About()

@@ -24,7 +24,7 @@ MAX_LOBES = 64
 """The most lobes: as many as the uniform block of shaders/lobes.glsl holds."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LobeLight(RadianceLight):
     """The sum of up to MAX_LOBES lobes. ValueError for none or more, LightError for more radiance than can be shown."""
 

@@ -25,11 +25,12 @@ class Several(NamedTuple):
     said: tuple[str, ...]
 
 
-def several(texts: Iterable[str], *, most: int | None = None, code: bool = False) -> Several:
+def several(texts: Iterable[str], *, most: int | None = None, code: bool = False, bare: bool = False) -> Several:
     """The lights that texts name, folders replaced by what they hold; none of these files is read to its end.
 
-    Of a folder: images, scenes, and coefficients with our stamp, by name, no hidden ones and none of folders within.
-    most: how many are taken. code: whether a function in a Python file may be one.
+    Of a folder: images, scenes, and coefficients with our stamp, by name, no hidden ones and none of folders within; if
+    there are some, that is said. most: how many are taken. code: whether a function in a Python file may be one. bare:
+    whether coefficients without a stamp are.
     """
     lights: list[str] = []
     said: list[str] = []
@@ -37,10 +38,14 @@ def several(texts: Iterable[str], *, most: int | None = None, code: bool = False
         if is_code(text) and not code:
             said.append(one_line(f"{text}: code runs only when the command line names it"))
         elif os.path.isdir(split_light(text)[0]):
-            held = list(_lights_in(Path(text)))
+            held = list(_lights_in(Path(text), bare))
             lights += held
             if not held:
                 said.append(one_line(f"{text}: a folder without a light"))
+            if within := [folder for folder in _folders_in(Path(text)) if any(_lights_in(folder, bare))]:
+                more = f", and {len(within) - 1} more," if len(within) > 1 else ""
+                verb = "have" if more else "has"
+                said.append(one_line(f"{within[0]}{more} {verb} lights, too: name such a folder to have them"))
         else:
             lights.append(text)
     found = list(dict.fromkeys(lights))
@@ -49,20 +54,26 @@ def several(texts: Iterable[str], *, most: int | None = None, code: bool = False
     return Several(tuple(found[:most]), tuple(said))
 
 
-def _lights_in(folder: Path) -> Iterator[str]:
+def _lights_in(folder: Path, bare: bool) -> Iterator[str]:
+    return (str(path) for path in _seen_in(folder) if path.is_file() and _is_light(path, bare))
+
+
+def _folders_in(folder: Path) -> Iterator[Path]:
+    return (path for path in _seen_in(folder) if path.is_dir())
+
+
+def _seen_in(folder: Path) -> list[Path]:
+    """What is in a folder, by name, but for what is hidden; nothing if it cannot be read."""
     try:
         names = sorted(os.listdir(folder), key=_natural)
     except OSError:
-        return
-    for name in names:
-        path = folder / name
-        if not name.startswith(".") and path.is_file() and _is_light(path):
-            yield str(path)
+        return []
+    return [folder / name for name in names if not name.startswith(".")]
 
 
-def _is_light(path: Path) -> bool:
+def _is_light(path: Path, bare: bool) -> bool:
     suffix = path.suffix.lower()
-    if suffix in IMAGE_SUFFIXES:
+    if suffix in IMAGE_SUFFIXES or (bare and suffix in COEFFICIENT_SUFFIXES):
         return True
     mark = b"[[lobe]]" if suffix == ".toml" else SCHEMA_KEY.encode() if suffix in COEFFICIENT_SUFFIXES else None
     if mark is None:

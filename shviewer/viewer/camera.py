@@ -6,11 +6,15 @@ tests/viewer/test_camera.py holds them to independent formulas. A quaternion is 
 
 from __future__ import annotations
 
+import warnings
 from functools import lru_cache
 from typing import cast
 
 import numpy as np
-from pyrr import quaternion
+
+with warnings.catch_warnings():  # its docstrings have escapes that Python warns of when it compiles them
+    warnings.simplefilter("ignore")
+    from pyrr import quaternion
 
 from shviewer.harmonics.basis import Array
 

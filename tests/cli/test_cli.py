@@ -575,6 +575,9 @@ def test_a_reference_is_never_overwritten_by_the_picture(capsys: pytest.CaptureF
         (("screenshot",), "the following arguments are required: OUT"),
         (("report", "--budget", "soon"), "argument --budget: 'soon' is not a finite number"),
         (("info",), "the following arguments are required: LIGHT"),
+        (("screenshot", "a.png", "--bnads", "3"), "unrecognized arguments: --bnads 3; did you mean --bands?"),
+        (("project", "-o", "a.json", "--splitsun"), "did you mean --split-sun?"),
+        (("info", "green", "--qqq"), "unrecognized arguments: --qqq; see shviewer info --help"),
     ],
 )
 def test_a_mistyped_command_is_one_line(
@@ -719,7 +722,10 @@ def test_info_and_project_take_the_lights_of_a_folder(
     (tmp_path / "probes").mkdir()
     (tmp_path / "probes" / "notes.txt").write_text("no light")
     code, line = failing(capsys, "info", "probes")
-    assert (code, line) == (3, "shviewer: probes: no light in it; name a file")
+    assert (code, line) == (3, "shviewer: probes: no light in it; name a file, or the convention of bare lists")
+    (tmp_path / "probes" / "notes.txt").write_text("1 2 3")
+    assert main(["info", "probes", "--convention", "three"]) == 0
+    assert "three.js" in capsys.readouterr().out
     for name in ("a", "b"):
         (tmp_path / "probes" / f"{name}.toml").write_text('[[lobe]]\nprofile = "constant"\nradiance = [1, 2, 3]\n')
     assert main(["info", "probes", "--jobs", "1"]) == 0

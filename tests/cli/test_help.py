@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
@@ -147,3 +148,12 @@ def test_the_manual_page_is_read_without_a_complaint() -> None:
     page = next(path for path in shell_files() if path.suffix == ".1")
     done = subprocess.run([man, "-man", "-Tascii", "-ww", "-z", page], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_page_is_told_in_the_characters_that_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A terminal in the C locale, or a pipe on Windows, has not all of them."""
+    told = TextIOWrapper(BytesIO(), encoding="ascii", newline="")
+    monkeypatch.setattr(sys, "stdout", told)
+    assert main(["help", "zh"]) == 0
+    told.flush()
+    assert told.buffer.getvalue().decode("unicode_escape") == read(next(path for path in PAGES if path.stem == "zh"))  # type: ignore[attr-defined]

@@ -310,7 +310,7 @@ def test_a_reconstruction_below_zero_is_warned_of_with_the_remedies_and_their_pr
     silent, calm = written("--window", "dering")
     assert f"the radiance of its 4 bands goes to {plain['minimum']:.3g}, {percent(plain['relative-l2'])} off" in note
     assert f"; with --split-sun to {apart['minimum']:.3g}, the rest {percent(apart['relative-l2'])} off" in note
-    assert f"; with --window dering to 0, {percent(calm['relative-l2'])} off" in note
+    assert f"; with --window dering not below 0, {percent(calm['relative-l2'])} off" in note
     assert "goes to" not in silent
 
 
@@ -415,3 +415,57 @@ def test_a_turn_beyond_the_pole_and_two_ways_to_choose_bands_are_refused(tmp_pat
     assert "elevation 91: it must be -90 to 90 degrees" in capsys.readouterr().err
     assert main(["project", "-o", out, "--bands", "3", "--tolerance", "5%"]) == 2
     assert "give one of them" in capsys.readouterr().err
+
+
+LIGHTS = """
+import numpy as np
+
+
+def said(d):
+    print("what code prints")
+    return d[:, 2] ** 2
+
+
+def lower(d):
+    return d[:, 2]
+
+
+def edge(d):
+    return np.where(d[:, 2] > 0, 1.0, -0.1)
+"""
+
+
+def test_what_the_code_of_a_light_prints_is_kept_from_the_numbers(
+    tmp_path: Path, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    (tmp_path / "lights.py").write_text(LIGHTS)
+    light = f"{tmp_path / 'lights.py'}:said"
+    assert project(light, "--bands", "2", "--format", "json", "-o", "-") == 0
+    out, err = capfdbinary.readouterr()
+    assert json.loads(out)["bands"] == 2
+    assert b"what code prints" in err
+    assert main(["info", light, "--json", "--jobs", "1"]) == 0
+    assert len(json.loads(capfdbinary.readouterr().out)) == 1
+
+
+def test_what_is_below_zero_in_the_light_itself_is_no_ringing(tmp_path: Path, capsys: Capture) -> None:
+    (tmp_path / "lights.py").write_text(LIGHTS)
+    assert project(f"{tmp_path / 'lights.py'}:lower", "-o", tmp_path / "a.json") == 0
+    assert "goes to" not in capsys.readouterr().err, "to -1, as the light does"
+    assert project(f"{tmp_path / 'lights.py'}:edge", "-o", tmp_path / "a.json") == 0
+    assert "the radiance of its 5 bands goes to -0.2" in capsys.readouterr().err
+
+
+def test_a_folder_that_ends_in_a_slash_is_made_for_one_light_as_for_several(tmp_path: Path) -> None:
+    assert project("green", "-o", f"{tmp_path / 'new' / 'folder'}/") == 0
+    assert held(tmp_path / "new" / "folder" / "green.json").given.shape == (25, 3)
+
+
+def test_notes_of_a_batch_name_their_light_once(tmp_path: Path, capsys: Capture) -> None:
+    options = ["--tolerance", "5%", "--for", "irradiance", "--split-sun"]
+    assert project("green", "studio", *options, "-o", tmp_path) == 0
+    told = capsys.readouterr().err.splitlines()
+    assert "shviewer: green: bands within 5 %: radiance 15, irradiance 3" in told
+    assert [line.count("studio") for line in told if "has no sun" in line] == [0, 1]
+    assert project("green", *options, "-o", tmp_path / "a.json") == 0
+    assert "shviewer: bands within 5 %: radiance 15, irradiance 3" in capsys.readouterr().err.splitlines()

@@ -12,6 +12,8 @@ from places import kernels
 from scipy.special import eval_legendre
 
 import shviewer
+from shviewer.analysis.projected import project_recipe
+from shviewer.analysis.recipe import Recipe
 from shviewer.coefficients.parts.quantities import recovered_radiance
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
@@ -275,3 +277,11 @@ def test_a_file_of_a_glossy_quantity_says_so_and_is_that_quantity_again(tmp_path
     assert_allclose(light.coefficients(7), find_light("studio").coefficients(7), rtol=0, atol=1e-10)
     with pytest.raises(UsageError, match=r"glossy:0\.4 cannot be written as irradiance-over-pi: project"):
         shviewer.project("studio", 3, quantity="glossy:0.4").numbers("unity")
+
+
+def test_of_a_light_that_no_surface_sees_the_irradiance_is_0_and_not_rounding():
+    """A(3) = 0: what quadrature leaves of it, 1e-17, has no relative error to speak of."""
+    y31 = FunctionLight(lambda d: -0.4570457994644658 * d[:, 0] * (5 * d[:, 2] ** 2 - 1))
+    assert not y31.irradiance().coefficients(6).any()
+    assert not y31.irradiance().products().any()
+    assert project_recipe(Recipe(y31, n_bands=5)).irradiance_relative_l2 == 0

@@ -257,3 +257,10 @@ def test_a_file_that_cannot_be_imported_is_one_line(load, tmp_path, text, what):
     assert line.startswith(f"{tmp_path / 'my_light.py'}: importing it raised {what}")
     assert "\n" not in line
     assert sys.path == before
+
+
+def test_a_function_that_gives_other_values_each_time_is_noted():
+    rng = np.random.default_rng(5)
+    noisy = FunctionLight(lambda d: 1 + 0.01 * rng.random(len(d)))
+    assert "its values for the same directions differ from call to call" in noisy.notes[-1]
+    assert FunctionLight(lambda d: 1 + 0.01 * d[:, 0]).notes == ()

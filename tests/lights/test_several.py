@@ -33,7 +33,13 @@ def test_a_folder_is_its_images_scenes_and_stamped_coefficients_in_the_order_of_
         "sky-10.hdr",
         *sorted(f"z.{kind}" for kind in FORMATS),
     ]
-    assert found.said == ()
+    assert found.said == (f"{tmp_path / 'within.hdr'} has lights, too: name such a folder to have them",)
+
+
+def test_bare_lists_in_a_folder_are_lights_once_their_convention_is_named(tmp_path: Path) -> None:
+    np.savetxt(tmp_path / "bare.txt", np.ones((4, 3)))
+    assert several([str(tmp_path)]).lights == ()
+    assert several([str(tmp_path)], bare=True) == ((str(tmp_path / "bare.txt"),), ())
 
 
 def test_files_keep_their_order_and_come_once_whether_they_exist_or_not() -> None:

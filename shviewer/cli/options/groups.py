@@ -23,7 +23,7 @@ from shviewer.cli.options.values import (
     whole_or_word,
 )
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
-from shviewer.words import one_line
+from shviewer.words import near, one_line
 
 LIGHT_HELP = (
     "a built-in name (--list-lights), a .toml scene, an image (.hdr, .exr, file.exr:layer, .png, .jpg and others), "
@@ -45,6 +45,11 @@ class OneLineParser(argparse.ArgumentParser):
             if action.metavar and message.startswith(f"argument {'/'.join(action.option_strings)}: expected "):
                 values = (action.metavar,) if isinstance(action.metavar, str) else action.metavar
                 message += f", as in {action.option_strings[0]} {' '.join(values)}"
+        unknown = message.removeprefix("unrecognized arguments: ").partition(" ")[0].partition("=")[0]
+        flags = [flag for action in self._actions for flag in action.option_strings if flag.startswith("--")]
+        if unknown.startswith("--") and message.startswith("unrecognized") and (found := near(unknown, flags)):
+            message += f"; did you mean {' or '.join(found)}?"
+            self.exit(2, f"shviewer: {one_line(message)}\n")
         self.exit(2, f"shviewer: {one_line(message)}; see {self.prog} --help\n")
 
 

@@ -36,9 +36,10 @@ def lights_within(options: argparse.Namespace) -> list[str]:
     given = lights_of(options)
     if not any(map(os.path.isdir, given)):
         return given
-    found = several(given, code=True)
+    found = several(given, code=True, bare=bool(options.input_convention))
     if not found.lights:
-        raise LightError(f"{given[0]}: no light in it; name a file")
+        lists = "" if options.input_convention else ", or the convention of bare lists"
+        raise LightError("; ".join([f"{given[0]}: no light in it; name a file{lists}", *found.said[1:]]))
     for line in found.said:
         print(f"shviewer: note: {line}", file=sys.stderr)
     return list(found.lights)
@@ -154,7 +155,9 @@ def _check_convention(options: argparse.Namespace, convention: str) -> None:
     with refused_as(UsageError):
         parse_convention(convention)
     given, lights = vars(options), lights_of(options)
-    if given.get("compare") or any(split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights):
+    if given.get("compare") or any(
+        os.path.isdir(text) or split_light(text)[0].suffix.lower() in COEFFICIENT_SUFFIXES for text in lights
+    ):
         return
     name = "--input-convention" if "convention" in given else "--convention"
     raise UsageError(

@@ -8,11 +8,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from shviewer.analysis.options import options_of
-from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
+from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, light_name, what_it_needs
 from shviewer.cli.options.inputs import reading_from
 from shviewer.cli.options.values import number_of
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
+from shviewer.words import one_line
 
 if TYPE_CHECKING:
     from shviewer.lights.light import Light
@@ -65,7 +66,8 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
         any_bands = options.n_bands is None and options.tolerance is None
         recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
     fits = options.tolerance is not None and options.n_bands is None
-    return (_fitted(recipe) if fits else recipe), said
+    several = len(vars(options).get("lights") or ()) > 1
+    return (_fitted(recipe, light_name(light) if several else "") if fits else recipe), said
 
 
 def check_effects(options: argparse.Namespace, recipe: Recipe, beside: str = "off") -> None:
@@ -79,21 +81,25 @@ def check_effects(options: argparse.Namespace, recipe: Recipe, beside: str = "of
         raise UsageError(f"{flags[name]} {shown}: {what_it_needs(name, recipe, flags)}")
 
 
-def _fitted(recipe: Recipe) -> Recipe:
-    """The recipe with as many bands as the tolerance needs, or if none are enough, the best count; stderr says which."""
+def _fitted(recipe: Recipe, name: str) -> Recipe:
+    """The recipe with as many bands as the tolerance needs, or if none are enough, the best count; stderr says which.
+
+    name: what the light is called there; "" if there is only one.
+    """
     from shviewer.analysis.figures import estimate_from_samples, needs
 
     found = needs(recipe)
     counts = {RADIANCE: found.radiance, IRRADIANCE: found.irradiance, in_words(recipe.quantity): found.shown}
-    says = ", ".join(f"{name} {count or f'none up to {found.searched}'}" for name, count in counts.items())
-    print(f"shviewer: bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
+    says = ", ".join(f"{what} {count or f'none up to {found.searched}'}" for what, count in counts.items())
+    called = f"shviewer: {one_line(name)}: " if name else "shviewer: "
+    print(f"{called}bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
     if found.shown is None:
-        print(f"shviewer: the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
+        print(f"{called}the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
     if recipe.method == "jittered":
         guess = estimate_from_samples(recipe)
         if guess.decided:
             says = f"{guess.likely} bands" if guess.likely else "no count up to 32"
         else:
             says = f"nothing sure: {guess.fewest or 'more than 32'} to {guess.most or 'more than 32'} bands; take more samples"
-        print(f"shviewer: the samples alone say {says}", file=sys.stderr)
+        print(f"{called}the samples alone say {says}", file=sys.stderr)
     return replace(recipe, n_bands=found.shown or found.best_bands)

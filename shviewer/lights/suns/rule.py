@@ -70,7 +70,8 @@ class Found:
 def refusal(half_angle: float, contrast: float, flux: float, energy: float, least_energy: float = ENERGY) -> str:
     """Why the brightest spot is not compact, in words; "" if it is. Flux and energy are shares of the whole."""
     if not contrast >= CONTRAST:
-        return f"its brightest spot is only {contrast:.2g} times as bright as what surrounds it"
+        brighter = f"only {contrast:.2g} times as bright as" if contrast >= 1.05 else "no brighter than"
+        return f"its brightest spot is {brighter} what surrounds it"
     if not half_angle <= WIDEST:
         return f"its brightest spot is {2 * np.degrees(half_angle):.2g} degrees wide"
     if not energy >= least_energy:

@@ -317,7 +317,7 @@ def lamps(count):
         (lambda: np.random.default_rng(0).random((2, 3, 3)), "no texel is bright enough"),
         (lambda: np.random.default_rng(0).random((4, 3840, 3)), "no texel is bright enough"),
         (lambda: add_disc(grey(), NOON, np.radians(2.7), 1e4 * WHITE), "degrees wide"),
-        (lambda: add_disc(grey(), NOON, np.radians(12), 1e4 * WHITE), "as bright as what surrounds it"),
+        (lambda: add_disc(grey(), NOON, np.radians(12), 1e4 * WHITE), "no brighter than what surrounds it"),
         (lambda: add_disc(glow(), NOON, np.radians(2), 7 * WHITE), "as bright as what surrounds it"),
         (lambda: add_disc(grey(), NOON, np.radians(0.7), 40 * WHITE), "of the squared norm"),
         (lambda: add_disc(grey(512, 1024), NOON, np.radians(0.2), 500 * WHITE), "of the flux"),
