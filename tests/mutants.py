@@ -86,8 +86,23 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ),
         ("last block filled up with the one before", "self.values[0, :, len(directions) :] = 0", "pass"),
     ),
+    "harmonics/evaluation/monomials.py": (
+        (
+            "directions of many are taken as they are",
+            "if not self._take(directions):",
+            "if self._take(directions) is None:",
+        ),
+        (
+            "x^2 + y^2 + z^2 without z",
+            "np.roll(before, 2, axis=0) + np.roll(before, 2, axis=1)",
+            "np.roll(before, 2, axis=0)",
+        ),
+    ),
+    "harmonics/evaluation/products.py": (
+        ("T(k) of |z| in the south", "chebyshev[1::2] *= self.waves.south()", "pass"),
+        ("last block not full", "min(start, count - size)", "start"),
+    ),
     "harmonics/evaluation/waves.py": (
-        ("T(k) of |z| in the south", "chebyshev[1::2] *= self.waves.south()[used]", "pass"),
         ("T(k) counted once for sin(k theta)/sin(theta)", "    odd[..., 0] /= 2\n", "    odd[..., 1:] /= 2\n"),
     ),
     "harmonics/areas/boundary.py": (

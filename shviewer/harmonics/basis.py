@@ -33,8 +33,8 @@ from shviewer.harmonics.evaluation.indices import (
     normalise,
     orders,
 )
+from shviewer.harmonics.evaluation.products import FEWEST_BANDS, FEWEST_DIRECTIONS, MOST_BANDS, evaluate_by_products
 from shviewer.harmonics.evaluation.recurrence import evaluate_by_recurrence, normalisation
-from shviewer.harmonics.evaluation.waves import FEWEST_BANDS, FEWEST_DIRECTIONS, MOST_BANDS, evaluate_by_waves
 
 __all__ = [
     "MAX_BANDS",
@@ -74,7 +74,7 @@ def evaluate_basis(directions: ArrayLike, n_bands: int) -> Array:
         )
     many = FEWEST_BANDS <= n_bands <= MOST_BANDS and len(points) >= FEWEST_DIRECTIONS
     try:
-        table = (evaluate_by_waves if many else evaluate_by_recurrence)(points, n_bands)
+        table = (evaluate_by_products if many else evaluate_by_recurrence)(points, n_bands)
     except ValueError:
         normalise(vectors)  # which says what is wrong, and where in the array
         raise

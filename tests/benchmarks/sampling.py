@@ -43,12 +43,14 @@ PEER_BLOCK = 2**18
 
 
 def least(candidates: dict[str, Callable[[], object]], repeats: int) -> dict[str, float]:
-    """Milliseconds of each candidate: A B C A B C ..., the least of `repeats` after a warm-up."""
-    for work in candidates.values():
-        work()
+    """Milliseconds of each candidate: A A B B C C A A ..., the least of the second times.
+
+    The first has to fetch memory from the system that another has given back.
+    """
     times: dict[str, list[float]] = {name: [] for name in candidates}
     for _ in range(repeats):
         for name, work in candidates.items():
+            work()
             times[name].append(cpu_milliseconds(work))
     return {name: min(values) for name, values in times.items()}
 
@@ -81,24 +83,28 @@ def sphericart_peer(samples: DirectionSet, values: np.ndarray, n_bands: int, blo
     return project
 
 
-def passes(directions: np.ndarray, n_bands: int) -> np.ndarray:
+def passes(directions: np.ndarray, n_bands: int) -> Callable[[], object]:
     """The least that the basis can be made with, on numbers that mean nothing: (n**2, k)."""
-    table = np.empty((n_bands**2, len(directions)))
     size = min(10_000, len(directions))
     coordinates, azimuth, height = np.ones((3, size)), np.ones((2, n_bands, size)), np.ones((n_bands, size))
-    for start in range(0, len(directions), size):
-        block = slice(start, start + size)
-        used = slice(0, len(directions[block]))
-        coordinates[:, used] = directions[block].T
-        x, _, z = coordinates[:, used]
-        for l in range(n_bands):
-            if l:
-                np.multiply(azimuth[:, l - 1, used], x, out=azimuth[:, l, used])
-                np.multiply(height[:l, used], z, out=height[:l, used])
-            middle = l * (l + 1)
-            np.multiply(height[: l + 1, used], azimuth[0, : l + 1, used], out=table[middle : middle + l + 1, block])
-            np.multiply(height[:l, used], azimuth[1, 1 : l + 1, used], out=table[l * l : middle, block])
-    return table
+
+    def work() -> np.ndarray:
+        table = np.empty((n_bands**2, len(directions)))
+        for start in range(0, len(directions), size):
+            block = slice(start, start + size)
+            used = slice(0, len(directions[block]))
+            coordinates[:, used] = directions[block].T
+            x, _, z = coordinates[:, used]
+            for l in range(n_bands):
+                if l:
+                    np.multiply(azimuth[:, l - 1, used], x, out=azimuth[:, l, used])
+                    np.multiply(height[:l, used], z, out=height[:l, used])
+                middle = l * (l + 1)
+                np.multiply(height[: l + 1, used], azimuth[0, : l + 1, used], out=table[middle : middle + l + 1, block])
+                np.multiply(height[:l, used], azimuth[1, 1 : l + 1, used], out=table[l * l : middle, block])
+        return table
+
+    return work
 
 
 def against_sphericart(count: int, repeats: int) -> None:
@@ -115,7 +121,7 @@ def against_sphericart(count: int, repeats: int) -> None:
         candidates: dict[str, Callable[[], object]] = {
             "ours": lambda n_bands=n_bands: project_samples(recorded(values), samples, n_bands),
             "basis": lambda n_bands=n_bands: evaluate_basis(samples.directions, n_bands),
-            "passes": lambda n_bands=n_bands: passes(samples.directions, n_bands),
+            "passes": passes(samples.directions, n_bands),
             "bound": lambda n_bands=n_bands: np.multiply(
                 samples.weights, samples.weights, out=np.empty((n_bands**2, len(values)))
             ),

@@ -1,4 +1,4 @@
-"""The functions of azimuth and z that Y(l, m) is made of, in many directions, and the basis by matrix products with them.
+"""The functions of azimuth and z that Y(l, m) is made of, in many directions.
 
 {cos, sin}(m phi), for odd m times sin(theta), and T(k)(z) = cos(k theta), into which theta_series.py expands the Legendre
 functions. No value is much larger than 1, so that nothing cancels, and no angle is computed: sin(theta) {cos, sin}(phi) are x
@@ -13,26 +13,12 @@ import numpy as np
 
 from shviewer.harmonics.evaluation.indices import Array, normalise
 from shviewer.harmonics.theta_series import theta_series
-from shviewer.harmonics.workspace import borrowed
 
 NOT_UNIT = 1e-14
 """Directions are normalised if x^2 + y^2 + z^2 is further from 1 than this."""
 
 AT_A_POLE = 1e-200
 """Where x^2 + y^2 is less than this it has lost its digits, and the azimuth cannot matter."""
-
-
-FEWEST_BANDS, MOST_BANDS = 5, 32
-"""The numbers of bands for which matrix products are the fastest way; with more they round to 1e-14."""
-
-FEWEST_DIRECTIONS = 1000
-"""The fewest directions for which it is, and which make up for the tables."""
-
-BLOCK, BLOCK_WAVES = 10_000, 120_000
-"""The most directions in a block, and the most values of T(k)(z): large, as there are few rows, but within the caches."""
-
-KEPT_BANDS = 16
-"""The most bands whose memory, up to 12 MiB, is kept for the next call."""
 
 
 class Waves:
@@ -134,59 +120,3 @@ def wave_table(n_bands: int) -> Array:
     odd[..., 0] /= 2
     table.flags.writeable = False
     return table
-
-
-def evaluate_by_waves(points: Array, n_bands: int) -> Array:
-    """As `evaluate_basis` of basis.py: directions (k, 3) -> (n_bands**2, k), for FEWEST_BANDS to MOST_BANDS."""
-    count = len(points)
-    most = min(BLOCK, BLOCK_WAVES // n_bands)
-    size = -(-count // -(-count // most))  # blocks of one size
-    table = np.empty((n_bands**2, count))
-    with borrowed(_Products, n_bands, size, keep=n_bands <= KEPT_BANDS) as products:
-        for start in range(0, count, size):
-            products.fill(points[start : start + size], table[:, start : start + size])
-    return table
-
-
-class _Products:
-    """The memory to evaluate the basis in a block of directions.
-
-    The functions of z are made for all l of one parity at once: for even and for odd m by a product each, whose rows alternate.
-    """
-
-    def __init__(self, n_bands: int, length: int) -> None:
-        self.n_bands = n_bands
-        self.waves = Waves(n_bands, length)
-        self.rows = np.empty((sum(len(_series(n_bands, 0)[i]) for i in (0, 1)), length))
-
-    def fill(self, directions: Array, table: Array) -> None:
-        """Write Y(l, m) at index l(l+1) + m of `table`, (n_bands**2, k)."""
-        self.waves.take(directions)
-        used = slice(0, len(directions))
-        chebyshev, (cosines, sines) = self.waves.chebyshev[:, used], self.waves.azimuth[..., used]
-        chebyshev[1::2] *= self.waves.south()[used]
-        for parity in (0, 1):
-            even, odd = _series(self.n_bands, parity)
-            rows = self.rows[: len(even) + len(odd), used]
-            np.matmul(even, chebyshev[parity::2], out=rows[0::2])
-            np.matmul(odd, chebyshev[1 - parity :: 2], out=rows[1::2])
-            first = 0
-            for l in range(parity, self.n_bands, 2):
-                middle = l * (l + 1)
-                np.multiply(rows[first : first + l + 1], cosines[: l + 1], out=table[middle : middle + l + 1])
-                left = table[l * l : middle][::-1]
-                np.multiply(rows[first + 1 : first + l + 1], sines[1 : l + 1], out=left)
-                first += l + 2 - parity
-
-
-@lru_cache(maxsize=64)
-def _series(n_bands: int, parity: int) -> tuple[Array, Array]:
-    """The rows of `wave_table` for even and for odd m, of all l of one parity, m up to l + 1: T(k) of one parity each."""
-    table = wave_table(n_bands)
-    even: list[Array] = []
-    odd: list[Array] = []
-    for l in range(parity, n_bands, 2):
-        for m in range(l + 2 - parity):
-            row = table[m, l] if m <= l else np.zeros(n_bands)
-            (odd if m % 2 else even).append(row[(parity + m) % 2 :: 2])
-    return np.array(even), np.array(odd)
