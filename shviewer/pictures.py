@@ -68,7 +68,7 @@ def view(
 
     """
     from shviewer.viewer.desktop import window
-    from shviewer.viewer.desktop.task import Task
+    from shviewer.viewer.desktop.behind.task import Task
 
     state = _state(light, bands, options, size)
     window.run(Task(lambda: [first_picture(state)]), size)

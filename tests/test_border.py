@@ -95,7 +95,7 @@ def test_a_fault_of_this_program_keeps_the_last_picture(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     session = Session(state_of())
-    monkeypatch.setattr("shviewer.viewer.desktop.making.stages", lambda *_, **__: 1 // 0)
+    monkeypatch.setattr("shviewer.viewer.desktop.behind.making.stages", lambda *_, **__: 1 // 0)
     session.press("Up")
     session.prepare()
     assert session.picture.light.name == "green"

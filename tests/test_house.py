@@ -37,7 +37,7 @@ ROOMS = (
 
 OWNERS = {
     "pyrr": {"viewer/camera.py"},
-    "glfw": {"viewer/desktop/glfw_window.py", "viewer/desktop/window.py"},
+    "glfw": {f"viewer/desktop/{file}.py" for file in ("frames", "glfw_window", "window")},
     "OpenEXR": {"lights/images/openexr_library.py", "viewer/saving/picture_files.py"},
 }
 """Delicate libraries, and where they are tamed."""

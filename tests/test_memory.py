@@ -319,7 +319,7 @@ def test_a_window_without_memory_keeps_the_last_picture(
         raise MemoryError
 
     session = Session(state_of())
-    monkeypatch.setattr("shviewer.viewer.desktop.making.stages", none_left)
+    monkeypatch.setattr("shviewer.viewer.desktop.behind.making.stages", none_left)
     session.press("Up")
     session.prepare()
     assert session.picture.light.name == "green"

@@ -38,9 +38,9 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.outputs import file_stem
     from shviewer.viewer.composing.composition import frame_for
     from shviewer.viewer.desktop import window
+    from shviewer.viewer.desktop.behind.task import Task
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
     from shviewer.viewer.desktop.last_size import keep_size, last_size
-    from shviewer.viewer.desktop.task import Task
     from shviewer.viewer.picture import completed
     from shviewer.viewer.saving.picture_files import write_numbered
     from shviewer.viewer.screenshot import save_picture
@@ -94,7 +94,7 @@ def _announced(state: State, others: list[str], as_image: bool) -> Picture:
     """The picture of a state, its figures pending, or of the first of the others; the notes on its light are printed."""
     from shviewer.cli.notes import print_notes
     from shviewer.viewer.actions import show_light
-    from shviewer.viewer.desktop.opening import opened
+    from shviewer.viewer.desktop.behind.opening import opened
     from shviewer.viewer.picture import first_picture
 
     while True:

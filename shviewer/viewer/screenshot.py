@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes.util
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composing.composition import Composition
-from shviewer.viewer.gl.renderer import GL_VERSIONS, Renderer
+from shviewer.viewer.gl.renderer import GL_VERSIONS, PART_SECONDS, Renderer
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.marks import mark_layers
 from shviewer.viewer.overlay.overlay import draw_overlay
@@ -84,18 +84,41 @@ def render_rgb(
     renderer: Renderer, picture: Picture, composition: Composition, *, overlay: bool = True, timing: bool = False
 ) -> NDArray[np.uint8]:
     """The picture as seen: (height, width, 3) uint8, top row first."""
-    layers: tuple[Layer, ...] = ()
-    if overlay:
-        written = draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
-        layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
+    layers = _layers(renderer, picture, composition, timing=timing) if overlay else ()
     renderer.show(picture)
     return read_rgb(renderer, composition, layers)
 
 
+def render_in_parts(
+    renderer: Renderer, picture: Picture, composition: Composition
+) -> Generator[float, None, Callable[[], NDArray[np.uint8]]]:
+    """Draw the same in parts of about PART_SECONDS; yields the share that is drawn, and returns what makes the pixels of it."""
+    layers = _layers(renderer, picture, composition)
+    yield 0.0
+    with offscreen(renderer, composition) as target:
+        renderer.show(picture)
+        for part in renderer.parts(target, composition, layers, seconds=PART_SECONDS):
+            yield part.share
+        data = target.read(components=4)
+    return lambda: _rgb(data, composition)
+
+
+def _layers(
+    renderer: Renderer, picture: Picture, composition: Composition, *, timing: bool = False
+) -> tuple[Layer, ...]:
+    """Layers of all text and marks of a picture."""
+    written = draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
+    return (*mark_layers(picture, composition, written.obstacles), *written.layers)
+
+
 def read_rgb(renderer: Renderer, composition: Composition, layers: Sequence[Layer] = ()) -> NDArray[np.uint8]:
     """Draw the renderer's picture into a framebuffer and read it back: (height, width, 3), top row first."""
-    data = np.frombuffer(_read(renderer, composition, "f1", layers), dtype=np.uint8)
-    return data.reshape(_shape(composition))[::-1, :, :3].copy()
+    return _rgb(_read(renderer, composition, "f1", layers), composition)
+
+
+def _rgb(data: bytes, composition: Composition) -> NDArray[np.uint8]:
+    """RGB of RGBA, bottom row first."""
+    return np.frombuffer(data, dtype=np.uint8).reshape(_shape(composition))[::-1, :, :3].copy()
 
 
 def render_linear(renderer: Renderer, picture: Picture, composition: Composition) -> NDArray[np.float32]:

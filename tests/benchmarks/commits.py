@@ -36,8 +36,8 @@ try:
 except ImportError:  # where it was before
     from shviewer.viewer import window
 right = window.Window.frame
-def frame(self):
-    right(self)
+def frame(self, *rest):
+    right(self, *rest)
     if self.frame_count >= 2 and getattr(self, "shown", self) is not None:
         import glfw; glfw.set_window_should_close(self.handle, True)
 window.Window.frame = frame

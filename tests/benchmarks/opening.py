@@ -165,7 +165,8 @@ def window(paths: list[Path]) -> None:
 
     from shviewer.errors import GraphicsError
     from shviewer.resources import resource_folder
-    from shviewer.viewer.desktop.window import LEAVE_SECONDS, Window, canvas_of, open_window
+    from shviewer.viewer.desktop.frames import LEAVE_SECONDS
+    from shviewer.viewer.desktop.window import Window, canvas_of, open_window
     from shviewer.viewer.picture import prepare
     from shviewer.viewer.state import changed, state_of
 
@@ -191,7 +192,7 @@ def window(paths: list[Path]) -> None:
             meanwhile.append(frame(shown, len(meanwhile)))
             if first == 0 and shown.shown is not None and shown.shown.light.name == name:
                 first = time.perf_counter() - start
-            busy = shown.session.working or shown.canvas.uploading
+            busy = shown.session.working or shown.canvas.pending
             time.sleep(min(meanwhile[-1][0] / 1000, LEAVE_SECONDS) if busy else 0)
         return first, time.perf_counter() - start, meanwhile
 

@@ -21,7 +21,7 @@ import random
 import resource
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -41,6 +41,7 @@ from shviewer.viewer import screenshot
 from shviewer.viewer.animation import animation
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop import session
+from shviewer.viewer.desktop.behind import saving
 from shviewer.viewer.saving.picture_files import write_png
 from shviewer.viewer.state import state_of
 
@@ -154,7 +155,12 @@ def called(function: Callable[[], object]) -> Callable[[], int]:
     return run
 
 
-UNDRAWN = SimpleNamespace(version="none", show=lambda picture, seconds=None: True)
+UNDRAWN = SimpleNamespace(
+    version="none",
+    show=lambda picture, seconds=None: True,
+    ready=lambda picture, composition: True,
+    held=SimpleNamespace(pinned=None),
+)
 """A renderer that draws nothing."""
 
 
@@ -162,7 +168,7 @@ def press_p() -> int:
     """P, in a window: an error is a message there."""
     shown = session.Session(state_of())
     shown.save(UNDRAWN, compose(320, 240))  # type: ignore[arg-type]
-    shown.errands.finish()
+    shown.saving.finish()
     if "cannot be written" in shown.state.view.message:
         print(f"shviewer: {shown.state.view.message}", file=sys.stderr)
         return 4
@@ -209,12 +215,17 @@ def undrawn() -> Iterator[None]:
     yield UNDRAWN  # type: ignore[misc]
 
 
+def undrawn_part(*arguments: object) -> Generator[float, None, Callable[[], np.ndarray]]:
+    yield 0.0
+    return lambda: PIXELS
+
+
 def give_pixels() -> None:
     """Let no picture be drawn."""
     for module in (screenshot, animation):
         module.headless_renderer = undrawn  # type: ignore[attr-defined]
-    for module in (screenshot, animation, session):
         module.render_rgb = lambda *arguments, **options: PIXELS  # type: ignore[attr-defined]
+    saving.render_in_parts = undrawn_part  # type: ignore[assignment]
     screenshot.render_linear = lambda *arguments: PIXELS.astype(np.float32)
     plots.plots_of = lambda report: {"error-bands": lambda figure: None}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from shviewer.viewer.desktop import errands
+from shviewer.viewer.desktop.behind import errands
 
 PATIENCE = 60.0
 

@@ -32,12 +32,14 @@ from shviewer.harmonics.basis import Array
 from shviewer.lights.find import find_light
 from shviewer.outputs import write_atomically
 from shviewer.version import __version__
-from shviewer.viewer.composing.composition import compose
+from shviewer.viewer import screenshot as screenshots
+from shviewer.viewer.composing.composition import compose, frame_for
+from shviewer.viewer.gl import renderer as renderers
 from shviewer.viewer.gl import shader_source
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
 from shviewer.viewer.saving.reference import compare_with_reference
-from shviewer.viewer.screenshot import render_rgb
+from shviewer.viewer.screenshot import render_in_parts, render_rgb
 
 SHADERS = resources.resource_folder("shaders")
 
@@ -432,3 +434,44 @@ def test_an_odd_frame_is_drawn_to_its_last_pixel(renderer: Renderer) -> None:
     shown = render_rgb(renderer, picture_of("constant"), square_frame(65), overlay=False)
     assert shown.shape == (65, 130, 3)
     assert (shown[-1, -1] == shown[0, 0]).all()
+
+
+STRIPS: dict[str, dict[str, Any]] = {
+    "32 bands, summed": {"n_bands": 32},
+    "an error with lines and marks": {"n_bands": 9, "error": "signed"},
+    "a map of the sphere, enlarged": {"n_bands": 5, "whole_sphere": True, "zoom": 1.7, "map_centre": (40.0, 10.0)},
+    "two reconstructions": {"n_bands": 9, "window": "hann", "beside": "no-window"},
+    "bands from a map": {"n_bands": 40, "error": "relative"},
+    "surfaces": {"n_bands": 5, "lobe_view": True, "error": "signed"},
+    "a photograph": {"light": "venice_sunset", "n_bands": 6, "split_sun": True, "zoom": 3.0, "pan": (0.3, 0.2)},
+}
+"""Pictures whose lines, edges and samples depend on the neighbours of a pixel."""
+
+
+@pytest.mark.parametrize("kind", STRIPS)
+def test_a_picture_drawn_in_parts_has_every_byte_of_the_one_drawn_at_once(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    """In strips of one row and of many, with frames of the window between them."""
+    picture, other = (
+        picture_of(**STRIPS[kind]),
+        picture_of(light=STRIPS[kind].get("light", "green"), n_bands=2, lobe_view=True),
+    )
+    frame = frame_for(picture.state.view, 401, 300)
+    whole = render_rgb(renderer, picture, frame)
+    monkeypatch.setattr(renderers, "FIRST_PIXELS", 1000)
+    for seconds in (0.0, 0.001):
+        monkeypatch.setattr(screenshots, "PART_SECONDS", seconds)
+        parts, shares = render_in_parts(renderer, picture, frame), []
+        while True:
+            try:
+                shares.append(next(parts))
+            except StopIteration as last:
+                pixels = last.value()
+                break
+            if len(shares) % 50 == 2:
+                render_rgb(renderer, other, square_frame(64))
+        np.testing.assert_array_equal(pixels, whole)
+        assert shares == sorted(shares)
+        assert shares[-1] == 1.0
+        assert len(shares) > (100 if seconds == 0.0 and kind != "surfaces" else 2)

@@ -64,7 +64,7 @@ import _thread, signal, sys, threading, time
 from shviewer.children import follow_parent
 from shviewer.errors import GraphicsError
 from shviewer.viewer.desktop import window
-from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import State
 
@@ -80,9 +80,12 @@ def watch():
     _thread.interrupt_main()
 
 class Watched(window.Window):
-    def frame(self):
-        super().frame()
-        if self.frame_count == 2:
+    watched = False
+
+    def frame(self, *rest):
+        super().frame(*rest)
+        if self.frame_count == 2 and not self.watched:
+            self.watched = True
             threading.Thread(target=watch, daemon=True).start()
 
 window.Window = Watched

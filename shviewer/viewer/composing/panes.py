@@ -41,6 +41,10 @@ class Box(NamedTuple):
         return across and self.top < other.bottom and other.top < self.bottom
 
 
+Pixels: TypeAlias = tuple[int, int, int, int]
+"""A rectangle of a framebuffer: x and y from the lower left, width and height."""
+
+
 class Place(NamedTuple):
     """The place of a direction in a pane: a pixel, which may lie outside the clip, and whether it is on the far side."""
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from time import perf_counter
 
 import moderngl
@@ -12,7 +14,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.evaluation import Evaluation
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.carrier import Carrier
-from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.gl.renderer import PART_SECONDS, Part, Renderer, surfaces_in
 from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.layers import Layer
@@ -29,29 +31,56 @@ Point = tuple[float, float]
 UPLOAD_SECONDS = 0.02
 """About how long a frame uploads maps, where no other thread does."""
 
-UPLOADING = "handing the map to OpenGL"
+UPLOADING, MESHING = "handing the map to OpenGL", "making the surfaces"
+
+MOST_SUMMED = 0.05
+"""Seconds after which the rest of a sum is not waited for, where a map could be drawn."""
 
 
 class Canvas:
     """Frames on the screen of a context. release() at the end."""
 
-    def __init__(self, context: moderngl.Context, carrier: Carrier | None = None) -> None:
+    def __init__(
+        self, context: moderngl.Context, carrier: Carrier | None = None, wake: Callable[[], None] | None = None
+    ) -> None:
+        """wake: called from another thread when something has been made for the next frame."""
         self.renderer = Renderer(context, carrier)
         self.overlay: Overlay | None = None
+        self.again = False
+        """Whether the last frame asks for another one."""
         self._overlay_key: object = None
         self._evaluation = Evaluation()
-        self._work: Work | None = None
-        """What is being done, as long as there is no picture."""
+        self._wake = wake
+        self._shown: Picture | None = None
+        """The picture that frames are drawn of."""
+        self._pending: Work | None = None
+        """What the next picture waits for."""
+        self._frame: _Frame | None = None
 
     @property
-    def uploading(self) -> bool:
-        """Whether a map is on its way."""
-        return self.renderer.uploading is not None
+    def pending(self) -> str:
+        """What the next picture waits for, in words: that OpenGL has it; "" for nothing."""
+        return self._pending.words if self._pending is not None else ""
+
+    @property
+    def news(self) -> bool:
+        """Whether there is something for the next frame."""
+        return self.renderer.surfaces.triangles.arrived
+
+    @property
+    def drawing(self) -> bool:
+        """Whether a frame was begun and is not whole."""
+        return self._frame is not None
 
     def by_map(self, state: State, composition: Composition) -> bool:
         """Whether to draw the reconstruction from a map; asked where the choice is left to the time that frames take."""
         pixels = summed_pixels(composition)
         return state.view.evaluate == "auto" and self._evaluation.choose(state.recipe.n_bands, pixels, perf_counter())
+
+    def too_slow(self, picture: Picture, composition: Composition) -> bool:
+        """Whether a picture is one of a sum that is known to take too long."""
+        known = self._evaluation.too_slow(picture.state.recipe.n_bands, summed_pixels(composition), perf_counter())
+        return known and _choosable(picture)
 
     def show(
         self,
@@ -65,16 +94,22 @@ class Canvas:
 
         pointer: where the mouse is, for the values of the band under it. pace: as in `draw_overlay`.
 
-        Return False while a large map is on its way: the last picture stays, seen from where the camera is now.
+        Return False while a large map or a surface is on its way: the last picture stays, seen from where the camera is now.
         GraphicsError for a map that this OpenGL cannot hold.
         """
-        uploaded = self.renderer.show(picture, UPLOAD_SECONDS)
-        if not uploaded:
-            self._work = work = work or Work(UPLOADING, round(self.renderer.uploading or 0.0, 2))
-            if self.renderer.picture is None:
-                return False
-            self.renderer.picture = picture = self.renderer.picture.seen(picture.state)
+        self._pending = None
+        if not self._meshed(picture, composition):
+            self._pending = Work(MESHING)
+        elif not self.renderer.show(picture, UPLOAD_SECONDS):
+            self._pending = Work(UPLOADING, round(self.renderer.held.uploading or 0.0, 2))
+        if self._pending is None:
+            self._shown = picture
+        elif self._shown is None:
+            return False
+        else:
+            self._shown = self.renderer.picture = picture = self._shown.seen(picture.state)
         hovered = self.band_at(pointer)
+        work = work or self._pending
         key = work, hovered, pace, _overlay_key(picture, composition)
         if key != self._overlay_key:
             opengl = self.renderer.version
@@ -82,7 +117,12 @@ class Canvas:
                 picture, composition, timing=True, opengl=opengl, work=work, hovered=hovered, pace=pace
             )
             self._overlay_key = key
-        return uploaded
+        return self._pending is None
+
+    def _meshed(self, picture: Picture, composition: Composition) -> bool:
+        """Whether surfaces that are shown have triangles, if only until there are better ones."""
+        triangles, wanted = self.renderer.surfaces.triangles, surfaces_in(picture, composition)
+        return triangles.bring(wanted, self._wake) or all(triangles.has(surface) for surface, _ in wanted)
 
     def band_at(self, pointer: Point | None) -> int | None:
         """The band whose slot in the curve is there; None for any other place."""
@@ -94,33 +134,51 @@ class Canvas:
         """Draw what is being done, as long as there is no picture."""
         self.renderer.draw_text(self.renderer.context.screen, composition, status_layers(work, composition))
 
-    def draw(self, composition: Composition, pointer: Point | None = None, *, alone: bool = True) -> bool:
-        """Draw the picture last shown, with the values under the pointer; return whether another frame is due.
+    def begin(self, composition: Composition, pointer: Point | None = None, *, alone: bool = True) -> None:
+        """Begin with a frame of the picture last shown, with the values under the pointer.
 
         alone: nothing else is at work. Then a picture that is summed per pixel is timed, and may turn out to be too slow.
-        Until there is a picture, what is being done.
+        Until there is a picture, the frame says what is being done.
         """
-        if self.renderer.picture is None and self._work is not None:
-            self.wait(self._work, composition)
-            return False
-        picture = self._picture
+        self.again = False
+        screen = self.renderer.context.screen
+        if self._shown is None:
+            self.wait(self._pending or Work(UPLOADING), composition)
+            self._frame = _Frame(iter(()), composition, False)
+            return
         layers = self.layers(composition, pointer)
-        timed = alone and picture.state.view.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
-        if timed:
-            self.renderer.context.finish()
-        start = perf_counter()
-        self.renderer.draw(self.renderer.context.screen, composition, layers)
-        if not timed:
-            return False
-        self.renderer.context.finish()
-        now, pixels, n_bands = perf_counter(), summed_pixels(composition), picture.state.recipe.n_bands
-        again = self._evaluation.drawn(n_bands, pixels, 1000 * (now - start), now)
-        return again or self._evaluation.choose(n_bands, pixels, now)
+        parts = self.renderer.parts(screen, composition, layers, seconds=PART_SECONDS)
+        self._frame = _Frame(parts, composition, alone and _choosable(self._shown))
+
+    def go_on(self, seconds: float | None = None) -> bool:
+        """Draw on for about so long; return whether the frame is whole. A sum that takes too long is given up."""
+        frame, picture = self._frame, self._shown
+        assert frame is not None, "no frame was begun"
+        end = None if seconds is None else perf_counter() + seconds
+        whole = True
+        for part in frame.parts:
+            frame.seconds += 0.0 if part.first else part.seconds  # in the first one OpenGL may have compiled a shader
+            if end is not None and perf_counter() >= end:
+                whole = False
+                break
+        slow = not whole and frame.timed and frame.seconds > MOST_SUMMED
+        if whole or slow:
+            self._frame = None
+        if frame.timed and picture is not None and (whole or slow):
+            now, pixels, n_bands = perf_counter(), summed_pixels(frame.composition), picture.state.recipe.n_bands
+            self.again = self._evaluation.drawn(n_bands, pixels, 1000 * frame.seconds, now, sure=slow)
+            self.again = self._evaluation.choose(n_bands, pixels, now) or self.again
+        return whole
+
+    def give_up(self) -> None:
+        """Draw no more of the frame that was begun: the window has another size."""
+        self._frame = None
 
     def layers(self, composition: Composition, pointer: Point | None = None) -> tuple[Layer, ...]:
         """Layers of the marks, of the text, and of the values under the pointer."""
-        picture = self._picture
-        written = self.overlay
+        picture, written = self._shown, self.overlay
+        if picture is None:
+            return ()
         if written is None:
             return mark_layers(picture, composition)
         layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
@@ -138,11 +196,21 @@ class Canvas:
         if self.renderer.carrier is not None:
             self.renderer.carrier.end()
 
-    @property
-    def _picture(self) -> Picture:
-        if self.renderer.picture is None:
-            raise ValueError("nothing to draw: show a picture first")
-        return self.renderer.picture
+
+@dataclass
+class _Frame:
+    """A frame that was begun."""
+
+    parts: Iterator[Part]
+    composition: Composition
+    timed: bool
+    seconds: float = 0.0
+    """How long it has taken, without the first parts of its panes."""
+
+
+def _choosable(picture: Picture) -> bool:
+    """Whether it is summed because that was thought to be fast."""
+    return picture.state.view.evaluate == "auto" and isinstance(picture.drawn, DirectSum)
 
 
 def summed_pixels(composition: Composition) -> float:

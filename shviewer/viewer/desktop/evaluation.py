@@ -49,16 +49,24 @@ class Evaluation:
 
     def choose(self, n_bands: int, pixels: float, seconds: float) -> bool:
         """Whether to draw from the map. pixels: how many show the reconstruction or its error; seconds: on any clock."""
-        if any(n <= n_bands and self._too_slow(n, pixels, seconds) for n in self.frames):
+        if self.too_slow(n_bands, pixels, seconds):
             self.by_map = True
         elif self.by_map:
             self.by_map = self._estimate(n_bands, pixels, seconds) > BACK
         return self.by_map
 
-    def drawn(self, n_bands: int, pixels: float, milliseconds: float, seconds: float) -> bool:
-        """Remember a direct frame; True if it has to be drawn once more before it may be called slow."""
-        self.frames.setdefault(n_bands, deque(maxlen=MEMORY)).append(Frame(seconds, pixels, milliseconds))
+    def drawn(self, n_bands: int, pixels: float, milliseconds: float, seconds: float, *, sure: bool = False) -> bool:
+        """Remember a direct frame; True if it has to be drawn once more before it may be called slow.
+
+        sure: whether nothing but the sum has taken so long.
+        """
+        frames = self.frames.setdefault(n_bands, deque(maxlen=MEMORY))
+        frames += [Frame(seconds, pixels, milliseconds)] * (2 if sure else 1)
         return milliseconds > LIMIT and len(self._comparable(n_bands, pixels)) < 2
+
+    def too_slow(self, n_bands: int, pixels: float, seconds: float) -> bool:
+        """Whether a direct frame is known to take too long."""
+        return any(n <= n_bands and self._too_slow(n, pixels, seconds) for n in self.frames)
 
     def _comparable(self, n_bands: int, pixels: float) -> list[Frame]:
         return [frame for frame in self.frames[n_bands] if frame.pixels >= COMPARABLE * pixels]

@@ -1,4 +1,4 @@
-"""Opening a window with the newest OpenGL there is, and naming its keys. With window.py the only importer of glfw."""
+"""Opening a window with the newest OpenGL there is, and naming its keys. GLFW is used here, in frames.py and in window.py."""
 
 from __future__ import annotations
 
@@ -114,6 +114,12 @@ def side_context(window: Any) -> SideContext | None:
     glfw.window_hint(glfw.VISIBLE, False)
     handle = glfw.create_window(1, 1, "", None, window)
     return SideContext(handle) if handle else None
+
+
+def scale_of(window: Any) -> float:
+    """Pixels per point of the design, on the monitor that a window is on."""
+    scale = float(glfw.get_window_content_scale(window)[1])
+    return scale if scale > 0 else 1.0
 
 
 def _create_window(size: tuple[int, int], version: int) -> Any:

@@ -1,29 +1,23 @@
-"""The window: an event of GLFW becomes a new state, and a changed state becomes a frame.
-
-Nothing is drawn and no time is spent while nothing happens. GLFW is asked to return four times a second all the same, so
-that Ctrl-C in the terminal is heard at once; a watched file is looked at then, too.
-"""
+"""The window: an event of GLFW becomes a new state, and a changed state becomes a frame."""
 
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Callable
-from time import perf_counter, sleep
+from time import perf_counter
 from typing import Any
 
 import glfw
 import moderngl
 
-from shviewer.errors import ShviewerError
 from shviewer.viewer.actions import Command
-from shviewer.viewer.composing.composition import Composition, compose, frame_for
-from shviewer.viewer.desktop.canvas import UPLOADING, Canvas
-from shviewer.viewer.desktop.errands import coefficients_text
-from shviewer.viewer.desktop.glfw_window import key_name, open_window, side_context
-from shviewer.viewer.desktop.mouse import Mouse
-from shviewer.viewer.desktop.session import PATIENCE, STATUS_SECONDS, Session
-from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.composing.composition import Composition, compose
+from shviewer.viewer.desktop.behind.saving import coefficients_text
+from shviewer.viewer.desktop.behind.task import Task
+from shviewer.viewer.desktop.canvas import Canvas
+from shviewer.viewer.desktop.frames import Frames
+from shviewer.viewer.desktop.glfw_window import key_name, open_window, scale_of, side_context
+from shviewer.viewer.desktop.session import PATIENCE, Session
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.message import DONE, WARNING
@@ -32,14 +26,9 @@ from shviewer.viewer.overlay.probe import direction_at
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.state import State
-from shviewer.viewer.view import View
 
-IDLE_SECONDS = 0.25
 OUTSIDE = (-1.0, -1.0)
 """The place of a mouse that has left the window."""
-
-LEAVE_SECONDS = 0.1
-"""The longest pause between two frames while something is at work behind the window, which gets no turn while OpenGL draws."""
 
 
 def run(
@@ -61,7 +50,7 @@ def run(
                 shown.loop()
                 size = shown.size_in_points()
                 glfw.hide_window(handle)
-                shown.session.errands.finish()  # what was asked for is written before the end
+                shown.session.saving.finish()  # what was asked for is written before the end
                 return size
         finally:
             canvas.release()
@@ -71,7 +60,8 @@ def run(
 def canvas_of(handle: Any) -> Canvas:
     """The canvas of a window whose context is current, with a thread for large textures where there can be one."""
     context = moderngl.create_context(require=330)
-    return Canvas(context, Carrier.beside(context, side_context(handle), glfw.post_empty_event))
+    wake = glfw.post_empty_event
+    return Canvas(context, Carrier.beside(context, side_context(handle), wake), wake)
 
 
 def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
@@ -85,13 +75,13 @@ def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
         width, height = glfw.get_framebuffer_size(handle)
         if first.work != said and first.status and width * height:
             said = first.work
-            canvas.wait(said, compose(width, height, 1.0, _scale(handle)))
+            canvas.wait(said, compose(width, height, 1.0, scale_of(handle)))
             glfw.swap_buffers(handle)
     return True
 
 
-class Window:
-    """One window, one session, one canvas: events in, frames out."""
+class Window(Frames):
+    """One window: its events, and what only a window can do."""
 
     def __init__(
         self,
@@ -102,21 +92,18 @@ class Window:
         watch: bool = False,
         as_image: bool = False,
     ) -> None:
-        self.handle = handle
-        self.canvas = canvas
-        self.verbose = verbose
-        self.session = Session(
-            first.state, first, verbose=verbose, watch=watch, as_image=as_image, wake=glfw.post_empty_event
+        wake = glfw.post_empty_event
+        super().__init__(
+            handle,
+            canvas,
+            Session(first.state, first, verbose=verbose, watch=watch, as_image=as_image, wake=wake),
         )
-        self.frames_due = 2  # the first swap may still have the old size
-        self.frame_count = 0
-        self.mouse = Mouse()
         self.band: int | None = None
         """The band under the mouse."""
         self.done_by_key = False
         """Whether the key pressed last did something; then what it types does nothing."""
         self.has_clipboard = True
-        self.hovering = self.fullscreen = False
+        self.fullscreen = False
         self.windowed_place = (0, 0, 1280, 640)
         glfw.set_key_callback(handle, self._on_key)
         glfw.set_char_callback(handle, self._on_char)
@@ -125,42 +112,17 @@ class Window:
         glfw.set_cursor_enter_callback(handle, self._on_enter)
         glfw.set_scroll_callback(handle, self._on_scroll)
         glfw.set_drop_callback(handle, self._on_drop)  # type: ignore[arg-type]  # the stub shows the C signature
-        glfw.set_framebuffer_size_callback(handle, lambda *_: self.redraw())
-        glfw.set_window_refresh_callback(handle, lambda *_: self.redraw())
-        self.title = self.session.title
-        self.shown: Picture | None = None
-        """The last picture that this OpenGL could hold."""
-        glfw.set_window_title(handle, self.title)
-
-    def loop(self) -> None:
-        """Draw what is due, then sleep until something happens or what plays takes its next step."""
-        while not glfw.window_should_close(self.handle):
-            if self.frames_due:
-                begin = perf_counter()
-                self.frame()
-                if self.session.working or self.canvas.uploading:  # the frames leave it half of the time
-                    sleep(min(perf_counter() - begin, LEAVE_SECONDS))
-            if self.frames_due:
-                glfw.poll_events()
-            else:
-                most = STATUS_SECONDS if self.canvas.uploading else IDLE_SECONDS
-                glfw.wait_events_timeout(self.session.wait(perf_counter(), most))
-            if self.session.tick(perf_counter()) or self.canvas.uploading:
-                self._due()
-
-    def redraw(self) -> None:
-        self.frames_due = 2
 
     def change(self, state: State) -> None:
         """Take a new state."""
         self.session.state = state
-        self._due()
+        self.due()
 
     def press(self, key: str) -> None:
         """Do what a key asks for; commands that the session returns are done here."""
-        if key == "Esc" and self.session.work is None and self.canvas.uploading and self.shown is not None:
-            self.session.back_to(self.shown, f"stopped {UPLOADING}")
-            self._due()
+        if key == "Esc" and self.session.work is None and self.canvas.pending and self.shown is not None:
+            self.session.back_to(self.shown, f"stopped {self.canvas.pending}")
+            self.due()
             return
         command = self.session.press(key)
         composition = self.composition()
@@ -168,58 +130,14 @@ class Window:
             self._toggle_fullscreen()
         elif command in (Command.CLOSE, Command.LEAVE):
             glfw.set_window_should_close(self.handle, True)
-        elif command is Command.SAVE and (asked := self._framed(self.session.state.view)) is not None:
+        elif command is Command.SAVE and (asked := self.framed(self.session.state.view)) is not None:
             self.session.save(self.canvas.renderer, asked)
         elif command is Command.COPY and composition is not None:
             size = composition.width, composition.height
             self._copy("the command of this picture", lambda: command_line(self.session.picture, size))
         elif command is Command.COPY_COEFFICIENTS:
             self._copy("the coefficients", lambda: coefficients_text(self.session.picture))
-        self._due()
-
-    def frame(self) -> None:
-        """Draw the present state."""
-        self.frames_due -= 1
-        session, composition = self.session, self.composition()
-        if composition is None:
-            return
-        start = perf_counter()
-        ready = session.prepare(self.canvas.by_map(session.state, composition), PATIENCE)
-        composition = self.composition() or composition  # a state that was refused has left another one
-        try:
-            uploaded = self.canvas.show(session.picture, composition, session.work, self.mouse.at, session.pace)
-        except ShviewerError as error:  # a map that this OpenGL cannot hold
-            if self.shown is None:
-                raise
-            session.keep(error, self.shown)
-            uploaded = self.canvas.show(session.picture, composition)
-        if uploaded:
-            self.shown = session.picture
-            if session.waiting and ready:  # for what is there now
-                self._due()
-        elif self.canvas.renderer.carrier is None:
-            self._due()
-        ready = ready and uploaded
-        if session.title != self.title:
-            self.title = session.title
-            glfw.set_window_title(self.handle, self.title)
-        pointer = (
-            self.mouse.at if self.hovering and not self.mouse.dragged and ready else None
-        )  # a probe asks the light
-        if self.canvas.draw(composition, pointer, alone=ready):
-            self._due()
-        glfw.swap_buffers(self.handle)
-        self.frame_count += 1
-        if self.verbose:
-            milliseconds = 1000 * (perf_counter() - start)
-            print(
-                f"{'frame' if ready else 'meanwhile'} {self.frame_count}: {session.picture.light.name}, "
-                f"{session.picture.state.recipe.n_bands} bands, "
-                f"{composition.width} x {composition.height}, {milliseconds:.1f} ms"
-                + (f", {said}" if (said := session.status or (UPLOADING if self.canvas.uploading else "")) else ""),
-                file=sys.stderr,
-                flush=True,
-            )
+        self.due()
 
     def size_in_points(self) -> tuple[int, int]:
         """The size in points of the design; of a full screen, that of the window before."""
@@ -227,20 +145,7 @@ class Window:
             self._toggle_fullscreen()
             glfw.poll_events()
         width, height = glfw.get_framebuffer_size(self.handle)
-        return round(width / _scale(self.handle)), round(height / _scale(self.handle))
-
-    def composition(self) -> Composition | None:
-        """The layout of the picture in the framebuffer; None while minimised."""
-        return self._framed(self.session.view)
-
-    def _framed(self, view: View) -> Composition | None:
-        """The layout of a view in the framebuffer, which may be larger than the window (HiDPI)."""
-        width, height = glfw.get_framebuffer_size(self.handle)
-        return frame_for(view, width, height, _scale(self.handle)) if width * height else None
-
-    def _due(self) -> None:
-        """Note that a frame has to be drawn."""
-        self.frames_due = max(self.frames_due, 1)
+        return round(width / scale_of(self.handle)), round(height / scale_of(self.handle))
 
     def _toggle_fullscreen(self) -> None:
         self.fullscreen = not self.fullscreen
@@ -325,20 +230,14 @@ class Window:
         band, self.band = self.band, self.canvas.band_at(self.mouse.at)
         if over or self.hovering or band != self.band:
             self.hovering = over
-            self._due()
+            self.due()
 
     def _on_enter(self, window: Any, entered: int) -> None:
         if not entered and (self.hovering or self.band is not None):
             self.mouse.at, self.hovering, self.band = OUTSIDE, False, None
-            self._due()
+            self.due()
 
     def _on_drop(self, window: Any, paths: list[str]) -> None:
         if paths:
             self.session.drop(*paths)
-            self._due()
-
-
-def _scale(handle: Any) -> float:
-    """Pixels per point of the design, on the monitor that the window is on."""
-    scale = float(glfw.get_window_content_scale(handle)[1])
-    return scale if scale > 0 else 1.0
+            self.due()

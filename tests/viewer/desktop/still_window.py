@@ -6,12 +6,12 @@ from typing import Any
 
 import moderngl
 
-from shviewer.viewer.desktop import window
+from shviewer.viewer.desktop import frames, window
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import State
 
-window.PATIENCE = None  # type: ignore[assignment]
+frames.PATIENCE = None  # type: ignore[assignment]
 
 
 def window_of(handle: Any, state: State) -> window.Window:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,9 +14,9 @@ import pytest
 from shviewer.errors import OutputError
 from shviewer.harmonics.rotation import rotate
 from shviewer.progress import Stopped, listening, tell
-from shviewer.viewer.desktop import errands, opening, task
 from shviewer.viewer.desktop import session as sessions
-from shviewer.viewer.desktop.errands import Errands
+from shviewer.viewer.desktop.behind import errands, opening, saving, task
+from shviewer.viewer.desktop.behind.errands import Errands
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.message import DONE, ERROR, kind_of
 from shviewer.viewer.saving.file_marks import mark_of
@@ -64,7 +65,7 @@ def test_the_picture_lives_while_coefficients_are_written(writing: Held) -> None
     assert session.work is not None
     assert session.work.words == "writing the coefficients"
     writing.open.set()
-    session.errands.finish()
+    session.saving.finish()
     assert session.state.view.message.startswith(
         "saved 5.json in "
     )  # the picture that there was when the key was pressed
@@ -118,23 +119,25 @@ def test_what_cannot_be_written_is_said_and_a_fault_ends_nothing(
 def test_a_picture_whose_map_is_on_its_way_to_opengl_is_saved_when_it_is_there(
     at_once: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    class OpenGL:
-        version, there = "", False
-
-        def show(self, picture: object, seconds: float) -> bool:
-            return self.there
+    def drawn(*picture: object) -> Generator[float, None, str]:
+        yield 0.5
+        return "pixels"
 
     saved: list[object] = []
-    monkeypatch.setattr(sessions, "render_rgb", lambda *rest: "pixels")
-    monkeypatch.setattr(sessions, "save_picture", lambda *rest: saved.append(rest[-1]) or Path("a.png"))
-    session, opengl = Session(state_of("green")), OpenGL()
+    monkeypatch.setattr(saving, "render_in_parts", drawn)
+    monkeypatch.setattr(saving, "save_picture", lambda *rest: saved.append(rest[-1]) or Path("a.png"))
+    opengl = SimpleNamespace(version="", ready=lambda *picture: False, held=SimpleNamespace(pinned=None))
+    session = Session(state_of("green"))
     session.save(opengl, None)  # type: ignore[arg-type]
     assert session.prepare(patience=NOW)
     assert session.waiting
-    opengl.there = True
+    assert not session.saving.drawing
+    opengl.ready = lambda *picture: True
     assert session.prepare(patience=NOW)
-    session.errands.finish()
-    assert (saved, session.waiting) == (["pixels"], False)
+    assert (saved, session.waiting, session.saving.drawing) == ([], False, True)
+    assert opengl.held.pinned is not None  # what it is drawn from stays
+    session.saving.finish()
+    assert (saved, session.saving.drawing, opengl.held.pinned) == (["pixels"], False, None)
 
 
 def test_a_dropped_picture_is_opened_behind_the_window_and_the_newest_wish_wins(
@@ -187,6 +190,6 @@ def test_a_turned_light_is_written_behind_the_window(
     turned: State = state_of("green", light_rotation=(np.cos(0.2), 0.0, 0.0, np.sin(0.2)))
     session = Session(turned)
     session.press("Ctrl+E")
-    session.errands.finish()
+    session.saving.finish()
     assert session.state.view.message.startswith("saved shviewer-green-001.json")
     assert (tmp_path / "shviewer-green-001.json").exists()

@@ -14,7 +14,7 @@ from shviewer.progress import tell
 from shviewer.viewer import picture as pictures
 from shviewer.viewer.actions import Command
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.desktop import task as desktop_task
+from shviewer.viewer.desktop.behind import task as desktop_task
 from shviewer.viewer.desktop.canvas import _overlay_key
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.overlay.marks import marks_of
@@ -103,7 +103,7 @@ def test_escape_stops_the_search_and_what_needs_the_figures_takes_it_up_again(
 ) -> None:
     monkeypatch.setattr(desktop_task, "QUIET", 0.0)
     session = without_figures(tolerance=0.3)
-    task = session._making._task
+    task = session.making._task
     assert session.press("Esc") is None
     assert session.state.view.message.startswith("stopped")
     assert session.prepare()

@@ -10,9 +10,9 @@ import pytest
 
 from shviewer.errors import UsageError
 from shviewer.progress import tell
+from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.desktop.messages import notes_of
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.message import DONE, ERROR, SECONDS, WARNING, Message, kind_of, passes, warning
 from shviewer.viewer.state import state_of
 
@@ -41,7 +41,7 @@ def test_what_is_done_goes_after_four_seconds_and_what_is_wrong_at_the_next_key(
 
 def test_each_thing_that_is_said_has_its_kind(tmp_path: Path) -> None:
     session = Session(state_of("green"))
-    session._write("writing", lambda: tmp_path / "a.png")
+    session.saving.write("writing", lambda: tmp_path / "a.png")
     assert kind_of(session.state.view.message) == DONE
     session.keep(UsageError("too many"))
     assert kind_of(session.state.view.message) == ERROR

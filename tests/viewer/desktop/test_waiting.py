@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,11 +14,10 @@ from viewer.desktop.desktop import output_of
 from shviewer.lights.function import FunctionLight
 from shviewer.progress import Stopped, listening, tell
 from shviewer.viewer.actions import Command
-from shviewer.viewer.desktop import errands
-from shviewer.viewer.desktop import session as sessions
-from shviewer.viewer.desktop import task as tasks
+from shviewer.viewer.desktop.behind import saving as savings
+from shviewer.viewer.desktop.behind import task as tasks
+from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.desktop.task import Task
 from shviewer.viewer.state import changed, state_of
 
 NOW = 0.0
@@ -42,6 +42,11 @@ def gate() -> Iterator[Gate]:
     gate = Gate()
     yield gate
     gate.open.set()
+
+
+def drawn_at_once(*picture: object) -> Generator[float, None, Callable[[], None]]:
+    yield 0.5
+    return lambda: None
 
 
 def waiting(gate: Gate, **values: Any) -> Session:
@@ -87,10 +92,10 @@ def test_the_newest_wish_wins_and_what_it_makes_stale_never_shows(gate: Gate) ->
 
 def test_a_key_that_takes_nothing_away_from_the_task_does_not_begin_it_again(gate: Gate) -> None:
     session = waiting(gate)
-    task = session._making._task
+    task = session.making._task
     session.press("X")
     assert not session.prepare(patience=NOW)
-    assert session._making._task is task
+    assert session.making._task is task
 
 
 def test_escape_stops_the_work_before_it_closes_anything(gate: Gate) -> None:
@@ -126,19 +131,14 @@ def test_a_command_that_needs_the_picture_is_carried_out_when_it_is_there(gate: 
 
 def test_saving_waits_for_the_picture_that_was_asked_for(gate: Gate, monkeypatch: pytest.MonkeyPatch) -> None:
     saved = []
-    monkeypatch.setattr(sessions, "render_rgb", lambda renderer, picture, composition: None)
-    monkeypatch.setattr(errands, "metadata", lambda picture, *rest: picture.light.name)
-    monkeypatch.setattr(errands, "write_png", lambda path, pixels, text, exclusive: saved.append((path, text)))
-    monkeypatch.setattr(errands, "write_numbered", lambda stem, write: write(stem) or "it")
+    monkeypatch.setattr(savings, "render_in_parts", drawn_at_once)
+    monkeypatch.setattr(savings, "metadata", lambda picture, *rest: picture.light.name)
+    monkeypatch.setattr(savings, "write_png", lambda path, pixels, text, exclusive: saved.append((path, text)))
+    monkeypatch.setattr(savings, "write_numbered", lambda stem, write: write(stem) or "it")
 
-    class Anything:
-        version = ""
-
-        def show(self, picture: object, seconds: float) -> bool:
-            return True
-
+    opengl = SimpleNamespace(version="", ready=lambda *picture: True, held=SimpleNamespace(pinned=None))
     session = waiting(gate)
-    session.save(Anything(), Anything())  # type: ignore[arg-type]
+    session.save(opengl, None)  # type: ignore[arg-type]
     assert saved == []
     gate.open.set()
     assert session.prepare()
@@ -255,8 +255,8 @@ import sys, time
 import numpy as np
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.state import changed, state_of
-from viewer.desktop.still_window import window, window_of
-window.PATIENCE = 0.05
+from viewer.desktop.still_window import frames, window, window_of
+frames.PATIENCE = 0.05
 asleep = FunctionLight(lambda directions: time.sleep(3600), "asleep")
 import glfw
 with window.open_window((640, 320)) as handle:

@@ -90,7 +90,7 @@ def test_frames_go_on_while_opengl_takes_the_memory_of_a_map(renderer: Renderer,
     assert not canvas.show(before, frame_of(before))
     assert canvas.renderer.picture is None  # nothing yet but what is being done
     while not canvas.show(before, frame_of(before)):
-        assert canvas.uploading
+        assert canvas.pending
     last = read_rgb(canvas.renderer, frame_of(before))
     thread.open.clear()
     thread.asked.clear()
@@ -98,16 +98,16 @@ def test_frames_go_on_while_opengl_takes_the_memory_of_a_map(renderer: Renderer,
     assert thread.asked.wait(60)
     turned = after.seen(changed(after.state, camera=(70.0, 20.0)))
     assert not canvas.show(turned, frame_of(after))
-    assert canvas.uploading
-    assert canvas._picture.light is before.light
-    assert np.allclose(canvas._picture.world_from_view, turned.world_from_view)  # the last picture can be turned
+    assert canvas.pending
+    assert canvas._shown.light is before.light
+    assert np.allclose(canvas._shown.world_from_view, turned.world_from_view)  # the last picture can be turned
     assert canvas._overlay_key[0].words == UPLOADING  # type: ignore[index]
     assert (read_rgb(canvas.renderer, frame_of(after)) != last).any()
     thread.open.set()
     while not canvas.show(turned, frame_of(after)):
-        assert canvas.uploading
-    assert canvas._picture is turned
-    assert not canvas.uploading
+        assert canvas.pending
+    assert canvas._shown is turned
+    assert not canvas.pending
     renderer.rest.use()
     canvas.renderer.release()
 

@@ -59,7 +59,9 @@ def test_numbers_of_a_light_go_up_as_few_as_they_are_and_none_is_a_sum_of_bands(
     assert isinstance(drawn, Encoded)
     assert drawn.stored.numbers.shape == (ENCODINGS[name].floats, 3)
     render_linear(renderer, picture, square_frame(16))
-    programs = [program for key, program in renderer.programs.items() if key[2] == ENCODINGS[name].formula.upper()]
+    programs = [
+        program for key, program in renderer.panes.programs.items() if key[2] == ENCODINGS[name].formula.upper()
+    ]
     assert programs
     for program in programs:
         assert program.program["stored"].array_length == ENCODINGS[name].floats

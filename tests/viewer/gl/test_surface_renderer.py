@@ -17,11 +17,12 @@ from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.viewer.camera import matrix, towards, world_from_view
 from shviewer.viewer.composing.panes import Box, Sphere
-from shviewer.viewer.gl import surface_renderer
+from shviewer.viewer.gl import surface_renderer, triangles
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.shared import BACKGROUND
 from shviewer.viewer.gl.surface_mesh import surface_mesh
-from shviewer.viewer.gl.surface_renderer import MOST_SURFACES, OVERSAMPLING, TILE, SurfaceRenderer
+from shviewer.viewer.gl.surface_renderer import OVERSAMPLING, TILE, SurfaceRenderer
+from shviewer.viewer.gl.triangles import MOST_SURFACES
 from shviewer.viewer.surface import (
     Surface,
     basis_surface,
@@ -350,14 +351,14 @@ def test_state_is_left_as_found(frame: Frame) -> None:
 @contextmanager
 def counted(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
     made: list[float] = []
-    mesh = surface_renderer.surface_mesh
+    mesh = triangles.surface_mesh
 
     def counting(values: NDArray[np.float32], tolerance: float) -> object:
         made.append(tolerance)
         return mesh(values, tolerance)
 
     with monkeypatch.context() as patch:
-        patch.setattr(surface_renderer, "surface_mesh", counting)
+        patch.setattr(triangles, "surface_mesh", counting)
         yield made
 
 
@@ -379,13 +380,13 @@ def test_a_surface_is_meshed_once_and_again_only_when_it_is_drawn_much_larger(
 def test_what_is_held_is_bounded_and_all_is_released(frame: Frame) -> None:
     for order in range(-3, 4):
         frame.draw(basis_surface(3, order, 129), SKEW)
-    assert len(frame.surfaces.held) == MOST_SURFACES
-    held = list(frame.surfaces.held.values())
+    assert len(frame.surfaces.triangles.held) == MOST_SURFACES
+    held = list(frame.surfaces.triangles.held.values())
+    programs = frame.surfaces.program, frame.surfaces.resolve_program
     tile = frame.surfaces.tile
     assert tile is not None
     frame.surfaces.release()
-    assert not frame.surfaces.held
-    programs = frame.surfaces.program, frame.surfaces.resolve_program
+    assert not frame.surfaces.triangles.held
     parts = [*tile, *(program.program for program in programs), *(d.vertices for d in held)]
     assert all(isinstance(part.mglo, moderngl.InvalidObject) for part in parts)
     frame.surfaces = SurfaceRenderer(frame.context)

@@ -11,7 +11,7 @@ from shviewer.errors import ShviewerError
 from shviewer.lights.find import built_in_lights, split_light
 from shviewer.lights.light import Light
 from shviewer.viewer.actions import show_light
-from shviewer.viewer.desktop.errands import Errands
+from shviewer.viewer.desktop.behind.errands import Errands
 from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
@@ -47,6 +47,8 @@ class Opening(Errands):
     def __init__(self, wake: Callable[[], None] | None = None, *, as_image: bool = False) -> None:
         super().__init__(wake)
         self._as_image = as_image
+        self._then: Callable[[State], None]
+        self._failed: Callable[[ShviewerError], None]
         self._others: list[str | Light] = []
         self._passed: list[str] = []
         """The names of those that could not be opened."""
@@ -55,34 +57,48 @@ class Opening(Errands):
         self,
         state: State,
         others: Sequence[str | Light],
+        shown: State,
         then: Callable[[State], None],
         failed: Callable[[ShviewerError], None],
     ) -> None:
-        """Open the light that was chosen, as `opened`; `others` are gone on to by `next` where it cannot be."""
-        self.stop()
-        self._others, self._passed = list(others), []
-        words = f"opening {light_name(state.recipe.light)}"
-        self.run(words, lambda: opened(state, as_image=self._as_image), then, failed)
+        """Open the light that was chosen, as `opened`, or where it cannot be opened the first of the others that can.
 
-    def next(self, tried: State, error: ShviewerError, shown: State) -> State | None:
-        """Go over a light that cannot be opened: the state `shown` with the next one that can be; None if there is none."""
-        while self._others:
-            place, light = tried.place, self._others.pop(0)
-            bad = tried.lights[place] if place is not None else tried.recipe.light
-            self._passed.append(light_name(bad))
-            print(f"shviewer: {error}; skipped", file=sys.stderr, flush=True)
-            left = tuple(one for one in tried.lights if one != bad)
-            message = Message(_skipped(self._passed, str(error)), ERROR)
-            tried = changed(show_light(shown, light), lights=left, message=message)
-            try:
-                return opened(tried, as_image=self._as_image)
-            except ShviewerError as another:
-                error = another
-        return None
+        shown: the state of the picture there is, which then gets another light.
+        """
+        self.stop()
+        self._others, self._passed, self._then, self._failed = list(others), [], then, failed
+        self._try(state, shown)
+
+    @property
+    def more(self) -> bool:
+        """Whether there are others to go on to."""
+        return bool(self._others)
+
+    def go_on(self, tried: State, error: ShviewerError, shown: State) -> None:
+        """Go over a light that cannot be opened to the next, or say that there is none."""
+        if not self._others:
+            self._failed(error)
+            return
+        place, light = tried.place, self._others.pop(0)
+        bad = tried.lights[place] if place is not None else tried.recipe.light
+        self._passed.append(light_name(bad))
+        print(f"shviewer: {error}; skipped", file=sys.stderr, flush=True)
+        left = tuple(one for one in tried.lights if one != bad)
+        message = Message(_skipped(self._passed, str(error)), ERROR)
+        self._try(changed(show_light(shown, light), lights=left, message=message), shown)
 
     def end(self) -> None:
         """Go on to none any more."""
         self._others = []
+
+    def _try(self, state: State, shown: State) -> None:
+        self.run(
+            f"opening {light_name(state.recipe.light)}",
+            lambda: opened(state, as_image=self._as_image),
+            self._then,
+            lambda error: self.go_on(state, error, shown),
+            soon=not self._passed,
+        )
 
 
 def _skipped(names: list[str], reason: str) -> str:

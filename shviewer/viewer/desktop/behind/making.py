@@ -7,7 +7,7 @@ from threading import Event
 
 from shviewer.analysis.subjects import read_again
 from shviewer.viewer.animation.animation import ranged, wants_range
-from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, stages, still

@@ -1,27 +1,15 @@
-"""What the window writes and copies of its picture, behind the window: the picture itself and its coefficients."""
+"""Errands: what is done behind the window, one after the other, whatever is shown meanwhile."""
 
 from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-from shviewer.analysis.projected import Projected, project_recipe
-from shviewer.coefficients.programs import OURS
 from shviewer.errors import ShviewerError
-from shviewer.outputs import file_stem, write_atomically
 from shviewer.progress import Stopped, tell
-from shviewer.viewer import camera
-from shviewer.viewer.composing.composition import Composition
-from shviewer.viewer.desktop.task import Task
+from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.overlay.foot import Work
-from shviewer.viewer.picture import Picture
-from shviewer.viewer.saving.picture_files import write_numbered, write_png
-from shviewer.viewer.saving.stamp import metadata
 
 T = TypeVar("T")
 
@@ -38,9 +26,18 @@ class Errands:
         self._begun: list[tuple[Task[Any], Callable[[Any], None], Callable[[ShviewerError], None]]] = []
 
     def run(
-        self, words: str, make: Callable[[], T], then: Callable[[T], None], failed: Callable[[ShviewerError], None]
+        self,
+        words: str,
+        make: Callable[[], T],
+        then: Callable[[T], None],
+        failed: Callable[[ShviewerError], None],
+        *,
+        soon: bool = True,
     ) -> None:
-        """Make something and hand it to `then`, or why it could not be made to `failed`. words: what is being done."""
+        """Make something and hand it to `then`, or why it could not be made to `failed`. words: what is being done.
+
+        soon: whether to wait for it AT_ONCE seconds.
+        """
 
         def made() -> Iterator[T]:
             tell(words)
@@ -49,7 +46,7 @@ class Errands:
         before = self._begun[-1][0] if self._begun else None
         task = Task(made, before, self._wake)
         self._begun.append((task, then, failed))
-        if before is None:
+        if before is None and soon:
             task.wait(AT_ONCE)
             self.take()
 
@@ -90,32 +87,3 @@ class Errands:
         while self._begun:
             self._begun[0][0].wait(None)
             self.take()
-
-
-def save_picture(picture: Picture, composition: Composition, opengl: str, pixels: NDArray[np.uint8]) -> Path:
-    """Write the picture, with the pixels that OpenGL drew of it, under the next free name in the present folder.
-
-    Return its path. OutputError if that fails.
-    """
-    text = metadata(picture, composition, opengl)
-    return write_numbered(_stem(picture), lambda path: write_png(path, pixels, text, exclusive=True))
-
-
-def save_coefficients(picture: Picture) -> Path:
-    """Write what `shviewer project` would, with the light turned as it is shown. OutputError if that fails."""
-    data = _projected(picture).encode(OURS, "json")
-    return write_numbered(_stem(picture), lambda path: write_atomically(path, data, exclusive=True), suffix=".json")
-
-
-def coefficients_text(picture: Picture) -> str:
-    """The same as CSV with its stamp."""
-    return _projected(picture).encode(OURS, "csv").decode()
-
-
-def _projected(picture: Picture) -> Projected:
-    projected, rotation = project_recipe(picture.state.recipe), picture.state.view.light_rotation
-    return projected if rotation == camera.IDENTITY else projected.turned(camera.matrix(rotation))
-
-
-def _stem(picture: Picture) -> str:
-    return f"shviewer-{file_stem(picture.light.name)}"
