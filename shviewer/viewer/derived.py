@@ -45,8 +45,8 @@ WHITE_LEVEL = 0.8
 """The linear level at which that percentile is shown: the brightest hundredth still stands out above it."""
 
 DARK = 0.01
-"""A light whose percentile is at most this share of its mean is dark but for a point, and the point is shown. Beside a sun that
-is ten million times brighter, a sky is still above."""
+"""A light whose percentile is at most this share of its mean is dark but for a point; then white is the mean of the brightest
+hundredth, so that its bands are seen, too. Beside a sun that is ten million times brighter, a sky is still above."""
 
 FACING, ASIDE = (0.0, 12.0), (-45.0, 22.0)
 """Degrees to the left of the light's mean direction, and elevation, of the camera that faces a map, and one that sees the sides
@@ -205,6 +205,7 @@ def _automatic_exposure(light: Light, tone: str) -> float:
     share = np.broadcast_to(grid.row_share[:, None], brightest.shape)
     position = min(int(np.searchsorted(np.cumsum(share.ravel()[order]), WHITE_PERCENTILE)), len(order) - 1)
     level = float(brightest.ravel()[order[position]])
-    if level <= DARK * max(float((share * brightest).sum()), 0.0):
-        level = grid.peak
+    mean = max(float(_low_bands(light)[0].max()), 0.0) / (2 * np.sqrt(np.pi))
+    if level <= DARK * mean:
+        level = min(grid.peak, mean / (1 - WHITE_PERCENTILE)) or grid.peak
     return float(np.log2(exposed_for(WHITE_LEVEL, tone) / level)) if level > 0 else 0.0

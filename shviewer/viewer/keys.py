@@ -24,6 +24,7 @@ from shviewer.viewer.state import (
     describe_muted,
     describe_sanitizing,
 )
+from shviewer.words import grouped
 
 ROUGHER = 0.05
 """A step of roughness."""
@@ -121,7 +122,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
             "S / Shift+S",
             "samples x 4, / 4",
             _each(do.scale_samples, {"S": 4, "Shift+S": 0.25}),
-            lambda s: str(s.recipe.samples),
+            lambda s: grouped(s.recipe.samples),
         ),
         Binding("Ctrl+R / F5", "read its file again", {"Ctrl+R": Command.RELOAD, "F5": Command.RELOAD}),
         Binding("L", "next layout of an image", {"L": do.next_layout}, lambda s: s.recipe.reading.layout),
@@ -186,7 +187,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         ),
         Binding("drag", "turn the spheres", {}, lambda s: describe_camera(s.view)),
         Binding("double click", "face that point", {}),
-        Binding("scroll", "zoom, about the mouse", {}, lambda s: f"{s.view.zoom:.2f} x"),
+        Binding("scroll", "zoom, about the mouse", {}, lambda s: f"{s.view.zoom:.2f} ×"),
         Binding("middle drag", "move the spheres", {}),
         Binding("F", "face the light", {"F": face_light}),
         Binding("R", "all but the light as at the start", {"R": do.reset}),

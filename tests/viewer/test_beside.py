@@ -38,7 +38,7 @@ PAIRS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
 
 def pane(pixels: np.ndarray, sphere: Sphere) -> np.ndarray:
     """The square of pixels within a sphere."""
-    x, y, reach = round(sphere.x - 0.5), round(sphere.y - 0.5), int(sphere.radius * 0.7)
+    x, y, reach = int(sphere.x), int(sphere.y), int(sphere.radius * 0.7)
     return pixels[y - reach : y + reach, x - reach : x + reach]
 
 

@@ -1,6 +1,6 @@
 """The screenshot mode: its files, its promises when something fails, and two golden pictures.
 
-SHVIEWER_UPDATE_GOLDENS=1 python -m pytest tests/gpu/test_screenshot.py -k golden
+SHVIEWER_UPDATE_GOLDENS=1 python -m pytest tests/viewer/test_screenshot.py -k golden
 writes the golden pictures in tests/data/ anew; look at them before keeping them.
 """
 

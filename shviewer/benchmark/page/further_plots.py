@@ -49,8 +49,15 @@ def draw_staircases(figure: Figure, found: Mapping[str, Any]) -> None:
 
 
 def draw_moving(figure: Figure, samples: list[dict[str, Any]]) -> None:
-    """Draw the RMS error of a light that turns against bands, for each way to sample its frames; beyond 100 % it is noise."""
-    found = [Curve(name, tuple(points), look) for look, (name, points) in enumerate(curves(samples).items())]
+    """Draw the RMS error of a light that turns against bands; beyond 100 % it is noise.
+
+    A way to sample its frames has a colour, a number of samples a dash.
+    """
+    found: list[Curve] = []
+    families = dict[str, int]()
+    for name, points in curves(samples).items():
+        look = families.setdefault(name.partition(",")[0], len(families))
+        found.append(Curve(name, tuple(points), look, dash=sum(other.look == look for other in found)))
     x, y = padded(n for n, _ in found[0].points), padded(error for curve in found for _, error in curve.points)
     axes = log_axes(figure, f"{shorten(samples[0]['light'])}, turning: RMS error", x, y)
     axes.set_xticks([n for n, _ in found[0].points], [f"{n:g}" for n, _ in found[0].points])

@@ -157,6 +157,8 @@ class Curve(NamedTuple):
     """The quartiles of each y; empty if they are not known."""
     marked: tuple[int, ...] | None = None
     """The points that have a marker; None for all."""
+    dash: int | None = None
+    """The index of its dash, where curves of one colour are a family; None for `look`."""
 
 
 def log_axes(figure: Figure, title: str, x: tuple[float, float], y: tuple[float, float], unit: str = " %") -> Axes:
@@ -188,7 +190,7 @@ def draw_curves(axes: Axes, curves: Sequence[Curve]) -> None:
             markevery=None if curve.marked is None else list(curve.marked),
             markeredgecolor=axes.get_facecolor(),
             markeredgewidth=0.4,
-            linestyle=DASHES[curve.look % len(DASHES)],
+            linestyle=DASHES[(curve.look if curve.dash is None else curve.dash) % len(DASHES)],
             clip_on=False,
             zorder=3 + 0.01 * curve.look,
         )

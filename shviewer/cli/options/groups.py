@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Container
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeAlias
 
 from shviewer.analysis.options import Bands, Number, Option, Pair, Quantity, Share, Whole, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
@@ -35,6 +35,10 @@ TEXTS = ("window", "error_range")
 
 LARGE = ("samples",)
 """Counts that may be given as 1e6."""
+
+
+Adding: TypeAlias = argparse._ActionsContainer
+"""A parser, or a group of its options, which stand under a title in the help."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -75,12 +79,17 @@ def add_view_options(parser: OneLineParser, *, several: bool = False) -> None:
         action="store_true",
         help="take a picture that shviewer saved for an image, not for the light and the view that it shows",
     )
-    add_table(parser, Recipe)
+    add_numbers(parser)
     add_picture_options(parser)
     add_reading_options(parser)
 
 
-def add_table(parser: OneLineParser, holder: type, names: Container[str] = ()) -> None:
+def add_numbers(parser: OneLineParser) -> None:
+    """Add the options that say which numbers are made of a light."""
+    add_table(parser.add_argument_group("bands and projection"), Recipe)
+
+
+def add_table(parser: Adding, holder: type, names: Container[str] = ()) -> None:
     """Add the options that a dataclass holds, or only those in `names`. An option that is not given is None."""
     for row in options_of(holder).values():
         if row.flag and (not names or row.name in names):
@@ -110,25 +119,26 @@ def add_picture_options(parser: OneLineParser) -> None:
     """Add the options of a picture that no dataclass holds: coefficients to compare, a turn of the light, a size."""
     from shviewer.viewer.view import View  # modes that draw nothing load nothing of the viewer
 
-    parser.add_argument(
+    group = parser.add_argument_group("what is shown")
+    group.add_argument(
         "--compare",
         metavar="FILE",
         help="show the coefficients in FILE instead of the light's own, and say how well they agree, or by which usual "
         "mistake they are off; finds out the convention of a bare list, if none is named",
     )
-    add_table(parser, View)
-    add_turn(parser)
-    parser.add_argument(
+    add_table(group, View)
+    add_turn(group)
+    group.add_argument(
         "--anew",
         action="store_true",
         help="project the light as it stands when it is turned, so that samples do not turn with it",
     )
-    parser.add_argument(
+    group.add_argument(
         "--size", metavar=("W", "H"), nargs=2, type=int, help="pixels (default 1280 640, or those of the picture)"
     )
 
 
-def add_turn(parser: OneLineParser) -> None:
+def add_turn(parser: Adding) -> None:
     """Add the options that turn the light."""
     parser.add_argument(
         "--rotate-light",
@@ -144,7 +154,8 @@ def add_turn(parser: OneLineParser) -> None:
 
 def add_reading_options(parser: OneLineParser, convention: str = "--convention") -> None:
     """Add the options that say how to read images, and coefficients that do not name their convention."""
-    parser.add_argument(
+    group = parser.add_argument_group("reading files")
+    group.add_argument(
         convention,
         metavar="C",
         dest="input_convention",
@@ -152,33 +163,33 @@ def add_reading_options(parser: OneLineParser, convention: str = "--convention")
         help="convention of a bare list of coefficients, such as three, unity or shviewer,y-up,no-phase: the names and"
         " modifiers of project's --convention",
     )
-    parser.add_argument(
+    group.add_argument(
         "--sanitize",
         action="store_true",
         default=None,
         help="repair NaN, infinite and negative texels of an image instead of refusing or keeping them",
     )
-    parser.add_argument(
+    group.add_argument(
         "--layout",
         metavar="L",
         help="how an image covers the sphere: auto (default), lat-long, cube, angular or mirror-ball",
     )
-    parser.add_argument(
+    group.add_argument(
         "--max-side",
         metavar="N",
         type=positive_count,
         help="texels along a side that an image may have (default 32768)",
     )
-    parser.add_argument(
+    group.add_argument(
         "--max-megatexels",
         metavar="M",
         type=positive,
         help="texels that an image may have, in units of 1024 x 1024 (default 128)",
     )
-    parser.add_argument(
+    group.add_argument(
         "--max-file-mib", metavar="M", type=positive, help="size that an image's file may have, in MiB (default 512)"
     )
-    parser.add_argument(
+    group.add_argument(
         "--max-memory-mib",
         metavar="M",
         type=positive,

@@ -5,14 +5,13 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from shviewer.analysis.recipe import Recipe
 from shviewer.cli.options.groups import (
     LIGHT_HELP,
     OneLineParser,
     add_force,
     add_jobs,
+    add_numbers,
     add_reading_options,
-    add_table,
     add_turn,
     add_view_options,
 )
@@ -21,7 +20,7 @@ from shviewer.version import __version__
 
 EXIT_CODES = """exit codes:
   0    done
-  1    --reference: the picture differs; --stability: a case failed; project: one of several lights failed
+  1    --reference differs, --stability fails, or one of project's lights fails
   2    bad arguments
   3    a light that is unknown, unreadable or damaged
   4    a file that could not be written
@@ -30,29 +29,41 @@ EXIT_CODES = """exit codes:
   130  interrupted (129 and 143: ended by SIGHUP or SIGTERM)"""
 
 
-def _parser(program: str, description: str, epilog: str = "", usage: str | None = None) -> OneLineParser:
+USAGES = {
+    "view": "shviewer [LIGHT ...] [options]",
+    "screenshot": "shviewer screenshot OUT [LIGHT] [options]",
+    "sweep": "shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]",
+    "info": "shviewer info LIGHT [LIGHT ...] [options]",
+    "project": "shviewer project [LIGHT ...] -o FILE [options]",
+    "report": "shviewer report [LIGHT ...] [-o DIR] [options]",
+    "help": "shviewer help [TOPIC]",
+}
+
+
+class _Paragraphs(argparse.HelpFormatter):
+    """Breaks a text of one line to the width of the terminal, and leaves one of several lines as it is."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return text if "\n" in text else super()._fill_text(text, width, indent)
+
+
+def _parser(mode: str, description: str, epilog: str = "") -> OneLineParser:
     """The parser of a mode, whose help ends with the exit codes and the epilog."""
-    lines = argparse.RawDescriptionHelpFormatter
-    return OneLineParser(program, usage, description, epilog=EXIT_CODES + epilog, formatter_class=lines)
+    program = "shviewer" if mode == "view" else f"shviewer {mode}"
+    usage = "\n       ".join(USAGES.values()) if mode == "view" else USAGES[mode]
+    return OneLineParser(program, usage, description, epilog=EXIT_CODES + epilog, formatter_class=_Paragraphs)
 
 
 def view_parser() -> OneLineParser:
     """shviewer [LIGHT]: the window."""
     parser = _parser(
-        "shviewer",
+        "view",
         "Show a light beside its spherical-harmonic reconstruction. Without a display, write the picture instead.",
         "\n\nkeys and mouse: shviewer --list-keys\npictures without a window: shviewer screenshot --help"
         "\nanimations: shviewer sweep --help"
         "\nwhat a light is, in figures: shviewer info --help"
         "\nits coefficients as a file: shviewer project --help"
         "\nthe guide, a page for each question: shviewer help TOPIC",
-        usage="shviewer [LIGHT ...] [options]\n"
-        "       shviewer screenshot OUT [LIGHT] [options]\n"
-        "       shviewer sweep OUT [LIGHT] [--from N] [--to N] [options]\n"
-        "       shviewer info LIGHT [LIGHT ...] [options]\n"
-        "       shviewer project [LIGHT ...] -o FILE [options]\n"
-        "       shviewer report [LIGHT ...] [-o DIR] [options]\n"
-        "       shviewer help [TOPIC]",
     )
     add_view_options(parser, several=True)
     parser.add_argument(
@@ -77,7 +88,7 @@ def view_parser() -> OneLineParser:
 def screenshot_parser() -> OneLineParser:
     """shviewer screenshot OUT [LIGHT]: a picture without a window."""
     parser = _parser(
-        "shviewer screenshot",
+        "screenshot",
         "Write the picture without a window or a display. The same arguments give the same bytes.",
     )
     parser.add_argument(
@@ -108,7 +119,7 @@ def screenshot_parser() -> OneLineParser:
 def sweep_parser() -> OneLineParser:
     """shviewer sweep OUT [LIGHT]: an animation without a window."""
     parser = _parser(
-        "shviewer sweep",
+        "sweep",
         "Write an animation: more and more bands, or the camera (--turntable) or the light (--turn-light) going round. "
         "Every frame is the screenshot of its state.",
     )
@@ -149,7 +160,7 @@ def sweep_parser() -> OneLineParser:
 def info_parser() -> OneLineParser:
     """shviewer info LIGHT [LIGHT ...]: lights in figures."""
     parser = _parser(
-        "shviewer info",
+        "info",
         "Say what each LIGHT is: its file, size and range, its mean and peak, the energy of its bands, and how many"
         " bands it needs. The figures are the window's.",
         "\n\nA light that cannot be read does not stop the others; the exit code is that of the first.",
@@ -164,7 +175,7 @@ def info_parser() -> OneLineParser:
 def project_parser() -> OneLineParser:
     """shviewer project [LIGHT ...] -o FILE: coefficients as a file."""
     parser = _parser(
-        "shviewer project",
+        "project",
         "Write the coefficients of LIGHT, with the convention stamped on them. Several lights go into a folder.",
         "\n\nOf several lights those that can be projected are written, whatever becomes of the others.",
     )
@@ -191,7 +202,7 @@ def project_parser() -> OneLineParser:
         help="y-up or z-up (right-handed), y-up-left or z-up-left, or which of our axes x, y and z are, such as +x+z-y",
     )
     parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
-    add_table(parser, Recipe)
+    add_numbers(parser)
     add_turn(parser)
     add_reading_options(parser, convention="--input-convention")
     add_jobs(parser)
@@ -202,7 +213,7 @@ def project_parser() -> OneLineParser:
 def report_parser() -> OneLineParser:
     """shviewer report [LIGHT ...]: speed against error, measured on this machine."""
     parser = _parser(
-        "shviewer report",
+        "report",
         "Measure speed against error on this machine and write report.html, report.md, report.json, report.csv and plots. "
         "Without LIGHT: built-in scenes and two environment maps.",
         "\n\nWith --stability alone only the hard cases are run and printed (about 15 s). Plots need "

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from shviewer.viewer.composing import panes
 from shviewer.viewer.composing.design import Design, margin_of
-from shviewer.viewer.composing.numbers_area import HEIGHTS, SIDE, Line, Mode, Numbers, numbers_area
+from shviewer.viewer.composing.numbers_area import AROUND, HEIGHTS, SIDE, Line, Mode, Numbers, numbers_area
 from shviewer.viewer.composing.panes import Box, Pane, Sphere, WholeSphere
 
 if TYPE_CHECKING:
@@ -181,10 +181,10 @@ class _Placed:
         margin = design.margin
         line = max(1, round(scale))
         if column:
-            x = design.width - margin - SIDE - 20
+            x = design.width - margin - SIDE - AROUND
             hairline = Box(x, 24, x, self.picture(design.n_panes - 1).bottom + 32).scaled(scale)
             hairline = hairline._replace(right=hairline.left + line)
-            area = Box(x + 20, 24, design.width - margin, design.height)
+            area = Box(x + AROUND, 24, design.width - margin, design.height)
         else:
             hairline = Box(margin, self.hairline, design.width - margin, self.hairline).scaled(scale)
             hairline = hairline._replace(bottom=hairline.top + line)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 from math import ceil, sqrt
 
-from shviewer.viewer.composing.numbers_area import COLUMN_HEIGHT, COMFORTABLE, HEIGHTS, LEVELS, SIDE, Mode, fits
+from shviewer.viewer.composing.numbers_area import AROUND, COLUMN_HEIGHT, COMFORTABLE, HEIGHTS, LEVELS, SIDE, Mode, fits
 
 COMPACT_WIDTH, COMPACT_HEIGHT = 900, 480
 """A frame that is smaller both ways is compact: small type, and nothing that could be done without."""
@@ -111,14 +111,14 @@ class Design:
 
     def pane_width(self, rows: int, mode: Mode) -> float:
         columns = self.columns(rows)
-        beside = SIDE + 36 if mode is Mode.COLUMN else 0.0
+        beside = SIDE + 2 * AROUND if mode is Mode.COLUMN else 0.0
         return (self.width - beside - 2 * self.margin - (columns - 1) * self.gap(rows)) / columns
 
     def size(self, rows: int, mode: Mode) -> float:
         """The largest height of a pane's picture: the diameter of a sphere, or half the width of a map."""
         low, high = 0.0, self.pane_width(rows, mode) / (2 if self.maps else 1)
         room = self.height - HEIGHTS[mode][self.compact] - self.taken(rows, mode)
-        for _ in range(24):
+        for _ in range(48):
             size = (low + high) / 2
             low, high = (size, high) if rows * (size + self.pushed(size, rows, mode)) <= room else (low, size)
         return low

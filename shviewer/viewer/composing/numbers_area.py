@@ -59,7 +59,7 @@ HEIGHTS = {
     Mode.HALVES: (160.0, 98.0),
     Mode.STACK: (268.0, 172.0),
     Mode.CELL: (160.0, 98.0),
-    Mode.COLUMN: (44.0, 44.0),
+    Mode.COLUMN: (36.0, 36.0),
     Mode.BARE: (160.0, 98.0),
     Mode.ANSWERS: (104.0, 56.0),
     Mode.NONE: (0.0, 0.0),
@@ -77,11 +77,14 @@ COMFORTABLE = 145.0
 ROOMY = 205.0
 """From this height on the numbers are larger, or the figures stand in two rows beside a wider curve."""
 
+HIGH = 262.0
+"""From this height on both."""
+
 COLUMN_HEIGHT = 450.0
 """The least height of a frame whose numbers stand in a column at the right."""
 
-SIDE = 200.0
-"""Width of the column of numbers at the right, without the margin."""
+SIDE, AROUND = 192.0, 24.0
+"""Width of the column of numbers at the right, without the margin, and the space on both sides of its hairline."""
 
 
 @dataclass(frozen=True)
@@ -192,24 +195,22 @@ def _answers_and_figures(area: Box, *, compact: bool, roomy: bool) -> Numbers:
         ]
         figures = [Cell(area.left + n * column, area.left + (n + 1) * column, top + 68, top + 83) for n in range(4)]
         return Numbers(tuple(answers), tuple(figures), answer_size=20, figure_size=14, label_size=11, short=True)
-    two_rows = roomy and width < 5 * COLUMN and width >= 3 * COLUMN
+    two_rows = roomy and 3 * SHORT_COLUMN <= width < 5 * COLUMN
     column = min(width / 3, 132.0) if two_rows else min(float(ceil(width / 5)), 121.0)
-    large = roomy and not two_rows
-    first = (51, 74, 124, 144) if large else (42, 62, 94, 112)
-    if two_rows:
-        first = (42, 62, 96, 114)
+    large = roomy and (not two_rows or area.height >= HIGH)
+    first = (51, 74, 124, 144) if large else (42, 62, 96, 114) if two_rows else (42, 62, 94, 112)
     step = width / 2 if two_rows else 2 * column
     answers = [Cell(area.left + n * step, area.left + (n + 1) * step, top + first[0], top + first[1]) for n in (0, 1)]
     figures = []
     for n in range(5):
         row, place = divmod(n, 3) if two_rows else (0, n)
-        x, down = area.left + place * column, top + 50 * row
+        x, down = area.left + place * column, top + (58 if large else 50) * row
         figures.append(Cell(x, x + column, down + first[2], down + first[3]))
     narrow = column < SHORT_COLUMN
     return Numbers(
         tuple(answers),
         tuple(figures),
-        answer_size=34 if large else 28,
+        answer_size=34 if large and step >= 200 else 28,
         figure_size=20 if large and not narrow else 15 if narrow else 18,
         label_size=12 if narrow else 13,
         short=column < COLUMN,
@@ -230,6 +231,6 @@ def _column(area: Box, cell: Box, *, exposed: bool) -> Numbers:
     start = answers[-1].label + 56
     pitch = min(56.0, (area.bottom - 60 - start) / 4.5)
     figures = [Cell(area.left, area.right, start + pitch * n, start + pitch * n + 20) for n in range(5)]
-    foot = Line(24, area.left - 36, area.bottom - FOOT)
+    foot = Line(24, area.left - 2 * AROUND, area.bottom - FOOT)
     exposure = None if exposed else Line(area.left, area.right, area.bottom - 44)
     return _in_cell(Numbers(tuple(answers), tuple(figures), foot=foot, exposure=exposure, figure_size=20), cell)

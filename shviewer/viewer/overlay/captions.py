@@ -19,6 +19,7 @@ from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces
 from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, REGULAR, SEMIBOLD, Ink, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
+from shviewer.viewer.overlay.setting import Part, set_on
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_basis, describe_muted, describe_window
 from shviewer.words import counted, grouped, grouped_number, radiance, theta_phi_degrees
@@ -28,8 +29,8 @@ HEAD, SECOND, FOOT, SMALL = 15.0, 13.0, 12.0, 11.0
 
 ZEBRA = 11.0
 
-Part: TypeAlias = tuple[str, ...]
-"""Something to be said, in wordings of which the longest that has room is taken; "" and what has none is left out."""
+RADIUS = ("radius: square root of magnitude", "radius: root of magnitude", "radius: root")
+"""What the radius of a light's surface is, in place of the exposure."""
 
 Words: TypeAlias = tuple[str, list[Part], list[Part]]
 """A head, the parts of what is said about it in their order, and those among them that no picture may hide."""
@@ -55,12 +56,14 @@ def caption_blocks(
 
 
 def exposure_pieces(picture: Picture, at: Composition, line: Line, unsaid: Sequence[Part] = ()) -> list[Piece]:
-    """The exposure, and what means beyond white, in as many words as have room; surfaces have none.
+    """The exposure, and what means beyond white, in as many words as have room; of surfaces what their radius is.
 
     unsaid: what stands before it, in its shortest wording, as it has no room elsewhere.
     """
     if isinstance(picture.drawn, Surfaces):
-        return []
+        size, ink = at.px(SMALL if at.compact else FOOT), INK if at.over else FAINT
+        found = set_on([RADIUS], [line], size)[0]
+        return [_text("radius", line.left, line.baseline, words, size, ink, at) for _, words in found]
     view, stops = picture.state.view, typeset(f"{picture.exposure_stops:+z.1f} stops")
     size = at.px(SMALL if at.compact else FOOT)
     curve = "" if view.tone == "none" else f", {view.tone} curve"
@@ -126,39 +129,17 @@ def _head(
     if lines and lines[0].baseline == places.head.baseline:
         lines[0] = after
     size, ink = at.px(SMALL if at.compact else SECOND), INK if at.over else GREY
-    found, unsaid = _set(parts, lines, size)
+    found, unsaid = set_on(parts, lines, size)
     if any(part in unsaid for part in must):
-        found, unsaid = _set([*must, *(part for part in parts if part not in must)], lines, size)
+        found, unsaid = set_on([*must, *(part for part in parts if part not in must)], lines, size)
     unsaid = [part for part in must if part in unsaid]
     if unsaid and after not in lines:
-        beside, unsaid = _set(unsaid, [after], size)
+        beside, unsaid = set_on(unsaid, [after], size)
         found += beside
     for number, (line, words) in enumerate(found):
         called = f"{name}_about" if number == 0 else f"{name}_about_{number}"
         pieces.append(_text(called, line.left, line.baseline, words, size, ink, at))
     return pieces, unsaid
-
-
-def _set(parts: Sequence[Part], lines: Sequence[Line], size: float) -> tuple[list[tuple[Line, str]], list[Part]]:
-    """Set parts on lines, with commas between those on one; of each the longest wording that has room.
-
-    Return the parts, too, that have none.
-    """
-    found: list[tuple[Line, str]] = []
-    unsaid: list[Part] = []
-    for part in parts:
-        for words in (typeset(wording) for wording in part if wording):
-            line, said = found[-1] if found else (None, "")
-            if line is not None and line.left + width_of(f"{said}, {words}", size) <= line.right:
-                found[-1] = line, f"{said}, {words}"
-                break
-            free = lines[len(found) :]
-            if free and free[0].left + width_of(words, size) <= free[0].right:
-                found.append((free[0], words))
-                break
-        else:
-            unsaid += [part] if any(part) else []
-    return found, unsaid
 
 
 def _original_words(picture: Picture, at: Composition) -> Words:
@@ -167,12 +148,10 @@ def _original_words(picture: Picture, at: Composition) -> Words:
     asked = picture.state.recipe.quantity
     quantity = "original" if asked == RADIANCE else in_words(asked)
     what = f"{size[0]} × {size[1]}" if size else light.description
-    if isinstance(picture.drawn, Surfaces):
-        suns = len(picture.subject.suns)
-        without = f"without sun{'s' if suns > 1 else ''}" if suns else ""
-        return picture.light.name, [(quantity,), (without,), *_radius(picture.drawn.shown[0].clipped)], []
+    suns = len(picture.subject.suns) if isinstance(picture.drawn, Surfaces) else 0
+    without = ("without sun" if suns == 1 else "without suns",) if suns else ()
     notes: list[Part] = [(note,) for note in _notes(picture)]
-    parts = [] if at.compact else [(quantity,), (what, what.partition(" (")[0]), *notes]
+    parts = [] if at.compact else [(quantity,), (what, what.partition(" (")[0]), *notes, without, *_clipped(picture, 0)]
     return picture.light.name, parts, [] if at.compact else notes  # there they stand beside the exposure
 
 
@@ -203,14 +182,16 @@ def _reconstruction_words(picture: Picture, at: Composition) -> Words:
     changes = _changes(picture)
     if view.encode:
         encoding = ENCODINGS[view.encode]
-        return encoding.words, [(f"{encoding.floats} numbers a channel",), *changes], changes
-    if isinstance(picture.drawn, Surfaces):
-        return head, [*changes, *_radius(picture.drawn.shown[1].clipped)], changes
+        return (
+            encoding.words,
+            [(f"{encoding.floats} numbers a channel", f"{encoding.floats} numbers"), *changes],
+            changes,
+        )
     method, _, missed = picture.projection.method.partition("; ")
     method = "" if any(places.foot for places in at.captions[1:2]) else method
     count = f"{grouped(recipe.n_bands**2)} coefficient{'' if recipe.n_bands == 1 else 's'}"
     may_miss: Part = (_short(missed), _shorter(missed))
-    return head, [(count,), *changes, (method,), may_miss], [*changes, may_miss]
+    return head, [(count,), *changes, (method,), may_miss, *_clipped(picture, 1)], [*changes, may_miss]
 
 
 def _short(missed: str) -> str:
@@ -225,14 +206,13 @@ def _shorter(missed: str) -> str:
 
 def _error_words(picture: Picture) -> tuple[str, list[Part]]:
     signed = ("reconstruction − original", "signed")
-    if isinstance(picture.drawn, Surfaces):
-        return "error", [signed, *_radius(picture.drawn.shown[2].clipped)]
     words: dict[str, Part] = {
         "signed": signed,
         "absolute": ("absolute",),
         "relative": ("relative to the original", "relative"),
     }
-    return "error", [words[picture.state.view.error]]
+    kind = "signed" if isinstance(picture.drawn, Surfaces) else picture.state.view.error
+    return "error", [words[kind], *_clipped(picture, 2)]
 
 
 def _beside_words(picture: Picture, second: Beside) -> tuple[str, list[Part]]:
@@ -242,10 +222,10 @@ def _beside_words(picture: Picture, second: Beside) -> tuple[str, list[Part]]:
     return f"{what[0].lower()}{what[1:]}", [(f"relative L2 error {reached}", f"error {reached}")]
 
 
-def _radius(clipped: bool) -> list[Part]:
-    """What the radius of a light's surface is."""
-    root = ("radius: square root of magnitude", "radius: root of magnitude", "radius: root")
-    return [root, *([("cut at the circle", "cut")] if clipped else [])]
+def _clipped(picture: Picture, pane: int) -> list[Part]:
+    """Whether the circle cuts a surface."""
+    cut = isinstance(picture.drawn, Surfaces) and picture.drawn.shown[pane].clipped
+    return [("cut at the circle", "cut")] if cut else []
 
 
 def _foot(picture: Picture, line: Line, at: Composition, timing: bool, unsaid: list[Part]) -> list[Piece]:
@@ -260,7 +240,7 @@ def _foot(picture: Picture, line: Line, at: Composition, timing: bool, unsaid: l
     size, ink = at.px(SMALL if at.compact else FOOT), INK if at.over else FAINT
     return [
         _text("method", where.left, where.baseline, words, size, ink, at)
-        for where, words in _set(said, [line], size)[0]
+        for where, words in set_on(said, [line], size)[0]
     ]
 
 

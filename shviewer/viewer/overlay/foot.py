@@ -27,6 +27,7 @@ from shviewer.viewer.overlay.lettering import (
 )
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Text
+from shviewer.viewer.overlay.setting import sentence
 from shviewer.viewer.picture import Picture
 
 KEYS = (("↑ ↓", "bands"), ("0–9", "mute"), ("D", "error"), ("G", "whole sphere"), ("U", "sun apart"), ("H", "help"))
@@ -198,13 +199,16 @@ def turning_pieces(at: Composition, picture: Picture, pace: float | None) -> lis
     how = {"best": "projected exactly", "gauss-legendre": "points that stand still"}.get(recipe.method, samples)
     rate = "" if pace is None else f"{pace:.0f} frames a second" if pace >= 9.5 else f"{pace:.1g} frames a second"
     parts = [f"the light turns by {TURN_STEP:g}° a frame", how, *([rate] if rate else [])]
-    room = line.right - line.left - width_of("Esc stops", small) - at.px(18)
-    words = shortened_to(typeset(", ".join(parts)), room, size)
-    if not words:
-        return []
-    turning = Text("turning", line.left, line.baseline, words, size, INK)
-    after = round(turning.box.right + at.px(18))
-    return [turning, Text("turning_stops", after, line.baseline, "Esc stops", small, GREY)]
+    within = line._replace(right=line.right - width_of("Esc stops", small) - at.px(18))
+    wordings = [", ".join(parts), ", ".join(["turning", *parts[1:]]), f"turning, {how}", "turning"]
+    said = sentence("turning", within, wordings, size, INK)
+    return [
+        *said,
+        *(
+            Text("turning_stops", round(one.box.right + at.px(18)), line.baseline, "Esc stops", small, GREY)
+            for one in said
+        ),
+    ]
 
 
 def _mark(sign: str, x: float, baseline: float, size: float, ink: Ink, at: Composition) -> list[Piece]:

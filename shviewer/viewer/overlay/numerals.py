@@ -6,7 +6,7 @@ import math
 import re
 from functools import lru_cache
 
-from shviewer.words import percent, radiance
+from shviewer.words import grouped, percent, radiance
 
 MINUS, THIN = "\u2212", "\u202f"
 """The minus sign of mathematics, and a thin space at which no line breaks."""
@@ -33,7 +33,9 @@ def share(value: float, digits: int = 3, floor: float = 0.0) -> str:
 
 
 def value(found: float, peak: float, digits: int = 3) -> str:
-    return typeset(radiance(found, peak, digits))
+    """A radiance, its thousands apart where it has more than four digits."""
+    said = radiance(found, peak, digits)
+    return typeset(grouped(int(said)) if re.fullmatch(r"-?\d{5,}", said) else said)
 
 
 def bound_text(found: float, bound: float | None, peak: float, digits: int = 3) -> str:

@@ -34,14 +34,15 @@ from shviewer.viewer.overlay.layers import Layer, strips
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
 from shviewer.viewer.overlay.pieces import Piece, Text, named_boxes
 from shviewer.viewer.overlay.plots.band_series import band_series
-from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots, legend_pieces
+from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots
+from shviewer.viewer.overlay.plots.legend import hovered_pieces, legend_pieces
 from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
 from shviewer.viewer.overlay.plots.steps import steps_legend, steps_of, steps_pieces
 from shviewer.viewer.overlay.plots.stored import stored_errors, stored_legend, stored_pieces
 from shviewer.viewer.overlay.plots.trace import trace_pieces
 from shviewer.viewer.picture import Picture
 
-NOT_TIMED = "time against error: nothing was projected that could be timed; M changes the method"
+NOT_TIMED = "nothing was projected that could be timed; M changes the method"
 NO_ROOM = "no room for time against error: enlarge the window, or B"
 
 
@@ -124,7 +125,10 @@ def draw_overlay(
     shared = numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline
     if shared and (said or work is not None or turning):  # both are on one line
         exposure = []
-    if not turning:
+    line, explained = numbers.legend, state.view.by_roughness or state.view.encode or hovered is not None
+    if line is None and explained and not (said or work is not None or turning):  # in place of keys
+        line, exposure, foot = numbers.foot, exposure if not shared else [], []
+    elif not turning:
         after = round(max((piece.box.right for piece in exposure), default=0) + at.px(18)) if shared else 0
         foot = foot_pieces(at, said, work, after=after, proposed=proposed_key(picture))
     bars: dict[int, Box] = {}
@@ -135,21 +139,27 @@ def draw_overlay(
             blocks = heads
     blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
     if numbers.curve is not None:
+        legend: list[Piece] = []
         if state.view.by_roughness:
             steps = steps_of(picture)
-            blocks += [steps_pieces(steps, picture, at), steps_legend(steps, picture, at)]
+            blocks.append(steps_pieces(steps, picture, at))
+            legend = steps_legend(steps, picture, line, at) if line else []
         elif state.view.encode:
-            blocks += [stored_pieces(stored_errors(picture), picture, at), stored_legend(picture, at)]
+            blocks.append(stored_pieces(stored_errors(picture), picture, at))
+            legend = stored_legend(picture, line, at) if line else []
         else:
             series = band_series(picture, least_slots(at))
             axes = axes_of(series, at)
             bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
-            blocks += [*curve_blocks(series, state, at), legend_pieces(series, state, at, hovered)]
-        if state.view.trace:
-            blocks[-1] = trace_pieces(state.view.trace, at)
+            blocks += curve_blocks(series, state, at)
+            if line:
+                over = hovered is not None and hovered < series.slots
+                legend = hovered_pieces(series, hovered or 0, line, at) if over else legend_pieces(state, line, at)
+        if state.view.trace and line:
+            legend = trace_pieces(state.view.trace, line, at)
         beside = numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline
-        if beside and (work is not None or takes_legend(at, said)):
-            blocks[-1] = []  # how far the work is takes its place, or a long message
+        if not (beside and (work is not None or takes_legend(at, said))):  # or else how far the work is stands there
+            blocks.append(legend)
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)

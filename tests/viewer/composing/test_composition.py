@@ -166,6 +166,21 @@ def test_the_error_of_maps_makes_two_rows_of_two_and_the_curve_is_the_fourth() -
     assert first.width > 0.75 * pictures(row)[0].width
 
 
+def test_maps_with_their_error_stand_on_the_margin_like_the_foot() -> None:
+    at = compose(1280, 640, n_spheres=3, whole_sphere=True)
+    assert at.numbers.foot is not None
+    assert [(at.maps[n].clip.left, at.maps[n].clip.width) for n in (0, 1, 2)] == [(24, 484), (532, 484), (24, 484)]
+    assert at.captions[0].head.left == at.numbers.foot.left == 24
+
+
+@pytest.mark.parametrize("size", [(720, 720), (640, 640), (800, 800), (1000, 900)])
+def test_figures_stand_in_two_rows_before_their_columns_are_narrow(size: tuple[int, int]) -> None:
+    at = compose(*size)
+    figures = at.numbers.figures
+    assert min(cell.right - cell.left for cell in figures) >= 84 * at.scale
+    assert len({cell.value for cell in figures}) == (2 if at.numbers.foot.right < size[0] / 2 else 1)  # type: ignore[union-attr]
+
+
 def test_twice_the_pixels_is_the_same_picture_twice_as_large() -> None:
     """But for the rounding to whole pixels."""
     small, large = compose(1280, 640), compose(2560, 1280)

@@ -17,6 +17,7 @@ from shviewer.viewer.composing.composition import Composition, compose, frame_fo
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces
 from shviewer.viewer.overlay.lettering import ACCENT, ERROR, FAINT, GREY, GROUND, INK, WARNING, Ink
+from shviewer.viewer.overlay.numerals import value
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.pieces import Disc, Fill, Swatch
 from shviewer.viewer.picture import Picture
@@ -532,6 +533,27 @@ def test_the_band_under_the_mouse_tells_its_values_in_place_of_the_legend() -> N
     assert "28.3 %" in said
 
 
+@pytest.mark.parametrize(
+    "view", [{"by_roughness": True}, {"quantity": "irradiance", "encode": "zh3", "n_bands": 3}, {}]
+)
+def test_what_explains_the_curve_stands_at_the_foot_where_it_has_no_line_and_is_whole(view: dict[str, object]) -> None:
+    shown = picture_of("film_studio", **view)
+    for size in ((500, 1000), (720, 720), (1280, 640)):
+        drawn = draw_overlay(shown, frame_of(shown, *size), hovered=None if view else 3)
+        (said,) = [piece for piece in drawn.texts if piece.name in ("steps_sentence", "stored_legend", "hovered")]
+        assert "…" not in said.text, size
+    working = draw_overlay(shown, frame_of(shown, 500, 1000), work=Work("projecting"))
+    assert [piece.text for piece in working.texts if piece.name in ("message", said.name)] == ["projecting"]
+
+
+@pytest.mark.parametrize("size", [(500, 1000), (640, 360), (720, 720), (1280, 720)])
+@pytest.mark.parametrize("error", ["off", "signed"])
+def test_what_the_radius_of_surfaces_is_is_said_once(size: tuple[int, int], error: str) -> None:
+    shown = picture_of(lobe_view=True, error=error, n_bands=6)
+    said = [piece.text for piece in draw_overlay(shown, frame_of(shown, *size)).texts if "radius" in piece.text]
+    assert len(said) == 1, size
+
+
 def test_a_zoomed_frame_has_the_same_numbers() -> None:
     plain, zoomed = PICTURES["green"], picture_of(zoom=2.0)
     one, two = (draw_overlay(shown, frame_of(shown)) for shown in (plain, zoomed))
@@ -588,6 +610,11 @@ def test_a_radiance_has_three_digits_or_a_power_of_ten(value: float, text: str) 
 
 def pixels(drawn: Overlay, box: Box) -> NDArray[np.uint8]:
     return drawn.image[round(box.top) : round(box.bottom), round(box.left) : round(box.right)]
+
+
+def test_thousands_stand_apart_where_there_are_more_than_four_digits() -> None:
+    said = [value(radiance, 1.0) for radiance in (1234.0, -94515.0, 99985.0, 123456.0, 0.12345)]
+    assert said == ["1234", "−94\u202f515", "99\u202f985", "1.23 × 10⁵", "0.123"]
 
 
 def test_what_is_written_is_drawn_where_it_says() -> None:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.figures import looked_at
 from shviewer.viewer.overlay.lettering import (
     ACCENT,
     BAR,
@@ -26,14 +25,13 @@ from shviewer.viewer.overlay.lettering import (
     SEMIBOLD,
     UNUSED,
     Ink,
-    shortened_to,
     width_of,
 )
-from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.plots.band_series import BandSeries
+from shviewer.viewer.overlay.setting import ended
 from shviewer.viewer.state import State
-from shviewer.words import brief_percent, round_percent
+from shviewer.words import round_percent
 
 LABELS = 44.0
 """Room for the labels of the axis at its left, pixels of the design."""
@@ -134,13 +132,13 @@ def _grid(axes: Axes, series: BandSeries, at: Composition) -> list[Piece]:
     step = 1 if (axes.base - axes.top) / decades >= 1.2 * size else 2
     within, said, tolerance = axes.y(series.tolerance), round_percent(series.tolerance), None
     if axes.low <= series.tolerance <= axes.high:
-        tolerance = _ended("tolerance", end, within + 0.36 * size, said, size, INK, MEDIUM)
+        tolerance = ended("tolerance", end, within + 0.36 * size, said, size, INK, MEDIUM)
     for number in range(decades + 1):
         error = axes.high / 10**number
         y = round(axes.y(error))
         pieces.append(Fill(Box(axes.left, y, axes.right, y + line), RULE))
         baseline = y + line if number == decades else y + 0.36 * size
-        label = _ended(f"share_{number}", end, baseline, round_percent(error), size, FAINT)
+        label = ended(f"share_{number}", end, baseline, round_percent(error), size, FAINT)
         if number % step == 0 and not (tolerance and label.box.overlaps(tolerance.box)):
             pieces.append(label)
     if tolerance:
@@ -151,12 +149,6 @@ def _grid(axes: Axes, series: BandSeries, at: Composition) -> list[Piece]:
             pieces.append(Fill(Box(left, y, left + dash, y + line), GREY))
         pieces.append(tolerance)
     return pieces
-
-
-def _ended(name: str, right: float, baseline: float, text: str, size: float, ink: Ink, weight: str = REGULAR) -> Text:
-    """A text that ends at `right`."""
-    said = typeset(text)
-    return Text(name, round(right - width_of(said, size, weight)), baseline, said, size, ink, weight)
 
 
 def _bar(axes: Axes, band: int, worth: float, series: BandSeries, at: Composition) -> list[Piece]:
@@ -192,7 +184,7 @@ def _numbers(axes: Axes, state: State, at: Composition) -> list[Piece]:
     widest = width_of(str(axes.slots - 1), size) + at.px(6)
     step = next(step for step in (1, 2, 4, 8, 16, 32) if step * axes.pitch >= widest or step == 32)
     muted = state.recipe.muted_shown
-    pieces: list[Piece] = [_ended("band", axes.left - at.px(8), baseline, "band", size, FAINT)]
+    pieces: list[Piece] = [ended("band", axes.left - at.px(8), baseline, "band", size, FAINT)]
     here = n_bands - 1
     middle = min(axes.x(here), axes.right - widest / 2)
     for band in range(axes.slots):
@@ -244,50 +236,3 @@ def _dot(axes: Axes, series: BandSeries, n_bands: int, at: Composition) -> list[
 def _rim(x: float, y: float, at: Composition) -> Sequence[Piece]:
     """A dark ring around the dot, under which the line stays visible."""
     return (Disc(x, y, at.px(RING + 0.3), GROUND, at.px(1.0), ACCENT),)
-
-
-def legend_pieces(series: BandSeries, state: State, at: Composition, hovered: int | None = None) -> list[Piece]:
-    """What lines and bars stand for; or, of the band under the mouse, its values."""
-    line = at.numbers.legend
-    if line is None:
-        return []
-    size, room = at.px(12.0), line.right - line.left
-    if hovered is not None and hovered < series.slots:
-        parts = band_words(series, hovered).split(",  ")
-        fits = (count for count in range(len(parts), 1, -1) if width_of(",  ".join(parts[:count]), size) <= room)
-        words = shortened_to(",  ".join(parts[: next(fits, 1)]), room, size)
-        return [Text("hovered", line.left, line.baseline, words, size, INK)]
-    main = looked_at(state.recipe.quantity)
-    entries: list[tuple[str, Ink | None, tuple[str, str], Ink]] = [
-        ("line", INK, (main, main), INK),
-        ("line", GREY, ("shading", "shading"), GREY),
-        ("", None, ("error with bands 0 to here", "with bands 0 to here"), FAINT),
-        ("bar", BAR, ("with this band alone left out", "this band left out"), FAINT),
-    ]
-    for count, brief in ((4, False), (4, True), (3, False), (2, False)):
-        pieces: list[Piece] = []
-        x, middle = line.left, line.baseline - 0.36 * size
-        for shape, colour, wordings, ink in entries[:count]:
-            words = wordings[brief]
-            wide, gap = (at.px(14), at.px(5)) if shape == "line" else (at.px(9), at.px(5)) if shape else (0.0, 0.0)
-            if colour is not None:
-                half = at.px(0.9) if shape == "line" else at.px(4.5)
-                box = Box(round(x), round(middle - half), round(x + wide), round(middle + half))
-                pieces.append(Fill(box, colour))
-            pieces.append(Text(f"legend_{wordings[0]}", round(x + wide + gap), line.baseline, words, size, ink))
-            x = pieces[-1].box.right + at.px(12 if shape == "line" else 18)
-        if pieces[-1].box.right <= line.right + at.px(2):
-            return pieces
-    return []
-
-
-def band_words(series: BandSeries, band: int) -> str:
-    """The values of one band, in words."""
-    said = []
-    if band < len(series.worth):
-        said.append(f"{typeset(brief_percent(series.worth[band]))} error with it alone left out")
-    if band < len(series.errors) and math.isfinite(series.errors[band]):
-        said.append(f"with bands 0 to {band}: {share(series.errors[band])}")
-    if band < len(series.shading) and math.isfinite(series.shading[band]):
-        said.append(f"shading {share(series.shading[band])}")
-    return f"band {band}:  " + ",  ".join(said)

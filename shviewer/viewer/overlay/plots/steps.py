@@ -13,6 +13,7 @@ from shviewer.analysis.roughness import ROUGHNESS, Staircase, staircase
 from shviewer.harmonics.quantities.names import IRRADIANCE, roughness_of
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.lettering import (
     ACCENT,
@@ -21,17 +22,15 @@ from shviewer.viewer.overlay.lettering import (
     GREY,
     GROUND,
     INK,
-    REGULAR,
     RULE,
     SEMIBOLD,
     UNUSED,
-    Ink,
-    shortened_to,
     width_of,
 )
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Text
 from shviewer.viewer.overlay.plots.curve import RING
+from shviewer.viewer.overlay.setting import ended, sentence
 from shviewer.viewer.picture import Picture
 from shviewer.words import counted
 
@@ -72,10 +71,10 @@ def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> 
         if all(abs(y(count) - other) > 1.1 * size for other in written):
             said = f"{count} bands" if count == most else str(count)  # the name of the axis
             written.append(y(count))
-            pieces.append(_ended(f"count_{count}", left - at.px(8), y(count) + 0.36 * size, said, size, FAINT))
+            pieces.append(ended(f"count_{count}", left - at.px(8), y(count) + 0.36 * size, said, size, FAINT))
     pieces.append(Fill(Box(left, round(y(n_bands)), right, round(y(n_bands)) + line), ACCENT, "bands_in_use"))
     in_use = counted(n_bands, "band") if n_bands == most else str(n_bands)
-    pieces.append(_ended("in_use", left - at.px(8), y(n_bands) + 0.36 * size, in_use, size, INK, SEMIBOLD))
+    pieces.append(ended("in_use", left - at.px(8), y(n_bands) + 0.36 * size, in_use, size, INK, SEMIBOLD))
     lane = round(base + line)
     pieces.append(Fill(Box(left, lane, right, lane + thick), UNUSED))
     if steps is not None:
@@ -103,20 +102,18 @@ def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> 
         wide = width_of(text, size)
         place = round(min(max(x(roughness) - wide / 2, left), right - wide))
         pieces.append(Text(f"roughness_{roughness:g}", place, baseline, text, size, GREY))
-    pieces.append(_ended("roughness_axis", left - at.px(8), baseline, "roughness", size, FAINT))
+    pieces.append(ended("roughness_axis", left - at.px(8), baseline, "roughness", size, FAINT))
     return pieces
 
 
-def steps_legend(steps: Staircase | None, picture: Picture, at: Composition) -> list[Piece]:
+def steps_legend(steps: Staircase | None, picture: Picture, line: Line, at: Composition) -> list[Piece]:
     """The sentence: what serves shading, and what the bands in use serve."""
-    line = at.numbers.legend
-    if line is None or steps is None:
+    if steps is None:
         return []
-    size, n_bands = at.px(12.0), picture.state.recipe.n_bands
-    said = typeset(steps.sentence(n_bands))
-    return [
-        Text("steps_sentence", line.left, line.baseline, shortened_to(said, line.right - line.left, size), size, INK)
-    ]
+    n_bands = picture.state.recipe.n_bands
+    said = steps.sentence(n_bands)
+    wordings = (said, said.partition(": ")[2], f"{counted(n_bands, 'band')} for {steps.words(n_bands)}")
+    return sentence("steps_sentence", line, wordings, at.px(12.0), INK)
 
 
 def _runs(steps: Staircase) -> list[list[int]]:
@@ -138,7 +135,3 @@ def _shown(picture: Picture, x: Callable[[float], float], y: Callable[[float], f
     if roughness is None or isinstance(needs, Pending) or needs.shown is None:
         return []
     return [Disc(x(roughness), y(needs.shown), at.px(RING + 0.6), ACCENT, at.px(1.2), GROUND, "roughness_shown")]
-
-
-def _ended(name: str, right: float, baseline: float, text: str, size: float, ink: Ink, weight: str = REGULAR) -> Text:
-    return Text(name, round(right - width_of(text, size, weight)), baseline, text, size, ink, weight)

@@ -11,6 +11,7 @@ from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.lettering import (
     BAR,
@@ -22,11 +23,11 @@ from shviewer.viewer.overlay.lettering import (
     RULE,
     SEMIBOLD,
     UNUSED,
-    shortened_to,
     width_of,
 )
 from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
+from shviewer.viewer.overlay.setting import sentence
 from shviewer.viewer.picture import Picture
 from shviewer.words import round_percent
 
@@ -97,20 +98,12 @@ def stored_pieces(errors: Mapping[str, float | None], picture: Picture, at: Comp
     return pieces
 
 
-def stored_legend(picture: Picture, at: Composition) -> list[Piece]:
+def stored_legend(picture: Picture, line: Line, at: Composition) -> list[Piece]:
     """What the rows are."""
-    line = at.numbers.legend
-    if line is None:
-        return []
-    size, within = at.px(12.0), round_percent(picture.state.recipe.tolerance)
-    said = f"numbers a channel, relative L2 error of the irradiance that they keep, line at {within}"
-    return [
-        Text(
-            "stored_legend",
-            line.left,
-            line.baseline,
-            shortened_to(typeset(said), line.right - line.left, size),
-            size,
-            GREY,
-        )
-    ]
+    within = round_percent(picture.state.recipe.tolerance)
+    wordings = (
+        f"numbers a channel, relative L2 error of the irradiance that they keep, line at {within}",
+        f"numbers a channel, relative L2 error of the irradiance, line at {within}",
+        f"numbers a channel, error, line at {within}",
+    )
+    return sentence("stored_legend", line, wordings, at.px(12.0), GREY)

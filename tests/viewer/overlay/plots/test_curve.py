@@ -15,7 +15,8 @@ from shviewer.viewer.composing.composition import Composition, compose
 from shviewer.viewer.overlay.lettering import ACCENT, BAR, GREY, GROUND, INK, UNUSED
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.plots.band_series import BandSeries, band_series, band_slots
-from shviewer.viewer.overlay.plots.curve import Axes, axes_of, band_words, curve_blocks, least_slots
+from shviewer.viewer.overlay.plots.curve import Axes, axes_of, curve_blocks, least_slots
+from shviewer.viewer.overlay.plots.legend import band_words
 from shviewer.viewer.picture import Picture, prepare
 
 AT = compose(1280, 640)
