@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.diagnosis.bent import bent
 from shviewer.coefficients.diagnosis.chance import CHANCE
-from shviewer.coefficients.diagnosis.search import ALIKE, EXPLAINED, Explanation, explain
+from shviewer.coefficients.diagnosis.search import ALIKE, CLEAN, EXPLAINED, TINY, Explanation, explain
 from shviewer.coefficients.diagnosis.sentences import differences, slips_in_words, words
 from shviewer.coefficients.diagnosis.slips import mended
 from shviewer.coefficients.numbers import Listed
@@ -81,6 +82,8 @@ def suspect(listed: Listed, exact: Array, named: Convention | None, others: Othe
         found = _suspicion(listed, coefficients, named, said)
         if found and found.error <= EXPLAINED and (best is None or found.error < best.error / ALIKE):
             best = found
+    if best is None or best.error > CLEAN:
+        best = _of_another_light(listed, exact, named) or best
     return best
 
 
@@ -96,9 +99,23 @@ def error_of(exact: Array, coefficients: Array, quantity: str) -> float:
     return float(np.linalg.norm(coefficients - wanted)) / norm if norm else np.inf
 
 
-def _suspicion(listed: Listed, exact: Array, named: Convention | None, of_light: list[str]) -> Suspicion | None:
+def _of_another_light(listed: Listed, exact: Array, named: Convention | None) -> Suspicion | None:
+    """The simplest of those that have numbers of their own, an angle or factors, if it leaves little."""
+    found: list[tuple[float, Suspicion]] = []
+    for light in bent(listed, exact):
+        one = _suspicion(listed, light.coefficients, named, [light.said], light.choices)
+        if one and one.error <= CLEAN:
+            found.append((one.explanation.cost + light.cost, one))
+    good = max(ALIKE * min((one.error for _, one in found), default=0.0), TINY)
+    near = [(cost, one) for cost, one in found if one.error <= good]
+    return min(near, key=lambda each: each[0])[1] if near else None
+
+
+def _suspicion(
+    listed: Listed, exact: Array, named: Convention | None, of_light: list[str], choices: int = MISTAKES + 1
+) -> Suspicion | None:
     found = explain(listed, exact, named)
-    if found is None or found.chance * (MISTAKES + 1 if of_light else 1) > CHANCE or (of_light and found.slips):
+    if found is None or found.chance * (choices if of_light else 1) > CHANCE or (of_light and found.slips):
         return None
     try:
         file = interpreted(listed, convention_text(found.convention), overrule=True)
