@@ -23,6 +23,7 @@ from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
 from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.quantities.names import IRRADIANCE, STORED_BANDS
 from shviewer.limits import check_brightness
 from shviewer.words import meant
 
@@ -199,10 +200,11 @@ def _comparing(recipe: Recipe, given: LightLike) -> Recipe:
 
 
 @with_options(Recipe)
-def project(light: LightLike, bands: int | None = None, **options: Any) -> Projected:
+def project(light: LightLike, bands: int | None = None, *, encode: str = "", **options: Any) -> Projected:
     """The first `bands` bands of a light, 1 to 128, with their error figures; by default 5, or all of a coefficient file.
 
     With `tolerance`, such as 0.05 or "5%", and no `bands` as many as keep the relative L2 error within it.
+    encode: in place of bands what engines store of the irradiance, such as "zh3", with its formula where it is saved.
 
     `Projected.coefficients` is (bands**2, 3) float64 in the convention of harmonics/basis.py, row l(l+1) + m; `save` writes a
     file and `numbers` converts, both for other programs, too. ShviewerError for a mistake that a caller can put right;
@@ -214,8 +216,14 @@ def project(light: LightLike, bands: int | None = None, **options: Any) -> Proje
 
     if bands is not None and "tolerance" in options:
         raise UsageError(f"bands {bands} and tolerance {options['tolerance']}: give one of them")
+    if encode:
+        if encode not in STORED_BANDS:
+            raise UsageError(f"encode {encode!r}: {meant(str(encode), STORED_BANDS)}")
+        if bands is not None or "tolerance" in options:
+            raise UsageError(f"encode {encode}: it takes the place of bands; leave out bands and tolerance")
+        bands, options = STORED_BANDS[encode], {"quantity": IRRADIANCE} | options
     recipe = recipe_of(light, bands, options)
-    found = project_recipe(recipe)
+    found = project_recipe(recipe, encode)
     if refusal := subject(recipe).refusal:
         warnings.warn(refusal, stacklevel=2)
     return found

@@ -14,7 +14,7 @@ from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.api import LightLike, find_light, recipe_of, with_options
 from shviewer.errors import UsageError
-from shviewer.harmonics.quantities.names import ENCODED_BANDS
+from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE
 from shviewer.viewer import screenshot as offscreen
 from shviewer.viewer.composing.composition import frame_for
 from shviewer.viewer.picture import first_picture, prepare
@@ -81,6 +81,8 @@ def _state(light: LightLike, bands: int | None, options: dict[str, Any], size: A
     width, height = whole(size[0], "width"), whole(size[1], "height")
     view = View(**taken(options, View))
     view.check()
+    if view.encode:
+        options = {"quantity": IRRADIANCE} | options
     recipe = recipe_of(light, bands, options, View)
     if bands is None and view.encode:
         recipe = replace(recipe, n_bands=ENCODED_BANDS[view.encode])

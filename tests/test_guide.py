@@ -225,7 +225,7 @@ def test_a_pixel_is_checked_as_the_page_says(capsys: pytest.CaptureFixture[str])
 
 
 def test_the_band_counts_are_those_that_info_finds(capsys: pytest.CaptureFixture[str]) -> None:
-    block, shiny, _ = code_blocks(page("bands"), "sh")
+    block, shiny, *_ = code_blocks(page("bands"), "sh")
     ((light, roughness, count),) = re.findall(r"^shviewer (\S+) --for glossy:(\S+) --tolerance 5% +# (\d+)", shiny)
     assert needs(Recipe(light, quantity=f"glossy:{roughness}")).shown == int(count)
     checked = 0

@@ -11,19 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.analysis.figures import Figures, Sums, irradiance_error, lows_of
-from shviewer.analysis.recipe import Recipe, light_name
+from shviewer.analysis.origin import ERRORS, origin_of
+from shviewer.analysis.recipe import Recipe, check_encoding
 from shviewer.analysis.reconstruction import reconstruction_of
-from shviewer.analysis.subjects import Subject
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.channels import SEQUENCES
 from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.stamp import Value, stamp_of
+from shviewer.coefficients.stored_code import check_stored, in_axes
 from shviewer.coefficients.suns import sun_keys
 from shviewer.coefficients.texts import parse_convention
-from shviewer.coefficients.writing import encode
+from shviewer.coefficients.writing import encode, encode_stored
 from shviewer.errors import LightError, UsageError, refused_as
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.error_grid import Lows, Triple
+from shviewer.harmonics.quantities.encodings import Stored
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.harmonics.rotation import check_rotation, rotate
 from shviewer.lights.find import file_of
@@ -33,17 +35,6 @@ from shviewer.notebook import InNotebooks
 from shviewer.outputs import Replacing, write_atomically
 from shviewer.version import __version__
 from shviewer.words import counted
-
-ERRORS = (
-    "relative-l2",
-    "left-out",
-    "added",
-    "minimum",
-    "minimum-bound",
-    "negative-area",
-    "irradiance-relative-l2",
-)
-"""Keys of the stamp that hold error figures."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,10 +71,13 @@ class Projected(InNotebooks):
     """The rotation (3, 3) by which it was turned; None for none."""
     recipe: Recipe | None = None
     """What was asked for: a notebook draws it. It may hold an image, so that it is not pickled."""
+    encoding: str = ""
+    """One of STORED, whose bands the coefficients are."""
+    stored: Stored | None = None
+    """Its numbers, which are written in place of the bands; None where a window or muted bands leave it no formula."""
 
     def __repr__(self) -> str:
-        bands, error = counted(self.n_bands, "band"), self.sums.relative_l2
-        return f"<{self.name}: {self.quantity} in {bands}, relative L2 error {error:.3g}>"
+        return f"<{self.name}: {self.quantity} in {self.extent}, relative L2 error {self.sums.relative_l2:.3g}>"
 
     def __getstate__(self) -> dict[str, object]:
         return vars(self) | {"recipe": None, "searched": self._all_figures()}
@@ -107,7 +101,11 @@ class Projected(InNotebooks):
     def _all_figures(self) -> Figures:
         """The figures of the light as it is, not turned. It holds no light, which may be an image: that is looked up."""
         if self.searched is None:
-            if self.recipe is None or (found := reconstruction_of(self.recipe)).sums != self.sums:
+            turn = None if self.turn is None else _by_rows(self.turn)
+            if (
+                self.recipe is None
+                or (found := reconstruction_of(self.recipe, 0, self.encoding, turn)).sums != self.sums
+            ):
                 raise LightError(f"{self.name} has changed since it was projected: project it again")
             object.__setattr__(self, "searched", found.figures)
             return found.figures
@@ -116,6 +114,13 @@ class Projected(InNotebooks):
     @property
     def n_bands(self) -> int:
         return count_bands(self.coefficients)
+
+    @property
+    def extent(self) -> str:
+        """What is written, in words: "5 bands", or "5 numbers a channel, zh3" """
+        if self.stored is None:
+            return counted(self.n_bands, "band")
+        return f"{len(self.stored.numbers)} numbers a channel, {self.stored.name}"
 
     def numbers(self, convention: str = "shviewer") -> NDArray[np.generic]:
         """The numbers that a program expects, (n**2, 3) float64, or complex128 for "scipy".
@@ -128,15 +133,23 @@ class Projected(InNotebooks):
     def turned(self, rotation: ArrayLike) -> Projected:
         """The same of the light carried along by a rotation, a 3 x 3 matrix, v_out = M v_in. ValueError for another matrix.
 
-        Suns and the directions of the figures turn with it; all other figures stay.
+        Suns and the directions of the figures turn with it; all other figures stay. But a cube is made anew, and so are its.
         """
         matrix = check_rotation(rotation)
+        whole = matrix if self.turn is None else matrix @ self.turn
+        still, by = self, matrix
+        if self.stored is not None and not self.stored.encoding.turns:
+            if self.recipe is None:
+                raise LightError(f"{self.name}: a cube that is turned is made of the light: project that again")
+            still, by = project_recipe(self.recipe, self.encoding, _by_rows(whole)), whole
+        stored = still.stored
         return replace(
-            self,
-            coefficients=rotate(self.coefficients, matrix),
-            turn=matrix if self.turn is None else matrix @ self.turn,
-            about=self.about | {"turned": " ".join(f"{value:.12g}" for value in matrix.ravel() + 0.0)},
-            suns=tuple(replace(sun, axis=matrix @ sun.axis) for sun in self.suns),
+            still,
+            coefficients=rotate(still.coefficients, by),
+            stored=stored.turned(by) if stored is not None and stored.encoding.turns else stored,
+            turn=whole,
+            about=still.about | {"turned": " ".join(f"{value:.12g}" for value in whole.ravel() + 0.0)},
+            suns=tuple(replace(sun, axis=by @ sun.axis) for sun in still.suns),
         )
 
     def save(self, path: str | os.PathLike[str], convention: str = "shviewer", *, force: bool = False) -> None:
@@ -158,11 +171,16 @@ class Projected(InNotebooks):
         UsageError if the convention has too few bands, cannot hold the quantity, or cannot be written as `kind`.
         """
         with refused_as(UsageError):
+            if self.stored is not None:
+                return encode_stored(self.stored, self.stamp(convention, self.n_bands), convention, kind, self.name)
             numbers = self._in(convention)
             return encode(numbers, self.stamp(convention, count_bands(numbers)), convention, kind, self.name)
 
     def _in(self, convention: Convention) -> NDArray[np.generic]:
         """The rows in a convention. ValueError if it cannot have them."""
+        if self.stored is not None:
+            check_stored(self.stored.encoding, convention)
+            return in_axes(self.stored, convention.axes)
         if convention.sequence in SEQUENCES:
             raise ValueError(
                 f"{convention.sequence} says how a list is read; what is written has a row for each l and m: leave it out"
@@ -172,6 +190,9 @@ class Projected(InNotebooks):
     def stamp(self, convention: Convention, n_bands: int) -> dict[str, Value]:
         """The stamp of a file with these coefficients in a convention."""
         about = {**stamp_of(convention, self.quantity, n_bands), "written-by": f"shviewer {__version__}", **self.about}
+        if self.stored is not None:
+            del about["bands"]
+            about["rows"] = len(self.stored.numbers)
         written = whole(str(about["quantity"]))
         if written != self.quantity:  # the errors of one quantity are not those of the other
             about = {key: value for key, value in about.items() if key not in ERRORS}
@@ -180,26 +201,24 @@ class Projected(InNotebooks):
         return about | sun_keys([sun.directional_light for sun in self.suns], convention.axes)
 
 
-def project_recipe(recipe: Recipe) -> Projected:
-    """The coefficients that the window shows for a recipe. LightError or UsageError, as in `reconstruction_of`."""
-    found = reconstruction_of(recipe, ahead=MAX_BANDS)
+def project_recipe(recipe: Recipe, encoding: str = "", turn: tuple[float, ...] | None = None) -> Projected:
+    """The coefficients that the window shows for a recipe. LightError or UsageError, as in `reconstruction_of`.
+
+    encoding: one of STORED, or "" for the bands; turn: the rotation of the light, row by row, for whose axes a cube is made.
+    """
+    if encoding:
+        check_encoding(recipe, encoding)
+    found = reconstruction_of(recipe, MAX_BANDS, encoding, turn)
     shown, projection, of_radiance = found.subject, found.projection, found.sums
     known = shown.light, projection, recipe.shown
     shading, lows = irradiance_error(*known), lows_of(*known)
-    if recipe.quantity != RADIANCE:
+    if recipe.quantity != RADIANCE and not encoding:
         of_radiance = reconstruction_of(replace(recipe, quantity=RADIANCE)).sums
-    errors = {RADIANCE: of_radiance.relative_l2, IRRADIANCE: shading}
+    errors = {IRRADIANCE: shading} if encoding else {RADIANCE: of_radiance.relative_l2, IRRADIANCE: shading}
     errors[recipe.quantity] = found.sums.relative_l2
-    about: dict[str, Value] = {
-        **_light(recipe, shown),
-        "window": _window(recipe),
-        "muted": " ".join(map(str, recipe.muted_shown)) or "none",
-        "method": projection.method,
-        "samples": projection.evaluations,
-        "seed": recipe.seed if recipe.method == "jittered" else None,
-        **_errors(found.sums, lows, shading),
-    }
-    about = {key: value for key, value in about.items() if value is not None and value != ""}
+    about = origin_of(recipe, shown, projection, found.sums, lows, shading)
+    if encoding and found.stored is None:
+        about["through"] = encoding
     given = [recipe.light, *([recipe.compare] if recipe.compare else [])]
     inputs = tuple(path for path in map(file_of, given) if path)
     notes = (*shown.light.notes, *([shown.refusal] if shown.refusal else []))
@@ -216,42 +235,10 @@ def project_recipe(recipe: Recipe) -> Projected:
         inputs,
         notes,
         recipe=recipe,
+        encoding=encoding,
+        stored=found.stored,
     )
 
 
-def _light(recipe: Recipe, shown: Subject) -> dict[str, Value]:
-    light, suns = shown.light, shown.suns
-    without = f"; {counted(len(suns), 'sun')} left out" if suns else ""
-    return {
-        "light": _one_line(light_name(recipe.light)),
-        "light-is": _one_line(light.description + without),
-        "light-notes": _one_line("; ".join(light.notes)),
-    }
-
-
-def _window(recipe: Recipe) -> str:
-    if recipe.window in ("none", "dering"):
-        return recipe.window
-    return f"{recipe.window} of {recipe.window_width or recipe.n_bands:g} bands"
-
-
-def _errors(sums: Sums, lows: Lows, shading: float) -> dict[str, Value]:
-    """The figures of the stamp. shading: the error of the irradiance."""
-    whole = sums.channels["all"]
-    values = (
-        whole.relative_l2,
-        whole.left_out,
-        whole.added,
-        lows.minimum,
-        lows.minimum_bound,
-        lows.negative_area,
-        shading,
-    )
-    found = zip(ERRORS, values, strict=True)
-    return {key: float(value) for key, value in found if np.isfinite(value)}
-
-
-def _one_line(text: str) -> str:
-    """A text made fit for a comment: without line breaks and `*/`, which could end it."""
-    printable = "".join(character if character.isprintable() else " " for character in text)
-    return " ".join(printable.replace("*/", "* /").split()).rstrip("\\ ")  # a backslash would continue the comment
+def _by_rows(matrix: Array) -> tuple[float, ...]:
+    return tuple(matrix.ravel().tolist())

@@ -6,6 +6,7 @@ A light is projected once per method, to at least MAX_DIRECT_BANDS bands; a band
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from shviewer.analysis.cache import MEMORY, remember
-from shviewer.analysis.recipe import Recipe, Shown
+from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import errors_by_band_count
@@ -65,9 +66,9 @@ class Projection:
     def n_bands(self) -> int:
         return count_bands(self.coefficients)
 
-    def stored_as(self, shown: Shown) -> Stored | None:
-        """The numbers of the encoding that is shown; None where there is none, or only some of its bands are shown."""
-        return self.stored if not shown.muted and shown.window == "none" else None
+    def stored_as(self, factors: Sequence[float]) -> Stored | None:
+        """The numbers of the encoding that is shown with a factor for each band; None where there is none, or takes none."""
+        return self.stored and self.stored.weighted(np.array(factors))
 
     @property
     def evaluation_noun(self) -> str:
@@ -189,15 +190,20 @@ def turned_exactly(light: Light, turn: tuple[float, ...], n_bands: int) -> Proje
 
 
 @remember(most=16, doing="encoding the irradiance")
-def encoded(light: Light, projection: Projection, name: str) -> Projection:
-    """An irradiance as one of ENCODINGS keeps it, made of the first bands of a projection."""
-    from shviewer.harmonics.quantities.encodings import BANDS, ENCODINGS, Stored
+def encoded(light: Light, projection: Projection, name: str, turn: tuple[float, ...] | None = None) -> Projection:
+    """An irradiance as one of STORED keeps it, made of the first bands of a projection.
 
-    encoding = ENCODINGS[name]
+    turn: the rotation of the light, row by row, whose cube is wanted; the coefficients are turned back.
+    """
+    from shviewer.harmonics.quantities.encodings import STORED, Stored
+
+    encoding, radiance = STORED[name], projection.radiance[: MAX_DIRECT_BANDS**2]
+    matrix = None if turn is None or encoding.turns else np.reshape(turn, (3, 3))
     with refused_as(UsageError, f"encode {name}: "):
-        numbers = encoding.store(projection.radiance[: BANDS**2])
+        numbers = encoding.store(radiance if matrix is None else rotate(radiance, matrix))
+    made = encoding.expand(numbers)
     coefficients = np.zeros_like(projection.coefficients)
-    coefficients[: encoding.bands**2] = encoding.expand(numbers)
+    coefficients[: encoding.bands**2] = made if matrix is None else rotate(made, matrix.T)
     return replace(projection, coefficients=coefficients, stored=Stored(name, numbers))
 
 

@@ -18,7 +18,8 @@ from shviewer.analysis.options import (
     check_options,
     option,
 )
-from shviewer.harmonics.quantities.names import RADIANCE
+from shviewer.errors import UsageError
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, STORED_BANDS
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
 from shviewer.words import counted
@@ -138,6 +139,19 @@ class Recipe:
     def check(self) -> None:
         """UsageError unless every option is within its range."""
         check_options(self)
+
+
+def check_encoding(recipe: Recipe, encoding: str) -> None:
+    """UsageError unless the recipe's numbers are those of an encoding."""
+    if recipe.quantity != IRRADIANCE:
+        raise UsageError(f"encode {encoding}: engines store it of irradiance; give --for irradiance")
+    if recipe.compare:
+        raise UsageError(f"encode {encoding}: coefficients that are compared are shown as they are; leave one out")
+    if recipe.n_bands != STORED_BANDS[encoding]:
+        bands = counted(STORED_BANDS[encoding], "band")
+        raise UsageError(
+            f"encode {encoding}: it stands for {bands}, not {recipe.n_bands}; leave out the number of bands"
+        )
 
 
 NEEDS: dict[str, tuple[Callable[[Recipe], bool], str]] = {

@@ -34,7 +34,7 @@ class Reconstruction:
     @property
     def stored(self) -> Stored | None:
         """The numbers of the encoding that is shown; None where the coefficients are summed."""
-        return self.projection.stored_as(self.recipe.shown)
+        return self.projection.stored_as(self.sums.factors)
 
     @cached_property
     def figures(self) -> Figures:
@@ -49,10 +49,12 @@ def values_at(directions: Array, coefficients: Array, stored: Stored | None) -> 
     return np.asarray(evaluate_basis(directions, count_bands(coefficients)) @ coefficients)
 
 
-def reconstruction_of(recipe: Recipe, ahead: int = 0, encoding: str = "") -> Reconstruction:
+def reconstruction_of(
+    recipe: Recipe, ahead: int = 0, encoding: str = "", turn: tuple[float, ...] | None = None
+) -> Reconstruction:
     """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range.
 
-    encoding: one of ENCODINGS, through which an irradiance goes.
+    encoding: one of STORED, through which an irradiance goes; turn: as in `encoded`.
     ahead: the number of bands that will be asked for later: an image, which keeps its coefficients, is projected only once.
     """
     recipe.check()
@@ -65,7 +67,7 @@ def reconstruction_of(recipe: Recipe, ahead: int = 0, encoding: str = "") -> Rec
     else:
         projection = project(found.light, *sampling, recipe.projected_bands)
     if encoding:
-        projection = encoded(found.light, projection, encoding)
+        projection = encoded(found.light, projection, encoding, turn)
     named = recipe.light if isinstance(recipe.light, str) else found.light.name
     check_radiance(error_grid(found.whole, grid_rows(1)).peak, named)
     return Reconstruction(recipe, found, projection, *sums(found.light, projection, recipe.shown))

@@ -113,7 +113,8 @@ def summary(rows: Sequence[Row]) -> str:
     done = [row.projected for row in rows if row.projected is not None]
     quantities = list(done[0].relative_l2_as) if done else [RADIANCE, IRRADIANCE]
     heads = "  ".join(f"{in_words(quantity):>10}" for quantity in quantities)
-    lines = [f"{'light':<{width}}  bands {heads}     minimum  file"]
+    count = "numbers" if done and done[0].stored is not None else "  bands"
+    lines = [f"{'light':<{width}}  {count} {heads}     minimum  file"]
     for row in rows:
         label = row.light if len(row.light) <= 40 else f"...{row.light[-37:]}"
         if row.projected is None:
@@ -124,7 +125,8 @@ def summary(rows: Sequence[Row]) -> str:
             for quantity in quantities
         )
         minimum = row.projected.lows.minimum
-        numbers = f"{row.projected.n_bands:>5} {errors}  {minimum:>10.4g}"
+        held = row.projected.n_bands if row.projected.stored is None else len(row.projected.stored.numbers)
+        numbers = f"{held:>7} {errors}  {minimum:>10.4g}"
         lines.append(f"{label:<{width}}  {numbers}  {row.file}")
     written = sum(row.projected is not None for row in rows)
     return "\n".join([*lines, f"{written} of {len(rows)} written"])

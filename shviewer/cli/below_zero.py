@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shviewer.analysis.figures import error_grid, grid_rows, irradiance_error
+from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.analysis.subjects import subject, through
@@ -68,6 +69,20 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
             to = f"to {found.minimum:.3g}" if found.negative else "not below 0"
             says += f"; with {flag} {to}, {rest}{percent(found.error)} off"
     return says + "; if it has a sun, --split-sun takes that out" * (large and not recipe.split_sun)
+
+
+def encoded_below_zero(projected: Projected) -> str:
+    """The same of what engines store of an irradiance: its own minimum, where the formula shows it, or that of its bands."""
+    assert projected.stored is not None
+    stored, lowest = projected.stored, projected.lows.minimum
+    if not stored.encoding.turns:
+        lowest = float(stored.numbers.min())
+    if stored.encoding.formula == "geomerics" or not lowest < -ROUNDING * float(np.abs(stored.numbers).max()):
+        return ""
+    return (
+        f"the irradiance that {stored.name} decodes to goes to {lowest:.3g}, {percent(projected.sums.relative_l2)} off; "
+        "that of geomerics and l2-deringed does not"
+    )
 
 
 def _shown(recipe: Recipe, quantity: str) -> _Shown:

@@ -16,7 +16,7 @@ from shviewer.analysis.projections import sampling_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.batch import error_in_percent, make_folder, project_batch
-from shviewer.cli.below_zero import below_zero
+from shviewer.cli.below_zero import below_zero, encoded_below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.options.inputs import lights_of, lights_within, replacing_of
 from shviewer.cli.options.recipes import check_effects, recipe_from
@@ -25,11 +25,11 @@ from shviewer.cli.status_line import speaking
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import Axes
 from shviewer.coefficients.parts.quantities import whole
-from shviewer.coefficients.programs import CONVENTIONS
-from shviewer.coefficients.texts import parse_convention
+from shviewer.coefficients.programs import CONVENTIONS, OURS
+from shviewer.coefficients.texts import convention_text, parse_convention
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError, refused_as
-from shviewer.harmonics.quantities.names import in_words
+from shviewer.harmonics.quantities.names import IRRADIANCE, STORED_BANDS, in_words
 from shviewer.harmonics.rotation import turn
 from shviewer.outputs import Replacing, file_stem, write_atomically
 from shviewer.words import counted, meant
@@ -42,6 +42,8 @@ def run(options: argparse.Namespace) -> int:
     convention = wanted_convention(options.convention, options.axes, options.no_phase, options.quantity)
     if options.n_bands is not None and options.tolerance is not None:
         raise UsageError(f"--bands {options.n_bands} and --tolerance {options.tolerance:g}: give one of them")
+    if options.encode is not None:
+        check_encode(options, convention)
     if convention.quantity:
         options.quantity = whole(convention.quantity)
     if options.n_bands is None and options.tolerance is None and convention.most_bands:
@@ -66,9 +68,28 @@ def _projected_of(options: argparse.Namespace, convention: Convention, light: st
     check_effects(options, recipe)
     if options.tolerance is not None:
         check_tolerance(recipe, convention)
-    projected, angles = project_recipe(recipe), turn_from(options)
-    projected = replace(projected, below_zero=below_zero(recipe, convention))
-    return projected.turned(turn(*angles)) if angles else projected
+    projected, angles = project_recipe(recipe, options.encode or ""), turn_from(options)
+    if projected.encoding and projected.stored is None:
+        what = "--mute" if projected.recipe and projected.recipe.muted_shown else f"--window {options.window}"
+        raise UsageError(f"{what}: the formula of {projected.encoding} takes no factors of bands; leave one out")
+    projected = projected.turned(turn(*angles)) if angles else projected
+    said = encoded_below_zero(projected) if projected.encoding else below_zero(recipe, convention)
+    return replace(projected, below_zero=said)
+
+
+def check_encode(options: argparse.Namespace, convention: Convention) -> None:
+    """Let the options be those of --encode. UsageError if they contradict it."""
+    name = options.encode
+    if name not in STORED_BANDS:
+        raise UsageError(f"--encode {name!r}: {meant(name, STORED_BANDS)}")
+    if options.n_bands is not None or options.tolerance is not None:
+        raise UsageError(f"--encode {name}: it takes the place of bands; leave out --bands and --tolerance")
+    if convention != replace(OURS, axes=convention.axes):
+        raise UsageError(
+            f"--encode {name}: its formula takes shviewer's own numbers, not those of {convention_text(convention)}; for other "
+            "axes give --axes, such as --axes y-up"
+        )
+    options.quantity, options.n_bands = options.quantity or IRRADIANCE, STORED_BANDS[name]
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:
@@ -138,13 +159,9 @@ def _project_one(
         replacing.check(path)
         projected = noted()
     write_atomically(path, projected.encode(convention, kind or "json"))
-    radiance, *others = (error_in_percent(projected, quantity) for quantity in projected.relative_l2_as)
-    as_others = "".join(
-        f", as {in_words(quantity)} {error}"
-        for quantity, error in zip([*projected.relative_l2_as][1:], others, strict=True)
-    )
-    bands = counted(projected.n_bands, "band")
-    print(f"wrote {path}: {bands}, radiance within {radiance.removeprefix('< ')}{as_others}")
+    first, *others = ((in_words(of), error_in_percent(projected, of)) for of in projected.relative_l2_as)
+    as_others = "".join(f", as {of} {error}" for of, error in others)
+    print(f"wrote {path}: {projected.extent}, {first[0]} within {first[1].removeprefix('< ')}{as_others}")
     warn_below_zero(projected)
 
 

@@ -29,6 +29,17 @@ def run(options: argparse.Namespace) -> int:
 
         print(completion(options.print_completion), end="")
         return 0
+    if options.list_factors:
+        from shviewer.analysis.recipe import Recipe
+        from shviewer.harmonics.quantities.kernels import kernel_of
+        from shviewer.limits import MAX_DIRECT_BANDS
+
+        n_bands = MAX_DIRECT_BANDS if options.n_bands is None else options.n_bands
+        Recipe(n_bands=n_bands, quantity=options.list_factors).check()
+        print("l,factor")
+        for l, factor in enumerate(kernel_of(options.list_factors).factors(n_bands).tolist()):
+            print(f"{l},{factor + 0.0!r}")
+        return 0
     if options.list_lights:
         from shviewer.lights.find import built_in_lights, find_light
 

@@ -13,7 +13,7 @@ def javascript_module(
 ) -> str:
     """An ES module with the rows and, if `applied` says what to do with them and what that needs, a function `apply`."""
     lines = [*comments, "", f"export const {identifier(name)} = [", f"    // {TABLE_BEGINS}"]
-    lines += [f"    [{', '.join(numbers)}],  // l = {l}, m = {m}" for l, m, numbers in rows]
+    lines += [f"    [{', '.join(row.numbers)}],  // {row.words}" for row in rows]
     lines += [f"    // {TABLE_ENDS}", "];", ""]
     if applied:
         line, takes = applied
@@ -27,7 +27,7 @@ def csharp_class(
     """A static class with the rows; with Unity's `vectors` also these, and a function that makes the probe."""
     lines = [*comments, "", f"public static class {identifier(name)}", "{"]
     lines += ["    public static readonly double[,] Rows =", "    {", f"        // {TABLE_BEGINS}"]
-    lines += [f"        {{ {', '.join(numbers)} }},  // l = {l}, m = {m}" for l, m, numbers in rows]
+    lines += [f"        {{ {', '.join(row.numbers)} }},  // {row.words}" for row in rows]
     lines += [f"        // {TABLE_ENDS}", "    };"]
     if vectors:
         lines += [

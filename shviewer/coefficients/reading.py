@@ -25,7 +25,7 @@ from shviewer.coefficients.lists.text import read_list
 from shviewer.coefficients.numbers import Listed, as_table, in_sequence
 from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.parts.rows import ACN, row_order
-from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, Value, read_stamp, safe
+from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, Value, read_stamp, refuse_stored, safe
 from shviewer.coefficients.suffixes import HOLDS
 from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError, refused_as
@@ -159,6 +159,7 @@ def _read_text(data: bytes, table: bool = False) -> Listed:
     stamp, begins, ends = _comments(text), text.find(TABLE_BEGINS), text.find(TABLE_ENDS)
     if not stamp:
         return read_list(text, table=table)
+    refuse_stored(stamp)
     if begins < 0:
         return Listed(read_list(text, table=table, sort=False).numbers, stamp)
     numbers = plain_numbers(text[text.find("\n", begins) : text.rfind("\n", 0, ends)] if ends > begins else "")

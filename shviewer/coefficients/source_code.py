@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from shviewer.coefficients.parts.scales import LEADING
 from shviewer.coefficients.reading import TABLE_BEGINS, TABLE_ENDS
@@ -17,8 +18,22 @@ from shviewer.harmonics.basis import Array, degree_order, index, normalisation
 MAX_GLSL_BANDS = 32
 """The most bands in a shader: as many as the window sums in its own; more belong in a texture."""
 
-Row = tuple[int, int, list[str]]
-"""A coefficient: l, m and the numbers as text."""
+
+class Row(NamedTuple):
+    """A row of a table: what it is, such as ("l", 0) and ("m", 0), and its numbers as text."""
+
+    place: tuple[tuple[str, object], ...]
+    numbers: list[str]
+
+    @property
+    def words(self) -> str:
+        """ "l = 0, m = 0", or "c0" where there is one thing to say"""
+        return (
+            ", ".join(f"{name} = {value}" for name, value in self.place)
+            if len(self.place) > 1
+            else str(self.place[0][1])
+        )
+
 
 POLYNOMIALS = ("", "y", "z", "x", "x * y", "y * z", "3.0 * z * z - 1.0", "x * z", "x * x - y * y")
 UNITY = 1e-15
@@ -41,13 +56,15 @@ def function_name(name: str, quantity: str) -> str:
 def c_header(name: str, comments: Sequence[str], rows: Sequence[Row]) -> str:
     """A C99 header with one static array of doubles; complex numbers are pairs."""
     symbol = identifier(name)
-    size = f"[{len(rows)}][3]" + ("[2]" if len(rows[0][2]) == 6 else "")
+    size = f"[{len(rows)}][3]" + ("[2]" if len(rows[0].numbers) == 6 else "")
+    bands = f"{symbol.upper()}_BANDS = {math.isqrt(len(rows))}, " if len(rows[0].place) > 1 else ""
     lines = [*comments, "", f"#ifndef {symbol.upper()}_H", f"#define {symbol.upper()}_H", ""]
-    lines += [f"enum {{ {symbol.upper()}_BANDS = {math.isqrt(len(rows))}, {symbol.upper()}_ROWS = {len(rows)} }};", ""]
+    lines += [f"enum {{ {bands}{symbol.upper()}_ROWS = {len(rows)} }};", ""]
     lines += [f"static const double {symbol}{size} = {{", f"    // {TABLE_BEGINS}"]
-    for l, m, numbers in rows:
+    for row in rows:
+        numbers = row.numbers
         pairs = [f"{{{', '.join(numbers[i : i + 2])}}}" for i in range(0, 6, 2)] if len(numbers) == 6 else numbers
-        lines.append(f"    {{{', '.join(pairs)}}},  // l = {l}, m = {m}")
+        lines.append(f"    {{{', '.join(pairs)}}},  // {row.words}")
     return "\n".join([*lines, f"    // {TABLE_ENDS}", "};", "", "#endif", ""])
 
 
@@ -65,26 +82,30 @@ def glsl_source(
         raise ValueError(
             f"{n_bands} bands: a shader is written for 1 to {MAX_GLSL_BANDS}; use fewer, or .npz and a texture"
         )
-    table = f"const vec3 {symbol}[{len(rows)}] = vec3[{len(rows)}]("
-    lines = [*comments, "", table, f"    // {TABLE_BEGINS}"]
-    for place, (l, m, numbers) in enumerate(rows):
-        comma = "," if place + 1 < len(rows) else ""
-        lines.append(f"    vec3({', '.join(numbers)}){comma}  // l = {l}, m = {m}")
-    lines += [f"    // {TABLE_ENDS}", ");", "", "// direction: unit, in the axes named above"]
+    lines = [*comments, "", *glsl_table(symbol, rows), "", "// direction: unit, in the axes named above"]
     lines += [f"vec3 {function}(vec3 direction) {{"]
     components = zip("xyz", re.findall("..", pole), strict=True)
     named = (f"{name} = {sign.strip('+')}direction.{axis}" for name, (sign, axis) in components)
     lines += [f"    float {', '.join(named)};"]
 
-    at = {(l, m): number for number, (l, m, _) in enumerate(rows)}
+    at = {row.place: number for number, row in enumerate(rows)}
 
     def row(l: int, m: int) -> str:
-        return f"{symbol}[{at[l, m]}]"
+        return f"{symbol}[{at[('l', l), ('m', m)]}]"
 
     body = _polynomials(row, factors, n_bands) if n_bands <= 3 else _recurrence(row, factors, n_bands)
     if shift:
         body[-1] = f"{body[-1].removesuffix(';')} + {shift!r};"
     return "\n".join([*lines, *body, "}", ""])
+
+
+def glsl_table(symbol: str, rows: Sequence[Row]) -> list[str]:
+    """The lines of a constant array with the numbers."""
+    last = len(rows) - 1
+    lines = [f"const vec3 {symbol}[{len(rows)}] = vec3[{len(rows)}](", f"    // {TABLE_BEGINS}"]
+    for number, row in enumerate(rows):
+        lines.append(f"    vec3({', '.join(row.numbers)}){',' * (number < last)}  // {row.words}")
+    return [*lines, f"    // {TABLE_ENDS}", ");"]
 
 
 def _polynomials(row: _RowText, factors: Array, n_bands: int) -> list[str]:

@@ -10,6 +10,10 @@ Schema 1. A reader needs the first three keys; the others are for people, and mu
     use                     what to type so that the program takes them (use.py), with the rows as the file has them
     unity-vectors           the seven vectors of Unity's shaders, in a file for Unity
     bands, rows, columns    n, n^2, and the names of the columns
+    encoding                one of STORED (harmonics/quantities/encodings.py): the rows are what engines store of an irradiance,
+    numbers                 what each row is called, as in
+    formula                 which gives the irradiance in a direction; no reader takes such a file for a light
+    through                 the encoding that the rows have been through, which are bands, as its formula takes no window
     light, light-is, light-notes, window, muted, method, samples, seed
     turned                  the rotation of the light before it was written, if it was turned: a matrix row by row, in our axes
     suns                    how many were left out of the light, if any were; of each, sun-1 having the greatest flux,
@@ -39,6 +43,7 @@ from shviewer.words import one_line
 SCHEMA = 1
 SCHEMA_KEY = "shviewer-coefficients"
 SUNS_KEY = "suns"
+ENCODING_KEY = "encoding"
 
 Value = str | int | float | None
 Stamp = Mapping[str, Value]
@@ -89,11 +94,21 @@ def _is_glossy(quantity: object) -> bool:
         return False
 
 
+def refuse_stored(stamp: Stamp) -> None:
+    """LightError for what engines store of an irradiance: numbers for a formula."""
+    if ENCODING_KEY in stamp:
+        raise LightError(
+            f"holds numbers for the formula of {one_line(str(stamp[ENCODING_KEY]))}, no coefficients: give the light itself, "
+            "and --encode"
+        )
+
+
 def read_stamp(stamp: Stamp) -> Convention:
     """The convention that a stamp states, with its quantity.
 
     LightError for a later schema, a missing key or a contradiction.
     """
+    refuse_stored(stamp)
     schema = stamp.get(SCHEMA_KEY)
     if str(schema) != str(SCHEMA):
         raise LightError(

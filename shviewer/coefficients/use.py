@@ -148,6 +148,11 @@ def with_use(
     if convention.name == "unity":
         vectors = unity_vectors(numbers).items()
         added["unity-vectors"] = "; ".join(f"{name} = ({', '.join(map(repr, vector))})" for name, vector in vectors)
+    return with_keys(stamp, added)
+
+
+def with_keys(stamp: dict[str, Value], added: dict[str, Value]) -> dict[str, Value]:
+    """The stamp with more keys after `layout`."""
     items = list(stamp.items())
     place = [*stamp].index("layout") + 1 if "layout" in stamp else len(items)
     return dict([*items[:place], *added.items(), *items[place:]])

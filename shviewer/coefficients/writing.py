@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -18,27 +18,32 @@ from shviewer.coefficients.client_code import csharp_class, javascript_module
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.source_code import Row, c_header, function_name, glsl_source, identifier
 from shviewer.coefficients.stamp import Value
-from shviewer.coefficients.use import JAVASCRIPT, USES, unity_vectors, with_use
+from shviewer.coefficients.stored_code import FORMULAS, check_stored, glsl_decoder, in_axes, stored_rows
+from shviewer.coefficients.use import JAVASCRIPT, USES, unity_vectors, with_keys, with_use
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import count_bands, degree_order
+from shviewer.harmonics.quantities.encodings import Encoding, Stored
 from shviewer.words import meant
+
+OF_A_BASIS = ("basis", "phase", "index", "normalisation")
+"""Keys of the stamp that say nothing where the numbers are no coefficients."""
 
 FORMATS = ("json", "csv", "npz", "h", "glsl", "js", "cs")
 
 
 class _Table(NamedTuple):
-    """What is written: numbers (n**2, 3) in a convention, the stamp, and the name of the light."""
+    """What is written."""
 
     numbers: NDArray[np.generic]
+    """(k, 3), in the convention."""
     stamp: dict[str, Value]
     convention: Convention
     name: str
-
-    def rows(self) -> Iterator[Row]:
-        """Each row as l, m and its numbers as text, from first to last."""
-        n_bands = count_bands(self.numbers)
-        for place, row in zip(self.convention.rows(n_bands).tolist(), real_columns(self.numbers), strict=True):
-            yield (*degree_order(place), _digits(row))
+    """The name of the light."""
+    rows: list[Row]
+    """The numbers as text, each row with its place."""
+    encoding: Encoding | None = None
+    """What the numbers are of, if they are no coefficients alone."""
 
     def comments(self, mark: str = "//") -> list[str]:
         """The stamp in lines that begin with `mark`."""
@@ -54,10 +59,32 @@ def encode(
     kind: one of FORMATS; name: the name of the array in a header. UsageError for another kind, ValueError for numbers that
     the format cannot hold.
     """
+    names = identifier(name), function_name(name, str(stamp["quantity"]))
+    said = with_use(stamp, numbers, convention, _known(kind), names)
+    return _ENCODERS[kind](_Table(numbers, said, convention, name, _rows(numbers, convention)))
+
+
+def encode_stored(stored: Stored, stamp: dict[str, Value], convention: Convention, kind: str, name: str) -> bytes:
+    """The bytes of a file that holds what engines store of an irradiance, and its formula. Errors as in `encode`."""
+    check_stored(stored.encoding, convention)
+    numbers, formula = in_axes(stored, convention.axes), FORMULAS[stored.encoding.formula]
+    added: dict[str, Value] = {
+        "encoding": stored.name,
+        "numbers": " ".join(stored.encoding.places),
+        "formula": formula,
+    }
+    if not stored.encoding.turns:
+        stamp = {key: value for key, value in stamp.items() if key not in OF_A_BASIS}
+    if _known(kind) == "glsl":
+        added["use"] = f"vec3 irradiance = {function_name(name, stored.name)}(normal);"
+    rows = stored_rows(stored.encoding, numbers)
+    return _ENCODERS[kind](_Table(numbers, with_keys(stamp, added), convention, name, rows, stored.encoding))
+
+
+def _known(kind: str) -> str:
     if kind not in FORMATS:
         raise UsageError(f"format {kind!r}: {meant(kind, FORMATS)}")
-    names = identifier(name), function_name(name, str(stamp["quantity"]))
-    return _ENCODERS[kind](_Table(numbers, with_use(stamp, numbers, convention, kind, names), convention, name))
+    return kind
 
 
 def real_columns(numbers: NDArray[np.generic]) -> NDArray[np.float64]:
@@ -71,13 +98,14 @@ def real_columns(numbers: NDArray[np.generic]) -> NDArray[np.float64]:
 def _json(table: _Table) -> bytes:
     """JSON with one row to a line."""
     head = json.dumps(table.stamp, indent=2, allow_nan=False)[:-2]
-    rows = ",\n".join(f"    [{', '.join(_digits(row))}]" for row in real_columns(table.numbers))
+    rows = ",\n".join(f"    [{', '.join(row.numbers)}]" for row in table.rows)
     return f'{head},\n  "coefficients": [\n{rows}\n  ]\n}}\n'.encode()
 
 
 def _csv(table: _Table) -> bytes:
-    lines = [*table.comments("#"), ",".join(["l", "m", *str(table.stamp["columns"]).split()])]
-    lines += [",".join([str(l), str(m), *numbers]) for l, m, numbers in table.rows()]
+    heads = [name for name, _ in table.rows[0].place]
+    lines = [*table.comments("#"), ",".join([*heads, *str(table.stamp["columns"]).split()])]
+    lines += [",".join([*(str(value) for _, value in row.place), *row.numbers]) for row in table.rows]
     return ("\n".join(lines) + "\n").encode()
 
 
@@ -93,29 +121,51 @@ def _h(table: _Table) -> bytes:
         program = table.convention.program.partition(",")[0]
         said: dict[str, Value] = {"layout": f"in {program} {layout}; this array is [row][channel]"}
         table = table._replace(stamp=table.stamp | said)
-    return c_header(table.name, table.comments(), list(table.rows())).encode()
+    return c_header(table.name, table.comments(), table.rows).encode()
 
 
 def _glsl(table: _Table) -> bytes:
-    factors = table.convention.basis_factors(count_bands(table.numbers))
-    function = function_name(table.name, str(table.stamp["quantity"]))
-    shift, pole = table.convention.shift, table.convention.pole.text
-    return glsl_source(table.name, function, table.comments(), list(table.rows()), factors, shift, pole).encode()
+    name, comments, rows, convention = table.name, table.comments(), table.rows, table.convention
+    if table.encoding is not None:
+        function = function_name(name, str(table.stamp["encoding"]))
+        return glsl_decoder(name, function, comments, rows, table.encoding.formula).encode()
+    function, factors = (
+        function_name(name, str(table.stamp["quantity"])),
+        convention.basis_factors(count_bands(table.numbers)),
+    )
+    return glsl_source(name, function, comments, rows, factors, convention.shift, convention.pole.text).encode()
 
 
 def _js(table: _Table) -> bytes:
     use = USES.get(table.convention.name)
     applied = (str(table.stamp["use"]), use.takes) if use and use.language == JAVASCRIPT else None
-    return javascript_module(table.name, table.comments(), list(table.rows()), applied).encode()
+    return javascript_module(table.name, table.comments(), table.rows, applied).encode()
 
 
 def _cs(table: _Table) -> bytes:
     vectors = unity_vectors(table.numbers) if table.convention.name == "unity" else {}
-    return csharp_class(table.name, table.comments(), list(table.rows()), vectors).encode()
+    return csharp_class(table.name, table.comments(), table.rows, vectors).encode()
 
 
-_ENCODERS = {"json": _json, "csv": _csv, "npz": _npz, "h": _h, "glsl": _glsl, "js": _js, "cs": _cs}
+_ENCODERS: dict[str, Callable[[_Table], bytes]] = {
+    "json": _json,
+    "csv": _csv,
+    "npz": _npz,
+    "h": _h,
+    "glsl": _glsl,
+    "js": _js,
+    "cs": _cs,
+}
 
 
 def _digits(row: Iterable[float]) -> list[str]:
     return [repr(float(value)) for value in row]
+
+
+def _rows(numbers: NDArray[np.generic], convention: Convention) -> list[Row]:
+    """Each row of the file with its l and m, from first to last."""
+    places = convention.rows(count_bands(numbers)).tolist()
+    return [
+        Row(tuple(zip("lm", degree_order(place), strict=True)), _digits(row))
+        for place, row in zip(places, real_columns(numbers), strict=True)
+    ]

@@ -33,7 +33,7 @@ class Beside:
 
     def values_at(self, directions: Array) -> Array:
         """Its radiance, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
-        return values_at(directions, self.coefficients, self.projection.stored_as(self.recipe.shown))
+        return values_at(directions, self.coefficients, self.projection.stored_as(self.figures.factors))
 
 
 def recipe_beside(recipe: Recipe, beside: str) -> Recipe:

@@ -148,8 +148,9 @@ def _compared_surfaces(
     shown: Shown,
     rows: int,
 ) -> tuple[Surface, Surface, Surface, float]:
-    coefficients = sums(light, projection, shown)[0]
-    original, reconstruction = sample_light(light, rows), _sampled(coefficients, projection.stored_as(shown), rows)
+    coefficients, figures = sums(light, projection, shown)
+    stored = projection.stored_as(figures.factors)
+    original, reconstruction = sample_light(light, rows), _sampled(coefficients, stored, rows)
     unit = unit_radius(original, reconstruction)
     first, second, third = (
         surface(values, unit, root=True) for values in (original, reconstruction, reconstruction - original)

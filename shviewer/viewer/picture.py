@@ -96,7 +96,7 @@ class Picture:
     @property
     def stored(self) -> Stored | None:
         """The numbers of the encoding that is shown; None where the coefficients are summed."""
-        return self.projection.stored_as(self.state.recipe.shown)
+        return self.projection.stored_as(self.figures.factors)
 
     @property
     def light(self) -> Light:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
-from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.recipe import Recipe, check_encoding
 from shviewer.errors import UsageError
-from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.composing.composition import MAX_SIDE, MIN_SIDE
@@ -58,17 +57,7 @@ class State:
         if self.view.evaluate == "direct" and n_bands > MAX_DIRECT_BANDS:
             raise UsageError(f"{n_bands} bands: at most {MAX_DIRECT_BANDS} are summed directly; map or auto take more")
         if encoding := self.view.encode:
-            if self.recipe.quantity != IRRADIANCE:
-                raise UsageError(f"encode {encoding}: engines store it of irradiance; give --for irradiance")
-            if self.recipe.compare:
-                raise UsageError(
-                    f"encode {encoding}: coefficients that are compared are shown as they are; leave one out"
-                )
-            if n_bands != ENCODED_BANDS[encoding]:
-                bands = counted(ENCODED_BANDS[encoding], "band")
-                raise UsageError(
-                    f"encode {encoding}: it stands for {bands}, not {n_bands}; leave out the number of bands"
-                )
+            check_encoding(self.recipe, encoding)
         if basis is not None and not abs(basis[1]) <= basis[0] < n_bands:
             raise UsageError(f"basis function {basis} of {n_bands} bands: l must be 0 to {n_bands - 1}, m -l to l")
         if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):

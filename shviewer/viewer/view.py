@@ -104,7 +104,7 @@ class View:
         "",
         Choice(("", *ENCODED_BANDS)),
         "show what engines store of the irradiance in few numbers, in place of bands: l1, geomerics, hallucinated, zh3, the"
-        " last two also with -shared, l2 or l2-deringed; with --for irradiance",
+        " last two also with -shared, l2 or l2-deringed",
         "--encode",
         "NAME",
     )

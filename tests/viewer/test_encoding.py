@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +11,16 @@ from places import kernels
 
 import shviewer
 from shviewer.cli.main import main
+from shviewer.cli.options.modes import screenshot_parser
+from shviewer.cli.options.states import state_from
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.quantities.encodings import ENCODINGS
+from shviewer.harmonics.quantities.encodings import ENCODINGS, Stored
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.lights.find import find_light
+from shviewer.viewer.camera import towards
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
@@ -94,7 +99,10 @@ def test_geomerics_is_drawn_where_its_formula_has_it() -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--encode", "zh3"), "encode zh3: engines store it of irradiance; give --for irradiance"),
+        (
+            ("--encode", "zh3", "--for", "radiance"),
+            "encode zh3: engines store it of irradiance; give --for irradiance",
+        ),
         (
             ("--encode", "zh3", "--for", "glossy:0.4"),
             "encode zh3: engines store it of irradiance; give --for irradiance",
@@ -111,6 +119,45 @@ def test_what_cannot_be_is_one_line(
     assert said in line
 
 
+@pytest.mark.parametrize("name", ENCODINGS)
+def test_Ctrl_E_writes_the_numbers_that_are_shown_turned_as_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    session = Session(changed(encoding(name), light_rotation=towards(30.0, 20.0)))
+    session.press("Ctrl+E")
+    session.saving.finish()
+    floats, said = ENCODINGS[name].floats, session.state.view.message
+    assert said == f"saved shviewer-green-001.json in {tmp_path}, {floats} numbers a channel, {name}"
+    written = json.loads((tmp_path / "shviewer-green-001.json").read_text())
+    normals = np.concatenate([np.eye(3), np.full((1, 3), 3**-0.5)])
+    found = Stored(name, np.array(written["coefficients"])).irradiance(normals)
+    picture = session.picture
+    wanted = picture.rest_at(normals @ picture.light_from_world.T)
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
+    assert main(["project", "green", "--encode", name, "--rotate-light", "30", "20", "-o", "by-command.json"]) == 0
+    assert json.loads((tmp_path / "by-command.json").read_text())["encoding"] == name
+
+
+def test_Ctrl_E_writes_the_bands_that_are_shown_where_a_window_leaves_no_formula(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    session = Session(changed(encoding("zh3"), window="hann"))
+    session.press("Ctrl+E")
+    session.saving.finish()
+    assert session.state.view.message.endswith("3 bands: no numbers of zh3 have a window or muted bands")
+    written = json.loads((tmp_path / "shviewer-green-001.json").read_text())
+    np.testing.assert_array_equal(written["coefficients"], session.picture.coefficients)
+    assert (written["through"], "encoding" in written) == ("zh3", False)
+
+
+def test_an_encoding_is_of_irradiance_without_saying_so(tmp_path: Path) -> None:
+    options = screenshot_parser().parse_args([str(tmp_path / "p.png"), "green", "--encode", "geomerics"])
+    recipe = state_from(options, all_lights=False).recipe
+    assert (recipe.quantity, recipe.n_bands) == ("irradiance", 32)
+
+
 def test_python_names_the_encoding_alone() -> None:
     with pytest.raises(UsageError, match="encode zh3: it stands for 3 bands, not 5"):
-        shviewer.screenshot("green", 5, quantity="irradiance", encode="zh3")
+        shviewer.screenshot("green", 5, encode="zh3")

@@ -11,17 +11,20 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.cli.options.modes import MODES, PARSERS
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.writing import FORMATS
+from shviewer.harmonics.quantities.names import STORED_BANDS
 from shviewer.lights.find import built_in_lights
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.viewer.view import View
 
-WORDS = {
+WORDS: dict[str | tuple[str, str], tuple[str, ...]] = {
     "convention": tuple(CONVENTIONS),
     "input_convention": tuple(CONVENTIONS),
     "format": FORMATS,
     "layout": LAYOUT_CHOICES,
+    ("project", "encode"): tuple(STORED_BANDS),
+    "list_factors": Quantity.words[1:],
 }
-"""What may be given with options that no dataclass holds, by their places."""
+"""What may be given with options that no dataclass holds, by their places, or only in a mode."""
 
 
 class _Flag(NamedTuple):
@@ -43,8 +46,8 @@ def _flags(mode: str) -> list[_Flag]:
     found = []
     for action in PARSERS[mode]()._actions:
         kind = kinds.get(action.dest)
-        words: Iterable[str] = action.choices or WORDS.get(action.dest, ())
-        if isinstance(kind, Choice | WholeOr | Quantity):
+        words: Iterable[str] = action.choices or WORDS.get((mode, action.dest), WORDS.get(action.dest, ()))
+        if (mode, action.dest) not in WORDS and isinstance(kind, Choice | WholeOr | Quantity):
             words = kind.choices if isinstance(kind, Choice) else kind.words
         help_line = re.sub(r"\s+", " ", (action.help or "").replace("%%", "%"))
         if action.option_strings:
@@ -55,14 +58,16 @@ def _flags(mode: str) -> list[_Flag]:
 
 
 def _bash() -> str:
-    cases, names = [], []
+    cases, names = dict[str, dict[str, None]](), []
     for mode in PARSERS:
         flags = _flags(mode)
         names.append(f"    {mode}) options='{' '.join(name for flag in flags for name in flag.names)}' ;;")
-        cases += [(f"{'|'.join(flag.names)}", " ".join(flag.words)) for flag in flags if flag.words]
+        for flag in flags:
+            if flag.words:  # those of all modes
+                cases.setdefault("|".join(flag.names), {}).update(dict.fromkeys(flag.words))
     words = "\n".join(
-        f"    {names}) COMPREPLY=($(compgen -W '{words}' -- \"$current\")); return ;;"
-        for names, words in dict.fromkeys(cases)
+        f"    {option}) COMPREPLY=($(compgen -W '{' '.join(each)}' -- \"$current\")); return ;;"
+        for option, each in cases.items()
     )
     return f"""# bash completion of shviewer: shviewer --print-completion bash
 _shviewer() {{

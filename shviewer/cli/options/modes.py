@@ -15,7 +15,7 @@ from shviewer.cli.options.groups import (
     add_turn,
     add_view_options,
 )
-from shviewer.cli.options.values import finite, share
+from shviewer.cli.options.values import finite, quantity, share
 from shviewer.version import __version__
 
 EXIT_CODES = """exit codes:
@@ -74,6 +74,12 @@ def view_parser() -> OneLineParser:
     parser.add_argument("--watch", action="store_true", help="read the light's file again whenever it changes")
     parser.add_argument("--verbose", action="store_true", help="one line on stderr per frame")
     parser.add_argument("--list-keys", action="store_true", help="print the table of keys and exit")
+    parser.add_argument(
+        "--list-factors",
+        metavar="WHAT",
+        type=quantity,
+        help="print what irradiance or glossy:R multiplies each band of the radiance by, of 32 bands or of --bands N, and exit",
+    )
     parser.add_argument("--list-lights", action="store_true", help="print the built-in lights and exit")
     parser.add_argument(
         "--print-completion",
@@ -200,6 +206,12 @@ def project_parser() -> OneLineParser:
         "--axes",
         metavar="A",
         help="y-up or z-up (right-handed), y-up-left or z-up-left, or which of our axes x, y and z are, such as +x+z-y",
+    )
+    parser.add_argument(
+        "--encode",
+        metavar="NAME",
+        help="in place of bands what engines store of the irradiance, with the formula that decodes it: those of a picture's"
+        " --encode, zh3-solved, ambient-cube or ambient-cube-fitted",
     )
     parser.add_argument("--no-phase", action="store_true", help="a basis without the Condon-Shortley phase (-1)^m")
     add_numbers(parser)

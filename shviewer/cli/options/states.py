@@ -12,7 +12,7 @@ from shviewer.cli.options.inputs import lights_of, pictured_by
 from shviewer.cli.options.recipes import START, check_effects, chosen_of, recipe_from
 from shviewer.cli.options.values import number_of
 from shviewer.errors import UsageError
-from shviewer.harmonics.quantities.names import ENCODED_BANDS
+from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE
 from shviewer.words import one_line
 
 if TYPE_CHECKING:
@@ -51,6 +51,8 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     view, counted_bands = _view_from(options, start.view), not (options.n_bands is None and options.tolerance is None)
     if options.encode and counted_bands:
         raise UsageError(f"--encode {options.encode}: it takes the place of bands; leave out --bands and --tolerance")
+    if options.encode and options.quantity is None:
+        options.quantity = IRRADIANCE
     encoding = "" if counted_bands or (options.quantity and not options.encode) else view.encode
     view = replace(view, encode="")
     asked = start.recipe.n_bands if options.n_bands is None else options.n_bands

@@ -9,6 +9,7 @@ beyond them. v = (-c3, -c1, c2), u = v/|v|, n a unit normal; A(l) are the factor
     hallucinated  the same with z = c0 s (0.08 + 0.6 s), s = |v.u|/c0 [Roughton]
     ...-shared    u is that of the luminance, the same for all channels
     l2            the sum of A(l) c(l, m) Y(l, m) over three bands, nine numbers
+    cube          n_x^2 e(+-x) + n_y^2 e(+-y) + n_z^2 e(+-z), six numbers e(+x), e(-x), e(+y) ...; in no shader of the window
 Where v is 0 there is no axis, and what needs one is l1; where c0 is not positive, r and s are 0.
 
 Sources
@@ -97,6 +98,11 @@ def _l2(numbers: Array, normals: Array) -> Array:
     return np.asarray(evaluate_basis(normals, 3) @ (numbers * per_coefficient(irradiance_factors(3))))
 
 
+def _cube(numbers: Array, normals: Array) -> Array:
+    squares = normals[:, :, None] ** 2
+    return np.asarray((squares * np.where(normals[:, :, None] >= 0, numbers[0::2], numbers[1::2])).sum(axis=1))
+
+
 FORMULAS: Mapping[str, Callable[[Array, Array], Array]] = MappingProxyType(
     {
         "l1": _l1,
@@ -106,6 +112,7 @@ FORMULAS: Mapping[str, Callable[[Array, Array], Array]] = MappingProxyType(
         "zh3": partial(_zh3, shared=False),
         "zh3_shared": partial(_zh3, shared=True),
         "l2": _l2,
+        "cube": _cube,
     }
 )
 """Name of a formula -> numbers (floats, channels), unit normals (k, 3) -> irradiance (k, channels)."""

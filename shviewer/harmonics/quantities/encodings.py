@@ -1,4 +1,4 @@
-"""Encodings of irradiance that engines store in fewer numbers than bands have, made of the first nine coefficients of radiance.
+"""Encodings of irradiance that engines store in few numbers, made of nine coefficients of radiance, or for cubes of all.
 
 What is stored is evaluated by a formula of decoding.py, which says what c, v, u and z are; and it is a sum of bands, exactly so
 but for Geomerics', which has every band, in closed form: its first GEOMERICS_BANDS leave less than 1e-5 of its peak.
@@ -7,13 +7,15 @@ but for Geomerics', which has every band, in closed form: its first GEOMERICS_BA
     zh3             c0 ... c3, and of band 2 the part that is symmetric about u, z = sqrt(4 pi/5) sum of Y(2, m)(u) c(2, m).
     hallucinated    c0 ... c3, from which z is guessed.
     ...-shared      one axis for all channels, that of their luminance, as programs do.
-    l2, l2-deringed c0 ... c8 as they are, and with the factors of deringing.py.
+    zh3-solved      the same five with another band 1, nearer to the irradiance.
+    l2, l2-deringed c0 ... c8 as they are, and with the factors of deringing.py or of a window.
+    ambient-cube    six faces (ambient_cube.py), the irradiance there or, fitted, what is nearest to all of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -22,14 +24,16 @@ import numpy as np
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.deringing import dering
 from shviewer.harmonics.extremes.climbing import climb
-from shviewer.harmonics.filters import irradiance_factors, per_coefficient
+from shviewer.harmonics.filters import irradiance_factors, per_coefficient, window
 from shviewer.harmonics.quadrature import fibonacci
+from shviewer.harmonics.quantities.ambient_cube import CUBE_BANDS, bands_of_cube, fitted, sampled
 from shviewer.harmonics.quantities.decoding import FORMULAS, axes, hallucination, lengths, one_sidedness, vectors
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
+from shviewer.harmonics.rotation import rotate
 from shviewer.harmonics.zonal import orient
 
 BANDS = 3
-"""Bands of radiance that encodings are made of."""
+"""Bands of radiance that encodings are made of, but for cubes, which take what there is."""
 
 GEOMERICS_BANDS = ENCODED_BANDS["geomerics"]
 
@@ -46,14 +50,36 @@ class Encoding(NamedTuple):
     bands: int
     """Bands of the irradiance that it stands for."""
     store: Callable[[Array], Array]
-    """Radiance (9, 3) -> numbers (floats, 3)."""
+    """Radiance (n**2, 3), n at least BANDS -> numbers (floats, 3)."""
     expand: Callable[[Array], Array]
     """Numbers (floats, 3) -> irradiance (bands**2, 3)."""
     formula: str = ""
     """The one of FORMULAS that has the irradiance in a direction; "" for what is only reported."""
 
+    @property
+    def turns(self) -> bool:
+        """Whether it turns with the light; a cube stands in the axes of the world."""
+        return self.formula != "cube"
+
+    @property
+    def summed(self) -> bool:
+        """Whether its numbers are coefficients and no more, so that factors of bands apply to them."""
+        return self.formula in ("l1", "l2")
+
+    @property
+    def coefficients(self) -> int:
+        """How many of its numbers are coefficients, which come first."""
+        return (9 if self.floats == 9 else 4) * self.turns
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """What each number is called."""
+        if not self.turns:
+            return "+x", "-x", "+y", "-y", "+z", "-z"
+        return (*(f"c{number}" for number in range(self.coefficients)), "z")[: self.floats]
+
     def make(self, radiance: Array) -> Array:
-        """Radiance (9, 3) -> irradiance (bands**2, 3)."""
+        """Radiance (n**2, 3), n at least BANDS -> irradiance (bands**2, 3)."""
         return self.expand(self.store(radiance))
 
 
@@ -67,11 +93,24 @@ class Stored:
 
     @property
     def encoding(self) -> Encoding:
-        return ENCODINGS[self.name]
+        return STORED[self.name]
 
     def irradiance(self, normals: Array) -> Array:
         """Irradiance in unit directions (k, 3): (k, 3)."""
         return FORMULAS[self.encoding.formula](self.numbers, normals)
+
+    def turned(self, matrix: Array) -> Stored:
+        """The same of the light carried along by a rotation (3, 3). A cube is not: it is made of the turned light."""
+        count = self.encoding.coefficients
+        return replace(self, numbers=np.concatenate([rotate(self.numbers[:count], matrix), self.numbers[count:]]))
+
+    def weighted(self, factors: Array) -> Stored | None:
+        """With a factor for each band, as of a window; None where its formula takes none."""
+        if (factors == 1).all():
+            return self
+        if not self.encoding.summed:
+            return None
+        return replace(self, numbers=self.numbers * per_coefficient(factors[: self.encoding.bands]))
 
 
 def linear(radiance: Array, n_bands: int) -> Array:
@@ -102,7 +141,7 @@ def code_as_is(numbers: Array) -> Array:
 def five_numbers(radiance: Array, shared: bool = False) -> Array:
     """What zh3 stores, (5, 3)."""
     u, there = axes(radiance, shared)
-    along = (evaluate_basis(u, BANDS)[:, 4:] * radiance[4:].T).sum(axis=1)
+    along = (evaluate_basis(u, BANDS)[:, 4:] * radiance[4:9].T).sum(axis=1)
     return np.concatenate([radiance[:4], [there * np.sqrt(4 * np.pi / 5) * along]])
 
 
@@ -122,9 +161,9 @@ def solved(radiance: Array) -> Array:
     For an axis u the best band 1 is its part along u, if that is positive: what is left is least where v.u^2 + z(u)^2 is most.
     """
     factors = irradiance_factors(BANDS)
-    changed = radiance.copy()
+    changed = radiance[: BANDS**2].copy()
     for channel in range(3):
-        own = radiance[:, [channel]]
+        own = radiance[: BANDS**2, [channel]]
         v = vectors(own)[0]
 
         def kept(u: Array, own: Array = own, v: Array = v) -> Array:
@@ -148,7 +187,12 @@ def _with_zonal(numbers: Array, z: Array, shared: bool) -> Array:
 
 def deringed(radiance: Array) -> Array:
     """Radiance (9, 3) whose irradiance is that of `radiance`, deringed."""
-    return np.asarray(radiance * per_coefficient(dering(linear(radiance, BANDS)).factors))
+    return np.asarray(radiance[: BANDS**2] * per_coefficient(dering(linear(radiance, BANDS)).factors))
+
+
+def _windowed(name: str) -> Callable[[Array], Array]:
+    """Radiance (9, 3) with a window of four bands."""
+    return lambda radiance: np.asarray(radiance[: BANDS**2] * per_coefficient(window(name, BANDS, 4)))
 
 
 def _first(count: int) -> Callable[[Array], Array]:
@@ -175,8 +219,16 @@ ENCODINGS = {
 }
 """Those that can be looked at, by their names on the command line."""
 
-REPORTED = ENCODINGS | {
-    "zh3-solved": Encoding("ZH3, solved", 5, BANDS, solved, zh3),
+STORED = ENCODINGS | {
+    "zh3-solved": Encoding("ZH3, solved", 5, BANDS, solved, zh3, "zh3"),
+    "ambient-cube": Encoding("ambient cube", 6, CUBE_BANDS, sampled, bands_of_cube, "cube"),
+    "ambient-cube-fitted": Encoding("ambient cube, fitted", 6, CUBE_BANDS, fitted, bands_of_cube, "cube"),
+}
+"""Those that can be written: the window does not search while a light turns, nor has it axes that stay where they are."""
+
+REPORTED = STORED | {
+    "l2-hann": Encoding("L2, Hann window of 4", 9, BANDS, _windowed("hann"), _bands(BANDS), "l2"),
+    "l2-lanczos": Encoding("L2, Lanczos window of 4", 9, BANDS, _windowed("lanczos"), _bands(BANDS), "l2"),
     "code-as-is": Encoding("a trap: Geomerics as in common code", 4, GEOMERICS_BANDS, _first(4), code_as_is),
 }
 """Those of the report."""

@@ -30,6 +30,9 @@ ENCODED_BANDS = {
 }
 """Encodings of irradiance that can be looked at (encodings.py) -> the bands of the function that each stands for."""
 
+STORED_BANDS = ENCODED_BANDS | {"zh3-solved": 3, "ambient-cube": 32, "ambient-cube-fitted": 32}
+"""The same of those that can be written."""
+
 
 def glossy(roughness: float) -> str:
     """The quantity of that roughness, by its one name; radiance for 0."""

@@ -18,7 +18,7 @@ from shviewer.viewer.animation.turning import step_turn
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.behind.opening import MOST_DROPPED
-from shviewer.viewer.desktop.behind.saving import Saving, save_coefficients
+from shviewer.viewer.desktop.behind.saving import Saving, Written, save_coefficients
 from shviewer.viewer.desktop.showing import Showing
 from shviewer.viewer.desktop.turning import Turning
 from shviewer.viewer.desktop.watching import Watch
@@ -232,8 +232,9 @@ class Session(Showing):
         """Make a text behind the window, when the picture is there, and give it."""
         self.when_ready(lambda: self.saving.text(words, make, give))
 
-    def _written(self, path: Path) -> None:
-        self.say(f"saved {path} in {Path.cwd()}", DONE)
+    def _written(self, written: Written) -> None:
+        path, what = written
+        self.say(f"saved {path} in {Path.cwd()}{f', {what}' if what else ''}", DONE)
         self.log(f"saved {path}")
 
     def _failed(self, error: ShviewerError) -> None:

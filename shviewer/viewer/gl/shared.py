@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, index, normalisation
-from shviewer.harmonics.quantities.decoding import FORMULAS, LINEAR, MEAN, ZONAL
+from shviewer.harmonics.quantities.decoding import LINEAR, MEAN, ZONAL
+from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
 from shviewer.lights.lobe import Lobe
@@ -23,7 +24,7 @@ from shviewer.viewer.view import ERRORS, TONES
 CHOICES: dict[str, tuple[str, ...]] = {
     "SHOWN": ("ORIGINAL", "RECONSTRUCTION", "ERROR"),
     "ORIGINAL": ("LOBES", "MAP"),
-    "RECONSTRUCTION": ("SUM", "MAP", *(formula.upper() for formula in FORMULAS)),
+    "RECONSTRUCTION": ("SUM", "MAP", *dict.fromkeys(encoding.formula.upper() for encoding in ENCODINGS.values())),
     "TONE": tuple(tone.upper() for tone in TONES),
     "PANE": ("SPHERE", "MAP"),
 }

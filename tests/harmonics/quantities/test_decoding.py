@@ -8,27 +8,32 @@ from numpy.testing import assert_allclose
 
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.quantities.decoding import FORMULAS
-from shviewer.harmonics.quantities.encodings import ENCODINGS, Stored
+from shviewer.harmonics.quantities.encodings import ENCODINGS, STORED, Stored
 
 NORMALS = np.concatenate([random_directions(300), np.eye(3), -np.eye(3)])
 
 
-@pytest.mark.parametrize(("name", "light"), CASES)
+WRITTEN = [(name, light) for name in STORED if name not in ENCODINGS for light in HARD]
+CUT_OFF = {"geomerics": 1e-5, "ambient-cube": 5e-4, "ambient-cube-fitted": 5e-4}
+"""What 32 bands leave of those that have more, over the peak."""
+
+
+@pytest.mark.parametrize(("name", "light"), [*CASES, *WRITTEN])
 def test_a_formula_is_the_sum_of_the_bands_it_stands_for(name: str, light: str) -> None:
-    """Geomerics' is cut off after 32 bands, which leaves 1e-5 of its peak."""
-    encoding = ENCODINGS[name]
+    encoding = STORED[name]
     numbers = encoding.store(HARD[light])
     assert numbers.shape == (encoding.floats, 3)
     found = Stored(name, numbers).irradiance(NORMALS)
     summed = evaluate_basis(NORMALS, encoding.bands) @ encoding.expand(numbers)
     peak = np.abs(summed).max(axis=0)
-    assert_allclose(found, summed, rtol=0, atol=(1e-5 if name == "geomerics" else 1e-14) * peak.max())
-    assert (np.abs(found - summed).max(axis=0) <= 2e-5 * peak).all()
+    assert_allclose(found, summed, rtol=0, atol=CUT_OFF.get(name, 1e-14) * peak.max())
+    assert (np.abs(found - summed).max(axis=0) <= 2 * CUT_OFF.get(name, 1e-5) * peak).all()
 
 
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_channels_do_not_touch_each_other_but_by_their_axis(formula: str) -> None:
-    numbers = np.random.default_rng(0).random((9, 3))
+    count = 6 if formula == "cube" else 9
+    numbers = np.random.default_rng(0).random((count, 3))
     for channel in range(3):
         own = np.repeat(numbers[:, [channel]], 3, axis=1)
         alone, together = FORMULAS[formula](own, NORMALS)[:, channel], FORMULAS[formula](numbers, NORMALS)[:, channel]

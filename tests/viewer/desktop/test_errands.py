@@ -17,6 +17,7 @@ from shviewer.progress import Stopped, listening, tell
 from shviewer.viewer.desktop import session as sessions
 from shviewer.viewer.desktop.behind import errands, opening, saving, task
 from shviewer.viewer.desktop.behind.errands import Errands
+from shviewer.viewer.desktop.behind.saving import Written
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.message import DONE, ERROR, kind_of
 from shviewer.viewer.saving.file_marks import mark_of
@@ -47,7 +48,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def writing(at_once: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[Held]:
-    held = Held(lambda picture: Path(f"{picture.state.recipe.n_bands}.json"))
+    held = Held(lambda picture: Written(Path(f"{picture.state.recipe.n_bands}.json")))
     monkeypatch.setattr(sessions, "save_coefficients", held)
     yield held
     held.open.set()
@@ -125,7 +126,7 @@ def test_a_picture_whose_map_is_on_its_way_to_opengl_is_saved_when_it_is_there(
 
     saved: list[object] = []
     monkeypatch.setattr(saving, "render_in_parts", drawn)
-    monkeypatch.setattr(saving, "save_picture", lambda *rest: saved.append(rest[-1]) or Path("a.png"))
+    monkeypatch.setattr(saving, "save_picture", lambda *rest: saved.append(rest[-1]) or Written(Path("a.png")))
     opengl = SimpleNamespace(version="", ready=lambda *picture: False, held=SimpleNamespace(pinned=None))
     session = Session(state_of("green"))
     session.save(opengl, None)  # type: ignore[arg-type]

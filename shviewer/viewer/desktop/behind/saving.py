@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import ParamSpec
+from typing import NamedTuple, ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,13 +32,21 @@ Read = Callable[[], NDArray[np.uint8]]
 """Gives the pixels that were read back."""
 
 
+class Written(NamedTuple):
+    """A file that was written."""
+
+    path: Path
+    what: str = ""
+    """What is in it, where that is not plain."""
+
+
 class Saving(Errands):
     """Pictures, coefficients and texts that were asked for. A picture that is drawn has its maps in OpenGL until it is."""
 
     def __init__(
         self,
         wake: Callable[[], None] | None,
-        written: Callable[[Path], None],
+        written: Callable[[Written], None],
         failed: Callable[[ShviewerError], None],
     ) -> None:
         """written, failed: hear of every file that was written, and of whatever could not be."""
@@ -80,7 +89,7 @@ class Saving(Errands):
         self.go_on(None)
         super().finish()
 
-    def write(self, words: str, write: Callable[P, Path], *arguments: P.args, **named: P.kwargs) -> None:
+    def write(self, words: str, write: Callable[P, Written], *arguments: P.args, **named: P.kwargs) -> None:
         """Write a file."""
         self.run(words, lambda: write(*arguments, **named), self._written, self._failed)
 
@@ -122,19 +131,23 @@ class _Drawing:
         self._parts.close()
 
 
-def save_picture(picture: Picture, composition: Composition, opengl: str, pixels: Read) -> Path:
+def save_picture(picture: Picture, composition: Composition, opengl: str, pixels: Read) -> Written:
     """Write the picture, with the pixels that OpenGL drew of it, under the next free name in the present folder.
 
-    Return its path. OutputError if that fails.
+    OutputError if that fails.
     """
     text = metadata(picture, composition, opengl)
-    return write_numbered(_stem(picture), lambda path: write_png(path, pixels(), text, exclusive=True))
+    return Written(write_numbered(_stem(picture), lambda path: write_png(path, pixels(), text, exclusive=True)))
 
 
-def save_coefficients(picture: Picture) -> Path:
+def save_coefficients(picture: Picture) -> Written:
     """Write what `shviewer project` would, with the light turned as it is shown. OutputError if that fails."""
-    data = _projected(picture).encode(OURS, "json")
-    return write_numbered(_stem(picture), lambda path: write_atomically(path, data, exclusive=True), suffix=".json")
+    projected = _projected(picture)
+    data, what = projected.encode(OURS, "json"), projected.extent if projected.encoding else ""
+    if projected.encoding and projected.stored is None:
+        what += f": no numbers of {projected.encoding} have a window or muted bands"
+    write = partial(write_atomically, data=data, exclusive=True)
+    return Written(write_numbered(_stem(picture), write, suffix=".json"), what)
 
 
 def coefficients_text(picture: Picture) -> str:
@@ -143,7 +156,8 @@ def coefficients_text(picture: Picture) -> str:
 
 
 def _projected(picture: Picture) -> Projected:
-    projected, rotation = project_recipe(picture.state.recipe), picture.state.view.light_rotation
+    view = picture.state.view
+    projected, rotation = project_recipe(picture.state.recipe, view.encode), view.light_rotation
     return projected if rotation == camera.IDENTITY else projected.turned(camera.matrix(rotation))
 
 
