@@ -231,7 +231,7 @@ class _Placed:
         left = 0.0 if column == 0 else cell.left - side
         right = design.width if last else cell.right + side
         over = 0.0 if row == 0 else cell.top - min(design.top, 14)
-        under = self.hairline if row == self.rows - 1 and design.n_panes == 2 else cell.bottom + 4
+        under = self.hairline if row == self.rows - 1 and design.n_panes == 2 else cell.bottom + 1
         clip = Box(left, over, right, under).scaled(scale)
         radius = box.width / 2
         return Sphere(box.left + radius, box.top + radius, radius * zoom, clip)

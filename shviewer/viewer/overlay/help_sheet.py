@@ -22,8 +22,8 @@ from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.state import State
 
-COLUMN, APART, AFTER_KEYS, ROW = 240.0, 28.0, 14.0, 20.0
-"""The least width of a column, the spaces after it and after its keys, and the height of a row; pixels of the design."""
+COLUMN, APART, AFTER_KEYS = 240.0, 28.0, 14.0
+"""The least width of a column, and the spaces after it and after its keys; pixels of the design."""
 
 ARROWS = {"Up": "↑", "Down": "↓", "Left": "←", "Right": "→", "PageUp": "PgUp", "PageDown": "PgDn"}
 
@@ -43,11 +43,18 @@ Page = list[list[Row]]
 """The rows of each column."""
 
 
+class Type(NamedTuple):
+    """The size of the type and the pixels from row to row."""
+
+    size: float
+    row: float
+
+
 def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list[Piece]:
     """The sheet, which covers the frame. foot: what stands under it, if there is room; page: how often PageDown was pressed."""
     pieces: list[Piece] = [Fill(Box(0, 0, at.width, at.height), GROUND)]
-    size, margin = _size(at), at.margin
-    pages, pitch = pages_of(at)
+    margin = at.margin
+    pages, pitch, (size, step) = pages_of(at)
     shown = pages[page % len(pages)]
     top = _top(at)
     place = f"{page % len(pages) + 1} of {len(pages)}"
@@ -63,11 +70,11 @@ def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list
     for number, column in enumerate(shown):
         left, y = round(margin + number * pitch), rule + at.px(28)
         for row in _aligned(column, pitch - at.px(APART), size):
-            pieces += _row(row, state, left, y, pitch - at.px(APART), size)
-            y += max(len(row.lines), 1) * at.px(ROW)
+            pieces += _row(row, state, left, y, pitch - at.px(APART), Type(size, step))
+            y += max(len(row.lines), 1) * step
         lowest = max(lowest, y)
     last = at.height - at.px(12)
-    if foot and last - at.px(14) > lowest - at.px(ROW):
+    if foot and last - at.px(14) > lowest - step:
         words = shortened_to(foot, at.width - 2 * margin, at.px(12))
         pieces.append(Text("help_foot", margin, round(last), words, at.px(12), FAINT))
     return pieces
@@ -80,16 +87,16 @@ def _aligned(column: list[Row], room: float, size: float) -> list[Row]:
     return [row._replace(after=after) for row in column] if after + widest <= room else column
 
 
-def _row(row: Row, state: State, x: float, y: float, room: float, size: float) -> list[Piece]:
+def _row(row: Row, state: State, x: float, y: float, room: float, face: Type) -> list[Piece]:
     """Keys, what they do, and at the right end of the column the present value, where there is room."""
-    label, binding, lines, after = row
+    (label, binding, lines, after), size = row, face.size
     if not label:
         return []
     if binding is None:
         return [Text(f"help_{label}", x, round(y), label, size, INK, SEMIBOLD)]
     pieces: list[Piece] = [Text(f"key_{label}", x, round(y), _keys(label), size, GREY, MEDIUM)]
     for number, text in enumerate(lines):
-        baseline = round(y + number * ROW / 13 * size)
+        baseline = round(y + number * face.row)
         pieces.append(Text(f"does_{label}_{number}", round(x + after), baseline, text, size, GREY))
     value = shortened_to(typeset(binding.value(state)), x + room - pieces[-1].box.right - 0.8 * size, size)
     if value and "…" not in value:
@@ -98,17 +105,26 @@ def _row(row: Row, state: State, x: float, y: float, room: float, size: float) -
     return pieces
 
 
-def pages_of(at: Composition) -> tuple[list[Page], float]:
+def pages_of(at: Composition) -> tuple[list[Page], float, Type]:
+    """The pages, the pixels from one column to the next, and the type: the larger one, if one page has room for all of it."""
+    large, small = Type(at.px(13.0), at.px(20.0)), Type(at.px(12.0), at.px(17.0))
+    pages, pitch = _pages(at, large)
+    if at.compact or len(pages) > 1:
+        return *_pages(at, small), small
+    return pages, pitch, large
+
+
+def _pages(at: Composition, face: Type) -> tuple[list[Page], float]:
     """The pages, and the pixels from one column to the next: on one page if possible, with the fewest broken sentences.
 
     A group stays together where it can, and columns on one page are no higher than need be.
     """
     room = at.width - 2 * at.margin + at.px(APART)
-    most = max(int((at.height - _top(at) - at.px(12 + 28 + 8)) / at.px(ROW)), 3)
+    most = max(int((at.height - _top(at) - at.px(12 + 28 + 8)) / face.row), 3)
     best: tuple[int, Page, float] | None = None
     widest = max(1, int(room / at.px(COLUMN)))
     for columns in range(widest, 0, -1):
-        groups = _groups(room / columns - at.px(APART), _size(at))
+        groups = _groups(room / columns - at.px(APART), face.size)
         low = (found for height in range(3, most + 1) if len(found := _filled(groups, height)) <= columns)
         pages = list(low)
         broken = sum(len(row.lines) - 1 for group in groups for row in group[1:])
@@ -116,7 +132,7 @@ def pages_of(at: Composition) -> tuple[list[Page], float]:
             best = broken, next((page for page in pages if _whole(page)), pages[0]), room / columns
     if best is not None:
         return [best[1]], best[2]
-    filled = _filled(_groups(room / widest - at.px(APART), _size(at)), most)
+    filled = _filled(_groups(room / widest - at.px(APART), face.size), most)
     return [filled[start : start + widest] for start in range(0, len(filled), widest)], room / widest
 
 
@@ -170,10 +186,6 @@ def _height(rows: list[Row]) -> int:
 
 def _top(at: Composition) -> float:
     return at.px(24 if at.compact else 34)
-
-
-def _size(at: Composition) -> float:
-    return at.px(12.0 if at.compact else 13.0)
 
 
 def _keys(label: str) -> str:

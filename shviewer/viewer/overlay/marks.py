@@ -93,14 +93,14 @@ def marks_of(picture: Picture) -> list[Mark]:
 
 
 def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[Box] = ()) -> dict[str, Placed]:
-    """The marks in sight, by name. A mark under an obstacle is left out, and no text of a mark touches an obstacle."""
+    """The marks in sight, by name. A mark that meets an obstacle is left out, and no text of a mark touches an obstacle."""
     placed = {}
     for mark in marks_of(picture):
         pane = composition.panes[mark.pane]
         x, y, behind = pane.place(picture.light_from_world.T @ mark.direction, picture.world_from_view)
         if behind and isinstance(pane, Sphere):
             found = _outside(mark, x, y, pane, composition, obstacles)
-        elif pane.clip.contains(x, y) and not any(other.contains(x, y) for other in obstacles):
+        elif pane.clip.contains(x, y) and _free(_around(x, y, composition), obstacles):
             found = _on(mark.text, x, y, pane, composition, obstacles)
         else:
             found = None
@@ -114,16 +114,24 @@ def mark_layers(picture: Picture, composition: Composition, obstacles: Sequence[
     return tuple(layer for mark in place_marks(picture, composition, obstacles).values() for layer in mark.layers)
 
 
+def _around(x: float, y: float, composition: Composition) -> Box:
+    """The box of a ring and of its rim."""
+    reach = _radius(composition) + composition.px(THICKNESS / 2 + CASING_WIDTH)
+    return Box(x - reach, y - reach, x + reach, y + reach)
+
+
 def _on(text: str, x: float, y: float, pane: Pane, composition: Composition, obstacles: Sequence[Box]) -> Placed:
     """A ring with its text at the right, or at the left, or without one where there is no room."""
-    radius = composition.px(COMPACT_RING if composition.compact else RING)
+    radius = _radius(composition)
     left, top = round(x - 0.5), round(y - 0.5)
     ring = _ring(radius, composition.scale)
     size, reach = _type(composition), radius + composition.px(GAP)
     baseline = 0.5 + 0.36 * size
     words = Text("", 0.0, baseline, text, size, INK, MEDIUM, composition.px(CASING_WIDTH))
+    high, low = pane.clip.top + 2 - (top + words.box.top), pane.clip.bottom - 2 - (top + words.box.bottom)
+    level = min(max(0.0, high), low)
     for start in (0.5 + reach, 0.5 - reach - words.right):
-        moved = _moved(words, start, baseline)
+        moved = _moved(words, start, round(level) + baseline)
         box = _shifted(moved.box, left, top)
         if pane.clip.left + 2 <= box.left and box.right + 2 <= pane.clip.right and _free(box, obstacles):
             return Placed(x, y, False, box, _within_map(_layers((ring, moved), left, top), pane))
@@ -226,6 +234,10 @@ def _room(composition: Composition) -> Box:
     if line.height > line.width:
         return Box(2, 2, line.left - 2, composition.height - 2)
     return Box(2, 2, composition.width - 2, line.top - 2 if line.top > 0 else composition.height - 2)
+
+
+def _radius(composition: Composition) -> float:
+    return composition.px(COMPACT_RING if composition.compact else RING)
 
 
 def _type(composition: Composition) -> float:

@@ -65,7 +65,8 @@ def _phrase(name: str) -> str:
 
 def _said_twice(drawn: Overlay) -> Iterator[str]:
     """Sentences that stand twice: not names of keys and lines, and not what two panes have alike."""
-    said = [piece.text for piece in drawn.texts if not piece.name.startswith(("key_", "legend_", *FIGURES))]
+    names = ("key_", "legend_", "in_use", "count_", "radiance_label", *FIGURES)
+    said = [piece.text for piece in drawn.texts if not piece.name.startswith(names)]
     for text, count in Counter(said).items():
         if count > 1 and " " in text and not text.startswith(("radius", "cut at", ">")):
             yield f"said twice: {text!r}"
@@ -87,6 +88,8 @@ def _marks(at: Composition, drawn: Overlay, marks: dict[str, Placed]) -> Iterato
                 yield f"words of {name} are cut"
             if box.overlaps(at.hairline):
                 yield f"words of {name} lie on the hairline"
+            if at.maps and not any(pane.clip.top <= box.top and box.bottom <= pane.clip.bottom for pane in at.maps):
+                yield f"words of {name} are cut where their map ends"
         for layer in mark.layers:
             rows, columns = (layer.image[..., 3] > 100).nonzero()
             for text, box in ((text, shrunk(box)) for text, box in drawn.boxes.items()):

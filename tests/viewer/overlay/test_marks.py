@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from helpers import frame_of, picture_of
+from viewer.overlay.collisions import faults
 
 from shviewer.harmonics.basis import Array
 from shviewer.lights.environment import EnvironmentLight
@@ -171,11 +172,24 @@ def test_the_words_of_a_mark_in_front_stand_beside_its_ring_in_its_pane(
         clip = composition.panes[1 if name == "minimum" else 2].clip
         assert clip.left <= mark.label.left
         assert mark.label.right <= clip.right
+        assert not whole_sphere or (clip.top <= mark.label.top and mark.label.bottom <= clip.bottom)
         assert mark.label.right < mark.x - 3 or mark.x + 3 < mark.label.left  # beside the ring
         (layer,) = mark.layers
         height, width = layer.image.shape[:2]
         assert layer.left <= mark.x <= layer.left + width
         assert layer.top <= mark.y <= layer.top + height
+
+
+def test_no_ring_is_drawn_on_words() -> None:
+    """A low frame whose enlarged spheres reach under their captions: the camera brings the minimum under each of them."""
+    met = 0
+    for azimuth in range(0, 360, 3):
+        shown = picture_of(n_bands=6, zoom=1.5, camera=(float(azimuth), -40.0))
+        at = frame_of(shown, 1016, 264)
+        drawn = draw_overlay(shown, at)
+        assert faults(shown, at, drawn) == [], azimuth
+        met += "minimum" not in place_marks(shown, at, drawn.obstacles)
+    assert met > 0
 
 
 def test_turning_draws_no_mark_anew() -> None:
