@@ -4,7 +4,8 @@ CPU time of all threads, which on software OpenGL is the cost of the shaders. 12
 the same run, shows a constant light with one band on the right. The reconstruction is summed per pixel, or drawn from its
 map (goal: at most 25 cpu-ms whatever n is), with a third sphere for the error, and with everything written over it. Then how
 far the map is from the sum (goal: under half a step of white up to 32 bands), and the CPU work of events outside the draw:
-a band key (goal: under 2 ms up to 16 bands) with its overlay, a turn of the light, and the values under the mouse.
+a band key (goal: under 2 ms up to 16 bands) with its overlay, a turn of the light, and the values under the mouse. Last a
+step of a light that turns and is projected anew (Q), with all figures, over a fresh projection of 32 bands by the same way.
 
 With a commit OLD, frames of it and of this checkout instead, in turns: their medians, and the ratio of the least ones (goal for
 the lines over negative light: at most 1.15 at 5 bands, and 1.10 from 9 on).
@@ -18,6 +19,8 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import replace
+from functools import partial
+from itertools import product
 from pathlib import Path
 from statistics import median
 
@@ -26,6 +29,14 @@ from commits import ROOT, lay_out
 from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
 from shviewer.analysis.figures import figures_of, irradiance_error, sums
+from shviewer.harmonics.basis import Array
+from shviewer.harmonics.quadrature import jittered
+from shviewer.harmonics.scattered import project_samples
+from shviewer.lights.environment import EnvironmentLight
+from shviewer.lights.find import find_light
+from shviewer.lights.light import Light
+from shviewer.viewer.actions import turn_light
+from shviewer.viewer.animation.turning import step_turn
 from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.layers import Layer
@@ -112,6 +123,29 @@ def event_costs() -> None:
         print(f"{name}, 32 bands: {milliseconds:.2f} ms")
 
 
+def fresh_projection(light: Light, method: str, samples: int) -> Array:
+    """32 bands of a light of which nothing is kept."""
+    if method == "jittered":
+        return project_samples(light.integrand, jittered(samples, 1), 32)
+    return (EnvironmentLight(light.pixels) if isinstance(light, EnvironmentLight) else light).coefficients(32)
+
+
+def step_costs() -> None:
+    """A step is a new state, projected where the light stands, and its picture with all figures."""
+    for name, method in product(("green", "st_fagans_interior"), ("best", "jittered")):
+        state, light = state_of(name, n_bands=9, method=method), find_light(name)
+        turning = [turn_light(prepare(state).placed(state), "fresh")]
+
+        def step(turning: list[State] = turning) -> None:
+            turning[0] = step_turn(turning[0])
+            prepare(turning[0])
+
+        fresh = partial(fresh_projection, light, method, state.recipe.samples)
+        times = medians({"step": step, "fresh": fresh}, 15, cpu_milliseconds)
+        ratio, cost = times["step"] / times["fresh"], times["fresh"]
+        print(f"step of {name}, {method}: {times['step']:.2f} cpu-ms, {ratio:.2f} times a projection ({cost:.2f})")
+
+
 OF_A_COMMIT = """
 import json, sys, time
 from shviewer.viewer.composing.composition import compose
@@ -183,6 +217,7 @@ def main() -> None:
             print(f"{name:<28}{milliseconds:8.1f} cpu-ms{milliseconds - costs['base']:+9.1f} to the base")
         map_differences(renderer)
     event_costs()
+    step_costs()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The section of the report on encodings of irradiance: what four, five and nine floats a channel keep of shading."""
+"""The section of the report on encodings of irradiance: what four to nine floats a channel keep of shading."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from shviewer.analysis.figures import error_grid, grid_rows
 from shviewer.analysis.subjects import through
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight
-from shviewer.harmonics.quantities.encodings import BANDS, GEOMERICS_BANDS, REPORTED
+from shviewer.harmonics.quantities.encodings import GEOMERICS_BANDS, REPORTED
 from shviewer.harmonics.quantities.names import IRRADIANCE
 
 KEY = "encodings"
@@ -44,7 +44,7 @@ def kept_of(measured: MeasuredLight) -> list[Kept]:
     for name, encoding in REPORTED.items():
         if name == "l2-deringed" and (exact[0] < 0).any():
             continue  # no factors take a negative mean away
-        made = encoding.make(measured.exact[: BANDS**2])
+        made = encoding.make(measured.exact[: GEOMERICS_BANDS**2])
         shown = np.zeros_like(exact)
         shown[: len(made)] = made
         squared = max(norm - float((exact**2).sum()), 0.0) + float(((exact - shown) ** 2).sum())

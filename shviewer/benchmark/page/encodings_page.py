@@ -11,14 +11,16 @@ from shviewer.harmonics.metrics import PARSEVAL_FLOOR
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 
 EXPLAINED = """\
-What engines store of the irradiance, made of the light's first nine coefficients, compared with the light's own irradiance.
-Errors are relative L2 over the sphere of normals and all channels, exact (Parseval: each encoding is a sum of bands,
-Geomerics' a sum of 32, which leave less than 1e-5 of its peak); largest error and minimum are searched for and relative to
-the largest irradiance. *A float saves*: how many percent points less the error is than that of the mean alone, divided by
-the numbers beyond the mean. *Shared axis* is one axis for all channels. *Solved* changes band 1 as well, so that five
-floats are as near as they can be. The last row is a **trap**: with coefficients of radiance in an orthonormal basis, the
-formula as it stands in common code makes every surface 12.84 % too bright and takes the light for less one-sided than it
-is; its 1/2 is right only where band 1 is that of irradiance."""
+What engines store of the irradiance, made of the light's first nine coefficients, and cubes of all, compared with the
+light's own irradiance. Errors are relative L2 over the sphere of normals and all channels, exact (Parseval: each encoding
+is a sum of bands, Geomerics' a sum of 32, which leave less than 1e-5 of its peak, and so are cubes, 5e-4 of their largest
+face); largest error and minimum are searched for and relative to the largest irradiance. *A float saves*: how many percent
+points less the error is than that of the mean alone, divided by the numbers beyond the mean. *Shared axis* is one axis for
+all channels. *Solved* changes band 1 as well, so that five floats are as near as they can be, and a *fitted* cube has the
+six faces that are nearest; a cube belongs to the axes of the world, so that its errors change when the light turns. The
+last row is a **trap**: with coefficients of radiance in an orthonormal basis, the formula as it stands in common code makes
+every surface 12.84 % too bright and takes the light for less one-sided than it is; its 1/2 is right only where band 1 is
+that of irradiance."""
 
 
 def lines(page: Page) -> list[str]:
