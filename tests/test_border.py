@@ -108,7 +108,7 @@ def test_a_fault_of_this_program_fails_one_light_of_a_batch(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     right = project.project_recipe
-    monkeypatch.setattr(project, "project_recipe", lambda recipe: 1 // (recipe.light != "cosine") and right(recipe))
+    monkeypatch.setattr(project, "project_recipe", lambda recipe, *_: 1 // (recipe.light != "cosine") and right(recipe))
     assert main(["project", "cosine", "green", "-o", "out"]) == 1
     assert [path.name for path in Path("out").iterdir()] == ["green.json"]
     assert "cosine: internal error, ZeroDivisionError" in capsys.readouterr().err

@@ -20,7 +20,7 @@ from shviewer.benchmark.measuring import (
     moving_texels,
     projection_rows,
 )
-from shviewer.benchmark.measuring.machine import machine_record, versions, yardstick
+from shviewer.benchmark.measuring.machine import Worked, disturbance, machine_record, versions, yardstick
 from shviewer.benchmark.measuring.measured_lights import (
     QUICK_TOLERANCES,
     TOLERANCES,
@@ -36,7 +36,7 @@ from shviewer.benchmark.page.advice import sentences
 from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.tables import lines_not_measured
 from shviewer.benchmark.rows.comparing import compare
-from shviewer.benchmark.rows.report import YARDSTICK, Report, read_report
+from shviewer.benchmark.rows.report import DISTURBANCE, YARDSTICK, Report, read_report
 from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
 from shviewer.ending import at_the_end
@@ -61,6 +61,8 @@ class Summary:
     rows: int
     text: str
     stability_failed: bool = False
+    warning: str = ""
+    """Why its times are not to be trusted; "" if they are."""
 
 
 @dataclass
@@ -77,7 +79,7 @@ class Run:
     seconds: Mapping[str, float]
     """The sections wanted, and the time of each."""
     before: Report | None = None
-    yardstick: list[float] = field(default_factory=list)
+    yardstick: list[Worked] = field(default_factory=list)
     stability_failed: bool = False
 
     def add(self, rows: Sequence[Row]) -> None:
@@ -85,8 +87,9 @@ class Run:
         self.report.rows += rows
         if any(row.measured for row in rows):
             self.yardstick += yardstick()
-            times = summarise(self.yardstick)
+            times = summarise([worked.wall for worked in self.yardstick])
             self.report.yardstick_milliseconds = dict(zip(YARDSTICK, times[:3], strict=True))
+            self.report.extra[DISTURBANCE] = disturbance(self.yardstick)
         self.report.left_out = lines_not_measured(self.report.rows)
 
     def write(self, plots: Sequence[str] = (), plot_message: str = "") -> None:
@@ -143,7 +146,7 @@ def write_report(
         drawn += [path.name for path in paths]
     run.clock.finish()
     count = sum(row.measured for row in report.rows)
-    return Summary(folder, (*writing.FILES, *drawn), count, _summary(report), run.stability_failed)
+    return Summary(folder, (*writing.FILES, *drawn), count, _summary(report), run.stability_failed, report.warning)
 
 
 def _check_moving(lights: Sequence[str | Light]) -> None:

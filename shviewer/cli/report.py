@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from shviewer.cli.options.inputs import reading_from
@@ -34,6 +35,8 @@ def run(options: argparse.Namespace) -> int:
         summary = write_report(options.lights, folder, wanted, progress=line.fraction if line else None)
     print(summary.text)
     print(f"wrote {summary.rows} rows: {', '.join(str(summary.folder / name) for name in summary.files)}")
+    if summary.warning:
+        print(f"shviewer: {summary.warning}", file=sys.stderr)
     return 1 if summary.stability_failed else 0
 
 

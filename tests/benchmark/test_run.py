@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from shviewer.benchmark import options
+from shviewer.benchmark import run as run_module
 from shviewer.benchmark.measuring import end_to_end, projection_rows, timing
 from shviewer.benchmark.options import Clock, Options
 from shviewer.benchmark.page import plots
@@ -20,6 +21,7 @@ from shviewer.benchmark.page.projection_tables import _matrix
 from shviewer.benchmark.rows.report import read_report
 from shviewer.benchmark.rows.row import COLUMNS, Row
 from shviewer.benchmark.run import write_report
+from shviewer.cli.main import main
 from shviewer.errors import LightError, OutputError, UsageError
 
 LITTLE = Options(budget=0.5, quick=True, sections=("projection",), methods=("gauss-legendre", "jittered"), shader=False)
@@ -35,6 +37,7 @@ def _on_any_machine() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         for module in (options, projection_rows, timing):
             patch.setattr(module, "perf_counter", lambda: next(ticks) / 1000)
+        patch.setattr(timing, "thread_time", lambda: next(ticks) / 1000)
         patch.setattr(
             plots,
             "make_plots",
@@ -76,6 +79,27 @@ def test_the_bands_and_what_to_use_come_first_and_everything_is_legible_at_128_c
     assert tables
     assert max(map(len, page.splitlines())) <= 128
     assert "\u00b1" in page
+
+
+def test_a_busy_machine_is_said_in_one_line_of_the_page_and_on_stderr(
+    tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every look at the thread's own clock takes a third of one at the other: two thirds of the time others had."""
+    assert "machine was busy" not in (folder / "report.md").read_text()
+    worked = count()
+    monkeypatch.setattr(timing, "thread_time", lambda: next(worked) / 3000)
+    monkeypatch.setattr(
+        run_module,
+        "_measure_sections",
+        lambda run: run.add([Row(section="projection", method="best", milliseconds=1.0)]),
+    )
+    assert main(["report", "green", "--quick", "--no-shader", "-o", str(tmp_path / "r")]) == 0
+    said = "a fixed piece of work took 3 times as long as it worked, so that the times are not to be trusted"
+    assert f"shviewer: the machine was busy: {said}" in capsys.readouterr().err
+    page = (tmp_path / "r" / "report.md").read_text()
+    assert f"**The machine was busy: {said}" in " ".join(page.split())
+    assert max(map(len, page.splitlines())) <= 128
+    assert json.loads((tmp_path / "r" / "report.json").read_text())["extra"]["disturbance"] == pytest.approx(3)
 
 
 def test_plots_are_linked_and_the_line_that_installs_them_is_there(folder: Path) -> None:

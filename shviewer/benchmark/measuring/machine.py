@@ -7,11 +7,11 @@ import platform
 from collections.abc import Mapping, Sequence
 from importlib import import_module, metadata
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from shviewer.benchmark.measuring.timing import wall_milliseconds
+from shviewer.benchmark.measuring.timing import wall_and_cpu_milliseconds
 from shviewer.version import __version__
 
 PACKAGES = ("numpy", "moderngl", "glfw", "Pillow", "OpenEXR", "matplotlib")
@@ -81,12 +81,25 @@ def _pools() -> list[dict[str, Any]]:
     return list(threadpoolctl.threadpool_info())
 
 
-def yardstick() -> list[float]:
-    """Milliseconds of a fixed piece of work: timed throughout a run, they change as much as the machine's speed does."""
+def yardstick() -> list[Worked]:
+    """A fixed piece of work of one thread: timed throughout a run, it changes as much as the machine's speed does."""
     values = np.random.default_rng(0).random(50_000)
 
     def work() -> object:
         return np.sort(np.sin(values))
 
     work()
-    return [wall_milliseconds(work) for _ in range(3)]
+    return [Worked(*wall_and_cpu_milliseconds(work)) for _ in range(3)]
+
+
+class Worked(NamedTuple):
+    """What a piece of work took, in milliseconds: by the clock, and of a processor."""
+
+    wall: float
+    cpu: float
+
+
+def disturbance(worked: Sequence[Worked]) -> float:
+    """By how much longer it all took than it worked: 1 where nobody else wanted the processor."""
+    cpu = sum(one.cpu for one in worked)
+    return sum(one.wall for one in worked) / cpu if cpu else 1.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Mapping
-from time import perf_counter
+from time import perf_counter, thread_time
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -36,6 +36,13 @@ def wall_milliseconds(work: Work) -> float:
     start = perf_counter()
     work()
     return 1000 * (perf_counter() - start)
+
+
+def wall_and_cpu_milliseconds(work: Work) -> tuple[float, float]:
+    """Of work of one thread."""
+    start, begun = perf_counter(), thread_time()
+    work()
+    return 1000 * (perf_counter() - start), 1000 * (thread_time() - begun)
 
 
 def time_interleaved(

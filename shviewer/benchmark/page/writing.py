@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import fill
 
 from shviewer.benchmark.hard_cases import table as stability
 from shviewer.benchmark.page import bands_page, encodings_page, moving_page, rows_pages, use_page
@@ -102,6 +103,8 @@ def as_markdown(page: Page) -> str:
             "**This report is partial: the run did not come to its end, and what it had not measured is missing.**",
             "",
         ]
+    if report.warning:
+        lines += [fill(f"**{report.warning[0].upper()}{report.warning[1:]}.**", 124), ""]
     lines += [INTRODUCTION, "", *([page.plot_message, ""] if page.plot_message else [])]
     for section in SECTIONS:
         own = section.lines(page)

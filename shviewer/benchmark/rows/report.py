@@ -16,6 +16,12 @@ from shviewer.limits import DEFAULT_LIMITS
 from shviewer.words import one_line
 
 SCHEMA = "shviewer-report/1"
+DISTURBANCE = "disturbance"
+"""The key in the report's `extra` of by how much longer the yardstick took than it worked."""
+
+DISTURBED = 1.1
+"""From there on other programs are said to disturb: on a quiet machine it is 1.00 to 1.03."""
+
 HEAD = ("complete", "command", "seed", "versions", "machine", "renderer", "yardstick_milliseconds", "left_out", "extra")
 """The fields of a Report in front of its lights and rows, in the order of the file."""
 
@@ -81,6 +87,17 @@ class Report:
     def notes(self, section: str) -> list[str]:
         """The lines on what a section lacks."""
         return list(self.extra.get(NOTES, {}).get(section, []))
+
+    @property
+    def warning(self) -> str:
+        """One line if other programs took so much of the processor that the times are not to be trusted; else ""."""
+        share = self.extra.get(DISTURBANCE, 1.0)
+        if not is_number(share) or share < DISTURBED:
+            return ""
+        return (
+            f"the machine was busy: a fixed piece of work took {share:.3g} times as long as it worked, so that the times are "
+            "not to be trusted; measure again when nothing else runs"
+        )
 
     def as_json(self) -> str:
         page = {"schema": SCHEMA} | {name: getattr(self, name) for name in HEAD}
