@@ -43,6 +43,10 @@ class Command(Enum):
     COPY_COEFFICIENTS = auto()
     EXPORT = auto()
     """Write the coefficients into a file."""
+    UNDO = auto()
+    REDO = auto()
+    PASTE = auto()
+    """Open the files whose paths are on the clipboard."""
     LEAVE = auto()
     """Leave full screen, or else close the window."""
     CLOSE = auto()

@@ -197,6 +197,12 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("Ctrl+C", "copy the command of this picture", {"Ctrl+C": Command.COPY}),
         Binding("Ctrl+Shift+C", "copy the coefficients", {"Ctrl+Shift+C": Command.COPY_COEFFICIENTS}),
         Binding("Ctrl+E", "write the coefficients", {"Ctrl+E": Command.EXPORT}),
+        Binding("Ctrl+V", "open the file whose path is copied", dict.fromkeys(("Ctrl+V", "Ctrl+O"), Command.PASTE)),
+        Binding(
+            "Ctrl+Z / Ctrl+Y",
+            "undo, do again",
+            {"Ctrl+Z": Command.UNDO, "Ctrl+Y": Command.REDO, "Ctrl+Shift+Z": Command.REDO},
+        ),
         Binding("F11", "full screen", {"F11": Command.FULL_SCREEN}),
         Binding("H / ? / F1", "this help", _each(do.toggle, dict.fromkeys(("H", "?", "F1"), "help_visible"))),
         Binding("Esc", "stop, close, leave full screen, quit", {"Esc": do.escape}),

@@ -60,7 +60,7 @@ def test_every_key_of_the_programs_promise_is_bound() -> None:
     promised = (
         "Up Down PageUp PageDown Home End , . Enter A Left Right M S Shift+S E Shift+E N G H ? R F P Ctrl+S F11 Esc T W I "
         "Q Shift+Q Ctrl+R F5 U B L Z D X O V Tab Shift+Tab Space Y K Shift+K J C + - F1 Ctrl+C Ctrl+Shift+C Ctrl+E Ctrl+Q "
-        "Ctrl+W"
+        "Ctrl+W Ctrl+V Ctrl+O Ctrl+Z Ctrl+Y Ctrl+Shift+Z"
     )
     digits = [f"{shift}{digit}" for shift in ("", "Shift+") for digit in range(10)]
     assert set(ACTIONS) == {*promised.split(), *digits}
@@ -298,6 +298,10 @@ def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> 
         ("Ctrl+C", Command.COPY),
         ("Ctrl+Shift+C", Command.COPY_COEFFICIENTS),
         ("Ctrl+E", Command.EXPORT),
+        ("Ctrl+V", Command.PASTE),
+        ("Ctrl+Z", Command.UNDO),
+        ("Ctrl+Y", Command.REDO),
+        ("Ctrl+Shift+Z", Command.REDO),
     ],
 )
 def test_what_is_no_other_state_is_a_command(key: str, command: Command) -> None:

@@ -19,6 +19,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.behind.opening import MOST_DROPPED
 from shviewer.viewer.desktop.behind.saving import Saving, Written, save_coefficients
+from shviewer.viewer.desktop.history import History
 from shviewer.viewer.desktop.showing import Showing
 from shviewer.viewer.desktop.turning import Turning
 from shviewer.viewer.desktop.watching import Watch
@@ -60,9 +61,16 @@ class Session(Showing):
         """Commands that wait for the picture and all its figures."""
         self._said: Work | None = None
         self._message = Passing()
+        self._history = History(self.state)
 
     def press(self, key: str) -> Command | None:
         """Do what a key asks for; a command that only a window can carry out is returned."""
+        self._history.note(self.state, by_key=False)
+        found = self._press(key)
+        self._history.note(self.state, by_key=True)
+        return found
+
+    def _press(self, key: str) -> Command | None:
         making = self.making.working and not self.shown and not self.stepping
         if key == "Esc" and (self.work is not None or making):
             self.stop()
@@ -92,11 +100,26 @@ class Session(Showing):
             self.when_ready(self._fit)
         elif command is Command.FACE_MARK:
             self.when_ready(self._face_mark)
+        elif command in (Command.UNDO, Command.REDO):
+            self._go_back(command)
         elif command is Command.EXPORT:
             self.when_ready(lambda: self.saving.write("writing the coefficients", save_coefficients, self.picture))
         else:
             return command
         return None
+
+    def _go_back(self, command: Command) -> None:
+        """Undo the last step, or do again what was undone."""
+        if self.opening.working:  # a light that is not there yet is no step
+            self.stop()
+            return
+        undo = command is Command.UNDO
+        found = self._history.undo(self.state) if undo else self._history.redo(self.state)
+        if found is None:
+            self.say("there is nothing to undo" if undo else "nothing was undone that could be done again")
+            return
+        self.state = found
+        self.say("undone; Ctrl+Y does it again" if undo else "done again")
 
     @property
     def working(self) -> bool:

@@ -15,6 +15,7 @@ from shviewer.viewer.composing.composition import Composition, compose
 from shviewer.viewer.desktop.behind.saving import coefficients_text
 from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.desktop.canvas import Canvas
+from shviewer.viewer.desktop.clipboard import named_files
 from shviewer.viewer.desktop.frames import Frames
 from shviewer.viewer.desktop.glfw_window import key_name, open_window, scale_of, side_context
 from shviewer.viewer.desktop.session import PATIENCE, Session
@@ -137,7 +138,17 @@ class Window(Frames):
             self._copy("the command of this picture", lambda: command_line(self.session.picture, size))
         elif command is Command.COPY_COEFFICIENTS:
             self._copy("the coefficients", lambda: coefficients_text(self.session.picture))
+        elif command is Command.PASTE:
+            self._paste()
         self.due()
+
+    def _paste(self) -> None:
+        """Open what the clipboard names: paths or addresses of files, a line each, as file managers copy them."""
+        text = glfw.get_clipboard_string(None) or b""  # type: ignore[arg-type]  # a window is deprecated here
+        if paths := named_files(text if isinstance(text, str) else text.decode(errors="replace")):
+            self.session.drop(*paths)
+        else:
+            self.session.say("no path of a file is copied: copy one, or drop the file on the window", WARNING)
 
     def size_in_points(self) -> tuple[int, int]:
         """The size in points of the design; of a full screen, that of the window before."""

@@ -141,3 +141,28 @@ def test_where_there_is_no_clipboard_it_is_said_once_and_printed(display: str) -
     assert first.startswith("shviewer screenshot shviewer-green.png green --bands 5 --size 320 ")
     assert said == "said no clipboard here: the command of this picture is printed in the terminal"
     assert silent == "said "
+
+
+PASTING = """
+import sys
+import glfw
+from pathlib import Path
+from viewer.desktop.still_window import window, window_of
+from shviewer.viewer.state import state_of
+scene = Path(sys.argv[1]) / "my light.toml"
+scene.write_text('[[lobe]]\\nprofile = "constant"\\nradiance = 1\\n')
+copied = iter([b"nothing of the kind", scene.as_uri().encode(), None])
+glfw.get_clipboard_string = lambda handle: next(copied)
+with window.open_window((320, 160)) as handle:
+    shown = window_of(handle, state_of())
+    for _ in range(3):
+        shown.press("Ctrl+V")
+        shown.session.prepare()
+        print(shown.session.picture.light.name, "-", shown.session.state.view.message)
+"""
+
+
+def test_a_copied_path_is_opened_as_if_it_had_been_dropped(display: str, tmp_path: Path) -> None:
+    none = "no path of a file is copied: copy one, or drop the file on the window"
+    lines = output_of(display, PASTING, str(tmp_path)).splitlines()
+    assert lines == [f"green - {none}", "my light - ", f"my light - {none}"]

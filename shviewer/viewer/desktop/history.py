@@ -1,0 +1,84 @@
+"""What keys and clicks changed, step by step, to be undone and done again.
+
+A step has two states, before and after it, and undoing it gives back the fields in which they differ: what a drag of the mouse
+has placed elsewhere since then stays there. What only plays, speaks or points is no step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any, NamedTuple
+
+from shviewer.viewer.state import IN_RECIPE, IN_VIEW, State, changed
+from shviewer.viewer.view import View
+
+MOST = 100
+"""The most steps that are kept."""
+
+PASSING = frozenset(
+    ("message", "help_visible", "help_page", "cursor", "cursor_visible", "sweep_to", "turning", "trace", "range_held")
+)
+"""Fields of the view that make no step by themselves."""
+
+PLACED = frozenset(("camera", "map_centre", "zoom", "pan", "light_rotation", "turn"))
+"""Fields that the mouse and time change, too, and only what a key makes of them is a step."""
+
+STEPS = [part.name for part in fields(View) if part.compare and part.name not in PASSING]
+
+
+class _Step(NamedTuple):
+    before: State
+    after: State
+
+
+class History:
+    """The steps up to a state, and those that were undone."""
+
+    def __init__(self, state: State) -> None:
+        self._known = state
+        self._done: list[_Step] = []
+        self._undone: list[_Step] = []
+
+    def note(self, state: State, *, by_key: bool) -> None:
+        """Take a state for a step, if it is one. by_key: whether a key made it, and not the mouse, time or a task."""
+        if _differ(self._known, state, placed=by_key):
+            self._done = [*self._done, _Step(self._known, state)][-MOST:]
+            self._undone.clear()
+        self._known = state
+
+    def undo(self, state: State) -> State | None:
+        """The state before the last step; None if there is none."""
+        self.note(state, by_key=False)
+        if not self._done:
+            return None
+        step = self._done.pop()
+        self._undone.append(step)
+        return self._moved(state, step.after, step.before)
+
+    def redo(self, state: State) -> State | None:
+        """The state after the step that was undone last; None if there is none."""
+        self.note(state, by_key=False)
+        if not self._undone:
+            return None
+        step = self._undone.pop()
+        self._done.append(step)
+        return self._moved(state, step.before, step.after)
+
+    def _moved(self, state: State, here: State, there: State) -> State:
+        names = _differ(here, there, placed=True)
+        values: dict[str, Any] = {name: _value(there, name) for name in names}
+        stopped = {"sweep_to": None, "turning": "", "trace": (), "message": ""}
+        self._known = replace(changed(state, **stopped, **values), lights=there.lights, entry=there.entry)
+        return self._known
+
+
+def _differ(one: State, other: State, *, placed: bool) -> list[str]:
+    """The fields of recipe and view in which two states differ, but for those that make no step."""
+    if one is other:
+        return []
+    names = (name for name in (*sorted(IN_RECIPE), *STEPS) if placed or name not in PLACED)
+    return [name for name in names if _value(one, name) != _value(other, name)]
+
+
+def _value(state: State, name: str) -> Any:
+    return getattr(state.view if name in IN_VIEW else state.recipe, name)
