@@ -223,4 +223,5 @@ def grid_rows(n_bands: int) -> int:
 @remember(most=8, doing="sampling the light")
 def error_grid(light: Light, rows: int) -> ErrorGrid:
     """The light on a grid of so many rows."""
-    return ErrorGrid(light.radiance, light.landmarks(), rows, light.rows, light.form)
+    form = (lambda: light.form) if light.about.size else light.form  # of an image in another layout it takes a raster
+    return ErrorGrid(light.radiance, light.landmarks(), rows, light.rows, form)

@@ -9,6 +9,7 @@ over a row and of cos(m phi) over a column are closed forms.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,18 @@ def project_product(radiance: Radiance, rule: ProductRule, n_bands: int) -> tupl
     )
 
 
-def channel_products(values: NDArray[np.floating], weights: Array) -> Array:
+class Rows(Protocol):
+    """Values (rows, columns, 3) of which some rows are asked for at a time."""
+
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, rows: slice, /) -> NDArray[np.floating]: ...
+
+
+def channel_products(values: Rows, weights: Array) -> Array:
     """Integrals of f_i f_j over the sphere, (3, 3): values (rows, columns, 3), steradians of each (rows, columns or 1)."""
     products = np.zeros((3, 3))
     block = max(1, BLOCK_PRODUCTS // values.shape[1])

@@ -143,7 +143,7 @@ class ConvolvedMap(ConvolvedLight):
     @cached_property
     def form(self) -> Bands | None:
         """Its bands, and a bound of further ones by the norms of what kernel and source hold there (Cauchy and Schwarz)."""
-        if self.source.form is None:
+        if self.source.about.size is None and self.source.form is None:  # an image has one, which may take a raster
             return None
         kept = self.source.coefficients(self.bands)
         beyond = (self.source.products().diagonal() - (kept**2).sum(axis=0)).max()

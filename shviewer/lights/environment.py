@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +19,11 @@ from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
-from shviewer.lights.layouts.layout import Layout
+from shviewer.lights.layouts.layout import Layout, SampledTexels
 from shviewer.lights.layouts.recognise import recognise
 from shviewer.lights.light import About, Split
 from shviewer.lights.reading import DEFAULT_READING, Reading
+from shviewer.lights.suns.patched import Patched
 from shviewer.limits import DEFAULT_LIMITS, RASTER_BYTES, SPLIT_BYTES, Limits, check_brightness
 from shviewer.progress import tell
 from shviewer.words import one_line
@@ -29,8 +31,8 @@ from shviewer.words import one_line
 MAX_RASTER_WIDTH = 8192
 """The most columns of the lat-long raster that stands for an image in another layout when it is drawn."""
 
-RUN_ROWS = 64
-"""Rows of what was taken that are held in float64 at a time."""
+FEW_DIRECTIONS = 32
+"""How many texels a raster has for each direction, that it is worth making."""
 
 BLOCK_TEXELS = 2**17
 """Texels in one block of `texels`, which bounds the memory."""
@@ -55,10 +57,6 @@ class EnvironmentLight(RadianceLight):
     """The file's format in words; None for an image that was not read."""
     limits: Limits
     """The limit of memory counts for what is made of the image, too."""
-    whole: EnvironmentLight | None = field(init=False, repr=False)
-    """The image that this is the rest of, without suns."""
-    changed: NDArray[np.bool_] = field(init=False, repr=False)
-    """The rows (height,) that differ from those of the whole."""
 
     best_method = "exact texel integrals"
     lobes = ()
@@ -78,7 +76,6 @@ class EnvironmentLight(RadianceLight):
         layout = layout or LatLongLayout(*texels.shape[:2])
         for part, value in (("pixels", texels), ("layout", layout), ("name", name), ("notes", notes)):
             object.__setattr__(self, part, value)
-        object.__setattr__(self, "whole", None)
         object.__setattr__(self, "encoding", encoding)
         object.__setattr__(self, "limits", limits)
 
@@ -115,13 +112,25 @@ class EnvironmentLight(RadianceLight):
         """
         if self._is_lat_long and max(self.pixels.shape) <= MAX_TEXTURE_SIDE:
             return LatLongMap(self.pixels)
-        width = max(4, min(self.layout.raster_width, MAX_RASTER_WIDTH))
-        height = min(len(self.pixels), MAX_RASTER_WIDTH // 2) if self._is_lat_long else width // 2
+        height, width = self._raster_size
         self.limits.check_memory(RASTER_BYTES * width * height, f"{self.name}: a raster of {width} x {height} texels")
         return LatLongMap(self.layout.raster(self.pixels, height, width))
 
+    @property
+    def _raster_size(self) -> tuple[int, int]:
+        width = max(4, min(self.layout.raster_width, MAX_RASTER_WIDTH))
+        return min(len(self.pixels), MAX_RASTER_WIDTH // 2) if self._is_lat_long else width // 2, width
+
+    @cached_property
+    def _sampled(self) -> LatLongMap:
+        """The same as `map`, without an array of all its texels."""
+        return LatLongMap(cast(NDArray[np.float32], SampledTexels(self.layout, self.pixels, *self._raster_size)))
+
     def radiance(self, directions: Array) -> Array:
-        return self.map.sample(directions)
+        """As in Light; in few directions, which four texels each bear on, no raster is made."""
+        height, width = self._raster_size
+        few = not self._is_lat_long and "map" not in vars(self) and FEW_DIRECTIONS * len(directions) <= height * width
+        return (self._sampled if few else self.map).sample(directions)
 
     def integrand(self, directions: Array) -> Array:
         return np.asarray(self.pixels[self.layout.nearest(directions)], dtype=np.float64)
@@ -131,25 +140,11 @@ class EnvironmentLight(RadianceLight):
         held = self._projected[-1:]
         if not held or len(held[0]) < n_bands**2:
             tell("projecting")  # whoever asks, and whatever for
-            found = self._from_whole(n_bands)
-            held = [self.layout.project(self.pixels, n_bands) if found is None else found]
-            self._projected[:] = held
+            held = self._projected[:] = [self._project(n_bands)]
         return held[0][: n_bands**2]
 
-    def _from_whole(self, n_bands: int) -> Array | None:
-        """Coefficients as those of the whole minus what was taken from some rows; None if that is impossible or less exact.
-
-        It takes the rounding of the whole, which is 1e-16 of the suns: too much for a rest that is far darker.
-        """
-        if self.whole is None or not isinstance(self.layout, LatLongLayout):
-            return None
-        if np.trace(self.whole.products()) > SUNS_TO_REST * np.trace(self.products()):
-            return None
-        rest = self.whole.coefficients(n_bands).copy()
-        for rows in _runs(self.changed):
-            taken = self.whole.pixels[rows].astype(np.float64) - self.pixels[rows]
-            rest -= self.layout.project_rows(taken, rows.start, n_bands)
-        return rest
+    def _project(self, n_bands: int) -> Array:
+        return self.layout.project(self.pixels, n_bands)
 
     @property
     def kept_bands(self) -> int:
@@ -216,10 +211,44 @@ class EnvironmentLight(RadianceLight):
         found, why = sources.take_all()
         taken = chosen(self.name, found, wanted, why)
         suns = [found[i].sun for i in taken] if len(taken) == len(found) else sources.keep(taken)
-        rest = replace(self, pixels=sources.pixels)
-        object.__setattr__(rest, "whole", self)
-        object.__setattr__(rest, "changed", sources.changed)
-        return Split(rest, tuple(suns))
+        return Split(Rest(self, sources.rest), tuple(suns))
+
+
+class Rest(EnvironmentLight):
+    """An image without suns. Its texels are copied when all of them are asked for, such as to be drawn."""
+
+    whole: EnvironmentLight
+    """The image with them."""
+    patched: Patched
+
+    def __init__(self, whole: EnvironmentLight, patched: Patched) -> None:
+        for part in ("layout", "name", "notes", "encoding", "limits"):
+            object.__setattr__(self, part, getattr(whole, part))
+        object.__setattr__(self, "whole", whole)
+        object.__setattr__(self, "patched", patched)
+
+    @cached_property
+    def pixels(self) -> NDArray[np.float32]:
+        return self.patched[:]
+
+    @property
+    def about(self) -> About:
+        return self.whole.about
+
+    @cached_property
+    def _products(self) -> Array:
+        return channel_products(self.patched, self.layout.solid_angles())
+
+    def _project(self, n_bands: int) -> Array:
+        """Coefficients as those of the whole minus what was taken from it, unless that is impossible or less exact.
+
+        It takes the rounding of the whole, which is 1e-16 of the suns: too much for a rest that is far darker.
+        """
+        if np.trace(self.whole.products()) <= SUNS_TO_REST * np.trace(self.products()):
+            taken = self.layout.project_texels(*self.patched.taken, n_bands)
+            if taken is not None:
+                return np.asarray(self.whole.coefficients(n_bands) - taken)
+        return super()._project(n_bands)
 
 
 def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:
@@ -229,11 +258,3 @@ def _brightest(pixels: NDArray[np.float32]) -> tuple[Indices, Indices]:
     texel = max(ends, key=lambda i: abs(values[i])) // 3
     row, column = divmod(texel, pixels.shape[1])
     return np.array([row]), np.array([column])
-
-
-def _runs(rows: NDArray[np.bool_]) -> Iterator[slice]:
-    """The runs of rows that are true, at most RUN_ROWS at a time."""
-    places = np.flatnonzero(rows)
-    for run in np.split(places, np.flatnonzero(np.diff(places) > 1) + 1) if len(places) else []:
-        for top in range(int(run[0]), int(run[-1]) + 1, RUN_ROWS):
-            yield slice(top, min(top + RUN_ROWS, int(run[-1]) + 1))

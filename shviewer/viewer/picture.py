@@ -12,7 +12,7 @@ from shviewer.analysis.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.reconstruction import Reconstruction, reconstruction_of, values_at
-from shviewer.analysis.subjects import Subject
+from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.quantities.encodings import Stored
@@ -186,6 +186,9 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
     """
     state.check()
     recipe, view = state.recipe, state.view
+    shown = subject(recipe)
+    for part in (shown.whole, shown.light):
+        _ = part.map  # first, so that whoever looks at the light in a few directions takes them from it
     found = reconstruction_of(recipe, ahead, view.encode)
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
     scale = _scale(state, light, projection)

@@ -10,15 +10,17 @@ import pytest
 from lights.images.hdr_files import exr_file
 
 from shviewer.analysis.cache import MEMORY, array_bytes
-from shviewer.analysis.figures import PENDING
+from shviewer.analysis.figures import PENDING, Sums
 from shviewer.analysis.information import describe
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
+from shviewer.cli.below_zero import below_zero
 from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError
 from shviewer.harmonics.extremes.error_grid import ErrorGrid
+from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
-from shviewer.lights.reading import DEFAULT_READING
+from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import state_of
 
@@ -49,6 +51,36 @@ def test_an_image_is_projected_once(sunny: str, work: str, monkeypatch: pytest.M
     else:
         assert describe(sunny, DEFAULT_READING).bands_needed_without_suns
     assert asked == [128]
+
+
+@pytest.mark.parametrize("layout", ["angular", "mirror-ball"])
+def test_what_is_told_of_an_image_in_another_layout_takes_one_projection_and_no_raster(
+    tmp_path: Path, layout: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pixels = np.ones((200, 200), np.float16)
+    pixels[60:62, 110:112] = 20000
+    path = tmp_path / "probe.exr"
+    path.write_bytes(exr_file(dict.fromkeys("RGB", pixels)))
+    reading, asked, real = Reading(layout=layout), [], DiscLayout.project
+    recipe, convention = Recipe(str(path), reading), parse_convention("shviewer")
+
+    def told() -> tuple[object, str, Sums]:
+        MEMORY.clear()
+        return describe(str(path), reading), below_zero(recipe, convention), project_recipe(recipe).sums
+
+    def counted(self: DiscLayout, pixels: np.ndarray, n_bands: int) -> np.ndarray:
+        asked.append(n_bands)
+        return real(self, pixels, n_bands)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(DiscLayout, "project", counted)
+        patch.setattr(DiscLayout, "raster", None)
+        patch.setattr("shviewer.lights.environment.FEW_DIRECTIONS", 0)  # the image is small
+        found = told()
+    assert asked == [128, 2]  # and the irradiance of a surface that faces up
+    monkeypatch.setattr("shviewer.lights.environment.FEW_DIRECTIONS", np.inf)  # a raster for every direction
+    assert "--split-sun to 0, the rest" in found[1]
+    assert told() == found
 
 
 def test_a_picture_without_text_searches_for_no_figure_and_looks_the_same(sunny: str) -> None:

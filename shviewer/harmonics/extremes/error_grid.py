@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -89,7 +89,7 @@ class ErrorGrid:
 
     radiance: directions (k, 3) -> (k, 3); landmarks: (j, 3), directions of features that a grid may miss. rows: a faster way to
     the radiance on whole rows, if there is one: theta (rows,) and the number of columns -> (rows, 3, columns). form: the parts
-    of the light, if they are known.
+    of the light, if they are known, or a function that makes them, which is called once for the error; not for Lobes.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class ErrorGrid:
         landmarks: Array,
         n_rows: int,
         rows: Callable[[Array, int], Array] | None = None,
-        form: Form | None = None,
+        form: Form | Callable[[], Form | None] | None = None,
     ) -> None:
         self.radiance = radiance
         self.theta, self.phi = row_angles(n_rows), column_azimuths(2 * n_rows)
@@ -109,7 +109,15 @@ class ErrorGrid:
         edges = np.cos(np.pi * np.arange(n_rows + 1) / n_rows)
         self.row_share = (edges[:-1] - edges[1:]) / (2 * 2 * n_rows)
         """The solid angle of one cell of each row divided by 4 pi, (rows,); exact."""
-        self.form = form
+        self._form = form
+
+    @cached_property
+    def form(self) -> Form | None:
+        return self._form() if callable(self._form) else self._form
+
+    @property
+    def _lobes(self) -> Lobes | None:
+        return self._form if isinstance(self._form, Lobes) else None
 
     def compare(self, shown: Array) -> Extremes:
         """The extremes of the reconstruction with coefficients `shown`, (n**2, 3), and of its error."""
@@ -136,12 +144,12 @@ class ErrorGrid:
     def _see(self, shown: Array) -> _Seen:
         synthesis = Synthesis(shown)
         values = synthesis.on_rows(self.theta, len(self.phi))
-        of_lobes = self.form.factors(shown) if isinstance(self.form, Lobes) else (np.zeros((0, 0)), 0.0)
+        of_lobes = self._lobes.factors(shown) if self._lobes else (np.zeros((0, 0)), 0.0)
         return _Seen(shown, synthesis, values, Waves(values, band_heights(shown)), of_lobes)
 
     def _lows(self, seen: _Seen) -> Lows:
-        form = self.form
-        lowest = self._lowest_of_lobes(seen, form, *seen.of_lobes) if isinstance(form, Lobes) else self._lowest(seen)
+        lobes = self._lobes
+        lowest = self._lowest_of_lobes(seen, lobes, *seen.of_lobes) if lobes else self._lowest(seen)
         luminance = sum(weight * seen.values[:, channel] for channel, weight in enumerate(LUMINANCE))
         return Lows(
             minimum=lowest.value,

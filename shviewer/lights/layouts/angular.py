@@ -54,8 +54,10 @@ class AngularLayout(DiscLayout):
         shares = chebyshev_shares(2 * places.ravel() - 1, DENSITY_POINTS).reshape(DENSITY_POINTS, *places.shape)
         by_texel = np.einsum("ngt,g,t->nt", shares, weights / 2, size)
         points = (1 + chebyshev_points(DENSITY_POINTS)) / 2
-        density = np.pi**2 * np.sinc(np.hypot(points, points[:, None]))
-        return np.asarray(by_texel.T @ density @ by_texel)
+        return np.asarray(by_texel.T @ self.density(np.hypot(points, points[:, None])) @ by_texel)
+
+    def density(self, radius: Array) -> Array:
+        return np.asarray(np.pi**2 * np.sinc(radius))
 
     def inside(self) -> Indices:
         return self.whole
@@ -67,7 +69,7 @@ class AngularLayout(DiscLayout):
         points, weights = quadrant_weights(pixels, quadrant_point_count(n_bands), spans)
         y, x = (a.ravel() for a in np.meshgrid(points, points, indexing="ij"))
         radius = np.hypot(x, y)
-        density = np.pi**2 * np.sinc(radius)
+        density = self.density(radius)
         directions = np.stack([np.cos(np.pi * radius), x * density / np.pi, y * density / np.pi], axis=-1)
         values = weights.swapaxes(0, 1).reshape(2, 2, -1, 3) * density[:, None]
         return project_mirrored(directions, values[None], n_bands)

@@ -29,6 +29,7 @@ from shviewer.harmonics.areas.patches import four_quadrants, project_mirrored, q
 from shviewer.harmonics.basis import Array, Indices
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import raster_of
+from shviewer.lights.layouts.texels import integrate_texels
 
 _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}
 
@@ -189,6 +190,20 @@ class CubeLayout:
                 )
                 values[mirrored[0], mirrored[1], mirrored[2], axes[0]] = weights[down, right] * density[..., None]
         return project_mirrored(directions.reshape(-1, 3), values.reshape(2, 2, 2, -1, 3), n_bands)
+
+    def project_texels(self, values: Array, rows: Indices, columns: Indices, n_bands: int) -> Array | None:
+        """As in Layout; texels of empty cells count as nothing."""
+        face = self.faces_by_cell[rows // self.face, columns // self.face]
+        shown = face >= 0
+        rows, columns, face = rows[shown], columns[shown], face[shown]
+
+        def places(right: Array, down: Array) -> tuple[Array, Array]:
+            u, v = (2 * (index % self.face + by) / self.face - 1 for index, by in ((columns, right), (rows, down)))
+            towards = self._directions(np.broadcast_to(face, u.shape).ravel(), u.ravel(), v.ravel())
+            length = np.linalg.norm(towards, axis=-1, keepdims=True)
+            return (towards / length).reshape(*u.shape, 3), (length**-3.0).reshape(u.shape) * (2 / self.face) ** 2
+
+        return integrate_texels(places, values[shown], n_bands, 6 * self.face**2)
 
     def _cell(self, face: Face) -> tuple[slice, slice]:
         row, column = face.row * self.face, face.column * self.face

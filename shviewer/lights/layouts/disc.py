@@ -23,6 +23,7 @@ from shviewer.harmonics.quadrature import column_azimuths, directions_from_angle
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import RASTER_BLOCK
 from shviewer.lights.layouts.rim import Disc, cut_areas, project_rim
+from shviewer.lights.layouts.texels import FAR, integrate_texels
 
 ON_THE_RIM = 1e-14
 """Corners that are this near the rim do not cross it, on whichever side rounding puts them."""
@@ -167,6 +168,23 @@ class DiscLayout(Disc):
             return replace(self, side=times * self.side).project(finer, n_bands)
         inside = self.inside()
         return self.project_inside(pixels, inside, n_bands) + project_rim(self, pixels, inside, n_bands)
+
+    def project_texels(self, values: Array, rows: Indices, columns: Indices, n_bands: int) -> Array | None:
+        """As in Layout: of texels away from the rim."""
+        corner = 2 * np.stack([columns, rows]) / self.side - 1
+        if np.hypot(*(corner + 1 / self.side)).max(initial=0.0) > 1 - FAR / self.side:
+            return None
+
+        def places(right: Array, down: Array) -> tuple[Array, Array]:
+            x, y = corner[0] + 2 * right / self.side, corner[1] + 2 * down / self.side
+            directions = self._directions(x.ravel(), y.ravel()).reshape(*x.shape, 3)
+            return directions, self.density(np.hypot(x, y)) * (2 / self.side) ** 2
+
+        return integrate_texels(places, values, n_bands, self.side**2)
+
+    @abstractmethod
+    def density(self, radius: Array) -> Array:
+        """Steradians per area of the disc of radius 1."""
 
     @abstractmethod
     def inside(self) -> Indices:

@@ -13,6 +13,9 @@ from shviewer.harmonics.quadrature import angles_from_directions, directions_fro
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.layout import raster_of
 
+RUN_ROWS = 64
+"""Rows around a few texels that are held in float64 at a time."""
+
 
 @dataclass(frozen=True)
 class LatLongLayout:
@@ -60,6 +63,17 @@ class LatLongLayout:
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         return project_image(pixels, n_bands)
 
-    def project_rows(self, some: NDArray[np.floating], top: int, n_bands: int) -> Array:
-        """Coefficients of an image that is black but for some rows, (rows, width, 3), from row `top` on."""
-        return project_rows(some, top, self.height, n_bands)
+    def project_texels(self, values: Array, rows: Indices, columns: Indices, n_bands: int) -> Array:
+        """As in Layout: by the rows that hold them."""
+        found = np.zeros((n_bands**2, 3))
+        order = np.argsort(rows, kind="stable")
+        values, rows, columns = values[order], rows[order], columns[order]
+        first = 0
+        while first < len(rows):
+            top = int(rows[first])
+            last = int(np.searchsorted(rows, top + RUN_ROWS))
+            some = np.zeros((int(rows[last - 1]) + 1 - top, self.width, 3))
+            some[rows[first:last] - top, columns[first:last]] = values[first:last]
+            found += project_rows(some, top, self.height, n_bands)
+            first = last
+        return found

@@ -61,6 +61,12 @@ class Layout(Protocol):
     def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
         """Coefficients (n_bands**2, 3): the exact integrals of the texels as areas."""
 
+    def project_texels(self, values: Array, rows: Indices, columns: Indices, n_bands: int) -> Array | None:
+        """The same, as exact, of an image that is black but for texels (k,) with `values` (k, 3).
+
+        None where that takes longer than `project`, or one of them is too near where directions have no series.
+        """
+
 
 def raster_of(layout: Layout, pixels: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:
     """`Layout.raster` of a layout that knows no better way."""
@@ -71,3 +77,20 @@ def raster_of(layout: Layout, pixels: NDArray[np.float32], height: int, width: i
         directions = directions_from_angles(theta[start : start + block, None], phi).reshape(-1, 3)
         texels[start : start + block] = layout.sample(pixels, directions).reshape(-1, width, 3)
     return texels
+
+
+class SampledTexels:
+    """The texels of `Layout.raster` where they are asked for, in place of an array of all of them."""
+
+    def __init__(self, layout: Layout, pixels: NDArray[np.float32], height: int, width: int) -> None:
+        self.layout, self.pixels, self.shape = layout, pixels, (height, width, 3)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, place: tuple[Indices, Indices]) -> NDArray[np.float32]:
+        """Texels (..., 3) at rows and columns (...)."""
+        theta, phi = row_angles(self.shape[0])[place[0]], column_azimuths(self.shape[1])[place[1]]
+        directions = directions_from_angles(theta, phi)
+        found = self.layout.sample(self.pixels, directions.reshape(-1, 3))
+        return found.reshape(directions.shape).astype(np.float32, copy=False)

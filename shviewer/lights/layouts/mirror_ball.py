@@ -51,6 +51,9 @@ class MirrorBallLayout(DiscLayout):
         size = np.diff(self.edges)
         return np.asarray(4 * size * size[:, None])
 
+    def density(self, radius: Array) -> Array:
+        return np.full_like(radius, 4.0)
+
     def inside(self) -> Indices:
         size = self._smallest_tile
         far = np.minimum(np.arange(1, -(-self.half // size) + 1) * size, self.half + 1)

@@ -23,6 +23,7 @@ from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.suns.caps import TILE, Caps, chord, chord_of
 from shviewer.lights.suns.clipping import highest, is_clipped
 from shviewer.lights.suns.excess import CAP, Excess
+from shviewer.lights.suns.patched import Patched
 from shviewer.lights.suns.rule import ENERGY, FEW_TEXELS, MOST, Found, refusal
 from shviewer.lights.suns.sun import Sun
 
@@ -33,18 +34,18 @@ TRIES = 32
 
 
 class CompactSources:
-    """An image while its compact sources are being taken out; `pixels` (height, width, 3) are what is left."""
+    """An image (height, width, 3) while its compact sources are being taken out; `rest` is what is left."""
 
     def __init__(self, pixels: NDArray[np.float32], layout: Layout) -> None:
-        self.pixels = self._given = pixels
+        self.rest = Patched(pixels)
         self._layout = layout
         self._solid_angles = layout.solid_angles().astype(np.float32)
-        self._mean = self._mean_of_channels(slice(None))
-        self._caps = Caps(layout, *self.pixels.shape[:2])
-        self._plateau = highest(self.pixels, self._caps)
+        self._mean: NDArray[np.float32] = pixels @ np.full(3, 1 / 3, dtype=np.float32)
+        """Of the channels of what is left, (height, width); 0 for a texel that shows nothing."""
+        self._mean *= self._solid_angles > 0
+        self._caps = Caps(layout, *pixels.shape[:2])
+        self._plateau = highest(pixels, self._caps)
         self._axes: list[Array] = []
-        self.changed = np.zeros(len(pixels), dtype=bool)
-        """The rows (height,) of which something was taken."""
 
     def take_all(self) -> tuple[list[Found], str]:
         """Take all sources out; return them and the reason why there are no more."""
@@ -57,22 +58,14 @@ class CompactSources:
 
     def keep(self, taken: list[int]) -> list[Sun]:
         """Take only some of the sources that were found, by their indices, out of the image as it was; return them."""
-        if self.pixels is not self._given:
-            self.pixels[self.changed] = self._given[self.changed]
-            self._mean[self.changed] = self._mean_of_channels(self.changed)
-        self.changed[:] = False
+        self._mean[self.rest.where] = self.rest.image[self.rest.where] @ np.full(3, 1 / 3, dtype=np.float32)
+        self.rest = Patched(self.rest.image)
         suns = []
         for i in taken:
             excess, clipped = self._around(self._axes[i])
-            suns.append(excess.disc(self._layout, self.pixels.shape, clipped))
+            suns.append(excess.disc(self._layout, self.rest.shape, clipped))
             self._remove(excess)
         return suns
-
-    def _mean_of_channels(self, rows: slice | NDArray[np.bool_]) -> NDArray[np.float32]:
-        """(rows, width), 0 for a texel that shows nothing."""
-        mean: NDArray[np.float32] = self.pixels[rows] @ np.full(3, 1 / 3, dtype=np.float32)
-        mean *= self._solid_angles[rows] > 0
-        return mean
 
     def _take_brightest(self, most: int) -> tuple[list[Found], str]:
         """Take out up to `most` sources; return them and why the first spot that is not compact is none.
@@ -106,7 +99,7 @@ class CompactSources:
                 else refusal(0.0, excess.contrast, *shares)
             ) or excess.goes_on * "its brightest spot is part of something larger"
             if not wrong:
-                disc = excess.disc(self._layout, self.pixels.shape, clipped)
+                disc = excess.disc(self._layout, self.rest.shape, clipped)
                 wrong = "" if clipped else refusal(disc.half_angle, excess.contrast, *shares)
                 if not wrong:
                     core, texels = excess.core
@@ -118,12 +111,12 @@ class CompactSources:
 
     def _around(self, axis: Array) -> tuple[Excess, bool]:
         """What rises above its surroundings around an axis, and whether it is clipped."""
-        excess = Excess.around(axis, self._caps, self.pixels, self._mean)
+        excess = Excess.around(axis, self._caps, self.rest, self._mean)
         return excess, is_clipped(excess, self._plateau, self._caps, self._mean)
 
     @cached_property
     def _negative(self) -> bool:
-        return bool(self._given.min() < 0)
+        return bool(self.rest.image.min() < 0)
 
     def _flux_and_squares(self, peak: np.float32) -> tuple[float, Array]:
         """The integral of |mean| / peak, and that of its square over each tile of `Caps`, in the few digits of a share."""
@@ -157,8 +150,5 @@ class CompactSources:
 
     def _remove(self, excess: Excess) -> None:
         rows, columns = excess.texels.rows, excess.texels.columns
-        if self.pixels is self._given:
-            self.pixels = self._given.copy()
-        self.pixels[rows, columns] = excess.after
-        self.changed[rows] = True
+        self.rest = self.rest.replaced(rows, columns, excess.after)
         self._mean[rows, columns] = excess.after.mean(axis=1)

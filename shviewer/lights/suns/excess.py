@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
-from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.suns.caps import Caps, Texels, chord, chord_of
+from shviewer.lights.suns.patched import Patched
 from shviewer.lights.suns.sun import Sun
 
 CAP = np.radians(3.0)
@@ -42,17 +42,17 @@ class Excess:
     """The largest mean of the channels between CAP and RIM."""
 
     @classmethod
-    def around(cls, axis: Array, caps: Caps, pixels: NDArray[np.float32], mean: NDArray[np.float32]) -> Excess:
+    def around(cls, axis: Array, caps: Caps, pixels: Patched, mean: NDArray[np.float32]) -> Excess:
         """The excess within CAP of `axis` (3,).
 
-        mean: of the three channels of `pixels` (height, width, 3), 0 for texels that show nothing.
+        mean: of the three channels of `pixels`, (height, width), 0 for texels that show nothing.
         """
         near = caps.cap(axis, RING)
         cap, ring = near.within(axis, -1, CAP), near.within(axis, CAP, RING)
-        around = pixels[ring.rows, ring.columns]
+        around = pixels.at(ring.rows, ring.columns)
         level = np.array([_quantile(channel, ring.solid_angles, LEVEL) for channel in around.T], dtype=np.float32)
         level = np.maximum(level, 0)
-        before = pixels[cap.rows, cap.columns]
+        before = pixels.at(cap.rows, cap.columns)
         after = np.clip(before, 0, level)
         unwilling = cap.solid_angles @ (before.astype(np.float64) - after) <= 0
         after[:, unwilling] = before[:, unwilling]
@@ -98,15 +98,15 @@ class Excess:
 
     def disc(self, layout: Layout, shape: tuple[int, ...], clipped: bool) -> Sun:
         """The disc with bands 0 and 1 of the radiance taken, by exact integrals over its texels, in an image of that shape."""
-        rows, columns = self.texels.rows, self.texels.columns
-        scale = np.abs(self.taken).max()
-        alone = np.zeros(shape, dtype=np.float32)  # memory pages that stay zero take no memory
-        alone[rows, columns] = (self.taken / scale).astype(np.float32)
-        if isinstance(layout, LatLongLayout):
-            some = slice(int(rows.min()), int(rows.max()) + 1)
-            bands = layout.project_rows(alone[some], some.start, 2).mean(axis=1)
-        else:
-            bands = layout.project(alone, 2).mean(axis=1)
+        some = self.taken.any(axis=1)
+        rows, columns = self.texels.rows[some], self.texels.columns[some]
+        taken = self.taken[some] / np.abs(self.taken).max()
+        coefficients = layout.project_texels(taken, rows, columns, 2)
+        if coefficients is None:
+            alone = np.zeros(shape, dtype=np.float32)
+            alone[rows, columns] = taken
+            coefficients = layout.project(alone, 2)
+        bands = coefficients.mean(axis=1)
         vector = np.array([-bands[3], -bands[1], bands[2]]) / np.sqrt(3)  # in units of band 0
         length = float(np.linalg.norm(vector))
         smallest = float(self.texels.solid_angles[self.mean.argmax()]) / (4 * np.pi)
