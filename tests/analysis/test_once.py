@@ -53,15 +53,14 @@ def test_an_image_is_projected_once(sunny: str, work: str, monkeypatch: pytest.M
     assert asked == [128]
 
 
-@pytest.mark.parametrize("layout", ["angular", "mirror-ball"])
 def test_what_is_told_of_an_image_in_another_layout_takes_one_projection_and_no_raster(
-    tmp_path: Path, layout: str, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pixels = np.ones((200, 200), np.float16)
     pixels[60:62, 110:112] = 20000
     path = tmp_path / "probe.exr"
     path.write_bytes(exr_file(dict.fromkeys("RGB", pixels)))
-    reading, asked, real = Reading(layout=layout), [], DiscLayout.project
+    reading, asked, real = Reading(layout="mirror-ball"), [], DiscLayout.project
     recipe, convention = Recipe(str(path), reading), parse_convention("shviewer")
 
     def told() -> tuple[object, str, Sums]:
@@ -79,7 +78,7 @@ def test_what_is_told_of_an_image_in_another_layout_takes_one_projection_and_no_
         found = told()
     assert asked == [128, 2]  # and the irradiance of a surface that faces up
     monkeypatch.setattr("shviewer.lights.environment.FEW_DIRECTIONS", np.inf)  # a raster for every direction
-    assert "--split-sun to 0, the rest" in found[1]
+    assert "--split-sun" in found[1]
     assert told() == found
 
 
