@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from shviewer.analysis.suspecting import FITS, Others, error_of, suspect
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.diagnosis.search import ALIKE, EXPLAINED, TINY
@@ -43,7 +45,7 @@ def recognise(listed: Listed, exact: Array, others: Others = lambda: iter(())) -
     """
     plain = list(_fits(listed, exact, _different()))
     if not plain:
-        interpreted(listed, "shviewer")  # says what is wrong
+        interpreted(listed, "scipy" if np.iscomplexobj(listed.numbers) else "shviewer")  # says what is wrong
         raise LightError("numbers in no known convention: name it, --convention")
     found = None
     with suppress(LightError):

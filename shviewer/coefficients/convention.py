@@ -178,7 +178,8 @@ def from_complex(numbers: NDArray[np.generic]) -> Array:
     if np.abs(values - partner).max() > UNREAL * np.abs(values).max():
         worst = int(np.abs(values - partner).max(axis=1).argmax())
         raise ValueError(
-            f"row {worst} and its partner of the other m are not conjugate up to (-1)^m: these are not of a real function"
+            f"row {worst} and its partner of the other m are not conjugate up to (-1)^m: one of them is wrong, or these are "
+            "not of a real function"
         )
     values, m = np.sqrt(2) * (values + partner) / 2, orders(n_bands)[:, None]
     imaginary = -values[mirrored_orders(n_bands)].imag

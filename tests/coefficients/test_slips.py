@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import shviewer
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.diagnosis.chance import CHANCE
 from shviewer.coefficients.diagnosis.search import Explanation, explain
@@ -13,6 +16,7 @@ from shviewer.coefficients.diagnosis.slips import Slip, mended
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.programs import OURS
 from shviewer.coefficients.texts import convention_text, parse_convention
+from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 
 TEXTS = (
@@ -134,3 +138,35 @@ def test_a_band_of_another_light_is_no_slip(n_bands: int) -> None:
         numbers[1:4] = light(np.random.default_rng([seed, n_bands]), 2)[1:4] * np.abs(numbers[1:4]).max()
         found = explain(Listed(numbers), exact, convention)
         assert found is None or not found.slips or found.chance > CHANCE
+
+
+PAIRS = {
+    "one row with m = 0": (lambda rows: rows.__setitem__(6, -rows[6]), (Slip(6, 6, -1),)),
+    "both of a pair": (lambda rows: rows.__setitem__([5, 7], -rows[[5, 7]]), (Slip(5, 5, -1), Slip(7, 7, -1))),
+    "an empty pair": (lambda rows: rows.__setitem__([4, 8], 0), (Slip(4, 4, 0), Slip(8, 8, 0))),
+    "a pair the wrong way round": (lambda rows: rows.__setitem__([5, 7], rows[[7, 5]]), ()),
+}
+"""What happens to complex rows, and the slips that are found: those with which they are still of a real function."""
+
+
+@pytest.mark.parametrize("what", PAIRS)
+def test_rows_of_complex_lists_slip_in_pairs(what: str) -> None:
+    exact = light(np.random.default_rng(SEED), 4)
+    rows, (spoil, slips) = parse_convention("scipy").from_ours(exact).copy(), PAIRS[what]
+    spoil(rows)
+    found = explain(Listed(rows), exact)
+    assert found is not None
+    assert (found.slips, found.error < 1e-6) == (slips, bool(slips))
+    if slips:
+        wanted = np.asarray(parse_convention("scipy").from_ours(exact))
+        np.testing.assert_allclose(mended(rows, slips, wanted), wanted)  # type: ignore[arg-type]
+
+
+def test_one_complex_row_without_its_partner_is_named(tmp_path: Path) -> None:
+    rows = shviewer.project("venice_sunset", 4).numbers("scipy").copy()
+    rows[7] *= -1
+    np.save(tmp_path / "one.npy", rows)
+    with pytest.raises(
+        LightError, match=r"row 5 and its partner of the other m are not conjugate .* one of them is wrong"
+    ):
+        shviewer.project("venice_sunset", compare=tmp_path / "one.npy")

@@ -18,7 +18,7 @@ from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.diagnosis.chance import CHANCE, chance
 from shviewer.coefficients.diagnosis.costs import CHANNELS
 from shviewer.coefficients.diagnosis.costs import costs as costs_of
-from shviewer.coefficients.diagnosis.slips import ONE_OF_TEN, Slip, Slipped
+from shviewer.coefficients.diagnosis.slips import ONE_OF_TEN, Slip, Slipped, in_pairs
 from shviewer.coefficients.diagnosis.tried import CONSTANTS, Place, Tried, constant_costs, constant_of
 from shviewer.coefficients.diagnosis.ways import ways
 from shviewer.coefficients.numbers import Listed
@@ -77,7 +77,7 @@ def explain(listed: Listed, exact: Array, named: Convention | None = None) -> Ex
         )
         one.misfits[:, np.isinf(one.costs)] = np.inf
     simplest = _simplest(tried, exact, named)
-    if found[0].taken.complex or (simplest and simplest.error <= TINY and simplest.cost <= ONE_OF_TEN):
+    if simplest and simplest.error <= TINY and simplest.cost <= ONE_OF_TEN:
         return simplest
     return _with_slips(tried, exact, named, simplest)
 
@@ -142,6 +142,8 @@ def _with_slips(
     convention, meant = one.convention(place, constant_of(float(factors[best]), good), named)
     order = np.argsort(row_order(convention.order, count_bands(exact))).tolist()
     slips = tuple(sorted(Slip(order[row], order[holds], sign) for row, holds, sign in slipped.slips(near[best])))
+    if one.taken.complex and not in_pairs(slips):
+        return simplest
     error, by_chance = float(slipped.errors[near[best]]), float(chances[near[best]])
     return Explanation(convention, meant, error, by_chance, float(costs[best]), slips)
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.coefficients.diagnosis.chance import chances_of_rows
-from shviewer.harmonics.basis import Array
+from shviewer.harmonics.basis import Array, degree_order, index
 
 ONE_OF_TEN = 1.05
 """The cost of a slip for each factor of ten in the number of choices, and of any: more than that of a mistake in all rows."""
@@ -136,6 +136,16 @@ def _whole_bands(rows: NDArray[np.bool_], which: np.ufunc = np.logical_and) -> N
 def _choices(n_rows: int, count: int, ways: int) -> int:
     """How many choices of at most so many rows there are; ways: what each may hold, 0: what another of them should."""
     return sum(comb(n_rows, k) * (ways**k if ways else factorial(k)) for k in range(count + 1))
+
+
+def in_pairs(slips: tuple[Slip, ...]) -> bool:
+    """Whether rows of m and -m have the same slips, so that complex rows are of a real function with them as without."""
+    return {Slip(_of_other_m(row), _of_other_m(holds), sign) for row, holds, sign in slips} == set(slips)
+
+
+def _of_other_m(row: int) -> int:
+    l, m = degree_order(row)
+    return index(l, -m)
 
 
 def mended(numbers: Array, slips: tuple[Slip, ...], wanted: Array) -> Array:

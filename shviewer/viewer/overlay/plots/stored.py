@@ -53,7 +53,10 @@ def stored_errors(picture: Picture) -> dict[str, float | None]:
     plain, found = project(light, *sampling_of(recipe), recipe.projected_bands), dict[str, float | None]()
     for name, n_bands in ENCODED_BANDS.items():
         try:
-            figures = sums(light, encoded(light, plain, name), Shown(n_bands))[1]
+            shown = (
+                recipe.shown if name == picture.state.view.encode else Shown(n_bands)
+            )  # with its window and muted bands
+            figures = sums(light, encoded(light, plain, name), shown)[1]
         except UsageError:
             found[name] = None
         else:
