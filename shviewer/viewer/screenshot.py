@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.renderer import GL_VERSIONS, PART_SECONDS, Renderer
+from shviewer.viewer.overlay.directions.marks import mark_layers
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.marks import mark_layers
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_exr, write_png

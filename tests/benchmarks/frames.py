@@ -39,10 +39,10 @@ from shviewer.viewer.actions import turn_light
 from shviewer.viewer.animation.turning import step_turn
 from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.overlay.directions.marks import mark_layers
+from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.marks import mark_layers
 from shviewer.viewer.overlay.overlay import draw_overlay
-from shviewer.viewer.overlay.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.placing import rotate_light
 from shviewer.viewer.screenshot import headless_renderer, offscreen, render_linear

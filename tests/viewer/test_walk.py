@@ -25,7 +25,7 @@ from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import ACTIONS
-from shviewer.viewer.overlay.probe import probe, probe_layers
+from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.placing import orbit, rotate_light, zoom
 from shviewer.viewer.saving.picture_files import write_exr

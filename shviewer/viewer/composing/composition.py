@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import sqrt
 from typing import TYPE_CHECKING
 
 from shviewer.viewer.composing import panes
+from shviewer.viewer.composing.caption import Caption, clear
 from shviewer.viewer.composing.design import Design, margin_of
 from shviewer.viewer.composing.numbers_area import AROUND, HEIGHTS, SIDE, Line, Mode, Numbers, numbers_area
 from shviewer.viewer.composing.panes import Box, Pane, Sphere, WholeSphere
@@ -33,16 +33,6 @@ UNDER_HEAD = 22.0
 """Where the room of a curve among the spheres begins at the earliest, under its head."""
 
 NOWHERE, NO_NUMBERS = Box(0.0, 0.0, 0.0, 0.0), Numbers()
-
-
-@dataclass(frozen=True)
-class Caption:
-    """The places of what is written about a pane: the head, lines after it, and the line at its foot."""
-
-    head: Line
-    lines: tuple[Line, ...]
-    """The lines after the head: none in a compact frame; over a map one, on the head's baseline."""
-    foot: Line | None
 
 
 @dataclass(frozen=True)
@@ -259,28 +249,17 @@ class _Placed:
         lines = [head._replace(baseline=head.baseline + (number + 1) * pitch) for number in range(count)]
         foot = self._foot(number)
         return Caption(
-            _clear(
+            clear(
                 head.scaled(scale),
                 sphere,
                 (9.5 if design.compact else 12) * scale,
                 (4 if design.compact else 8) * scale,
             ),
-            tuple(_clear(line.scaled(scale), sphere, 11 * scale, 8 * scale) for line in lines),
-            foot and _clear(foot.scaled(scale), sphere, 9 * scale, 1.5 * scale),
+            tuple(clear(line.scaled(scale), sphere, 11 * scale, 8 * scale) for line in lines),
+            foot and clear(foot.scaled(scale), sphere, 9 * scale, 1.5 * scale),
         )
 
 
 @lru_cache(maxsize=8)
 def _placed(design: Design) -> _Placed:
     return _Placed(design)
-
-
-def _clear(line: Line, sphere: Sphere | None, high: float, gap: float) -> Line:
-    """The line, cut where its text, which is so high, would come nearer to the sphere than the gap. All in pixels."""
-    if sphere is None:
-        return line
-    top, bottom, reach = line.baseline - high, line.baseline + 0.3 * high, sphere.radius + gap
-    down = max(top - sphere.y, sphere.y - bottom, 0.0)
-    if down >= reach:
-        return line
-    return line._replace(right=max(min(line.right, sphere.x - sqrt(reach * reach - down * down)), line.left))

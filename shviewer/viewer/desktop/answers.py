@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from shviewer.analysis.figures import Pending
 from shviewer.viewer.actions import with_bands
-from shviewer.viewer.overlay.marks import marks_of
+from shviewer.viewer.overlay.directions.marks import marks_of
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.placing import face
 from shviewer.viewer.state import State, changed

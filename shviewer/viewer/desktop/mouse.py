@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from shviewer.viewer.actions import toggle_band
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Sphere
-from shviewer.viewer.overlay.probe import direction_at
+from shviewer.viewer.overlay.directions.probe import direction_at
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.placing import face, orbit, pan, rotate_light, zoom, zoom_about, zoom_map_about
 from shviewer.viewer.state import State, changed

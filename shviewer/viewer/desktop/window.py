@@ -22,8 +22,8 @@ from shviewer.viewer.desktop.session import PATIENCE, Session
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.message import DONE, WARNING
+from shviewer.viewer.overlay.directions.probe import direction_at
 from shviewer.viewer.overlay.foot import Work
-from shviewer.viewer.overlay.probe import direction_at
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.state import State

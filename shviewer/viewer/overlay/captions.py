@@ -12,7 +12,8 @@ from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import RADIANCE, in_words
 from shviewer.viewer.beside import Beside, words_of
-from shviewer.viewer.composing.composition import Caption, Composition
+from shviewer.viewer.composing.caption import Caption
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces

@@ -55,7 +55,7 @@ def colour_bar_pieces(picture: Picture, at: Composition) -> list[Piece]:
         return []
     tip = round(at.px(TIP)) if scale.beyond else 0
     signed, height = scale.kind == "signed", max(round(at.px(HEIGHT * (0.7 if at.compact else 1))), 4)
-    left, right, top = round(place.left) + tip, round(place.right) - tip, round(place.top)
+    left, right, top = round(place.left) + tip * signed, round(place.right) - tip, round(place.top)
     colours = colour_maps.table(colour_maps.map_of(scale.kind))
     shades = colours[np.round(np.linspace(0, 255, right - left)).astype(int)]
     area = Box(left, top, right, top + height)

@@ -12,7 +12,7 @@ from shviewer.errors import UsageError
 from shviewer.viewer.animation.animation import turntable
 from shviewer.viewer.composing.panes import WholeSphere
 from shviewer.viewer.keys import press
-from shviewer.viewer.overlay.probe import direction_at, probe, probe_layers
+from shviewer.viewer.overlay.directions.probe import direction_at, probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.placing import face, orbit, rotate_light, zoom
 from shviewer.viewer.saving.stamp import metadata

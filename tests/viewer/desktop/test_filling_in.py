@@ -17,7 +17,7 @@ from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop.behind import task as desktop_task
 from shviewer.viewer.desktop.canvas import _overlay_key
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.overlay.marks import marks_of
+from shviewer.viewer.overlay.directions.marks import marks_of
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.plots import band_series
 from shviewer.viewer.picture import first_picture, prepare, stages

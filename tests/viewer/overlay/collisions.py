@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.marks import Placed, place_marks
+from shviewer.viewer.overlay.directions.marks import Placed, place_marks
 from shviewer.viewer.overlay.overlay import Overlay
 from shviewer.viewer.overlay.pieces import Strip, Swatch, Text
 from shviewer.viewer.picture import Picture

@@ -626,3 +626,14 @@ def test_what_is_written_is_drawn_where_it_says() -> None:
         box = piece.box
         outside[int(box.top) - 2 : int(box.bottom) + 3, max(int(box.left) - 2, 0) : int(box.right) + 3] = False
     assert not outside.any()
+
+
+@pytest.mark.parametrize(("error", "left"), [("signed", True), ("absolute", False), ("relative", False)])
+def test_a_tip_stands_only_where_colours_go_on_and_the_bar_fills_the_rest(error: str, left: bool) -> None:
+    shown = picture_of("venice_sunset", n_bands=9, error=error)
+    at = frame_of(shown, 1280, 720)
+    bar, place = draw_overlay(shown, at).boxes["colour_bar"], at.colour_bar
+    assert shown.error_scale is not None
+    assert place is not None
+    assert shown.error_scale.beyond
+    assert (bar.left - place.left, place.right - bar.right) == (7 if left else 0, 7)

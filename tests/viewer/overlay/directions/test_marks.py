@@ -12,9 +12,9 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Sphere
-from shviewer.viewer.overlay.marks import mark_layers, marks_of, place_marks
+from shviewer.viewer.overlay.directions.marks import mark_layers, marks_of, place_marks
+from shviewer.viewer.overlay.directions.probe import probe
 from shviewer.viewer.overlay.overlay import draw_overlay
-from shviewer.viewer.overlay.probe import probe
 from shviewer.viewer.picture import Picture
 
 TOWARDS_MINIMUM = (230.0, -30.0)

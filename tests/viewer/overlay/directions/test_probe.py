@@ -7,8 +7,8 @@ import pytest
 from helpers import frame_of, picture_of
 
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.overlay.marks import place_marks
-from shviewer.viewer.overlay.probe import probe, probe_layers
+from shviewer.viewer.overlay.directions.marks import place_marks
+from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 
 
 def test_at_the_marks_the_probe_reads_the_figures() -> None:
