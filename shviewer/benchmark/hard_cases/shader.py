@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, degrees, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
@@ -15,6 +16,7 @@ from shviewer.harmonics.zonal import Disc, orient
 from shviewer.viewer.camera import world_from_view
 
 if TYPE_CHECKING:
+    from shviewer.viewer.composing.panes import Sphere
     from shviewer.viewer.gl.renderer import Renderer
 
 WIDTH, HEIGHT = 320, 160
@@ -22,6 +24,9 @@ CENTRE = (240.5, 79.5)
 """The centre of the right sphere, on the centre of a pixel, which then looks exactly along the view's z."""
 
 RADIUS = 78.0
+NEAREST_RIM = 0.2
+"""The least part of a normal along the view with which a pixel is compared."""
+
 BLOCK = 2048
 FROM_NORTH, FROM_SOUTH = np.eye(3), np.diag([1.0, -1.0, -1.0])
 """world_from_view of cameras over the poles, in which a pixel meets the pole without rounding."""
@@ -53,10 +58,7 @@ def bound(views: list[View]) -> float:
 
 
 def error_of(view: View, renderer: Renderer) -> float:
-    """The largest difference over the pixels from float64, relative to the largest magnitude on the whole sphere.
-
-    Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn.
-    """
+    """The largest difference over the pixels from float64, relative to the largest magnitude on the whole sphere."""
     from shviewer.viewer.composing.composition import compose
     from shviewer.viewer.composing.panes import Box, Sphere
     from shviewer.viewer.drawn import DirectSum
@@ -77,16 +79,22 @@ def error_of(view: View, renderer: Renderer) -> float:
     sphere = Sphere(*CENTRE, view.radius, box)
     hidden = Sphere(-9.0, -9.0, 1.0, Box(0, 0, 0, 0))
     drawn = render_linear(renderer, picture, replace(compose(WIDTH, HEIGHT), spheres=(hidden, sphere)))
-    x = (np.arange(WIDTH) + 0.5 - sphere.x) / sphere.radius
-    y = (sphere.y - np.arange(HEIGHT) - 0.5) / sphere.radius
-    right, up = np.meshgrid(x, y)
-    facing_squared = 1 - right**2 - up**2
-    inside = (facing_squared > 0.04) & (np.arange(WIDTH) >= WIDTH / 2)
-    normals = np.column_stack([right[inside], up[inside], np.sqrt(facing_squared[inside])])
+    normals, inside = normals_on(sphere, np.arange(WIDTH // 2, WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
     directions = normals @ view.world_from_view.T
     wanted = in_blocks(lambda part: evaluate_basis(part, n_bands) @ view.coefficients, directions)
-    difference = float(np.abs(drawn[inside] - wanted[:, None]).max())
+    difference = float(np.abs(drawn[:, WIDTH // 2 :][inside] - wanted[:, None]).max())
     return difference / max(float(np.abs(wanted).max()), _peak(coefficients))
+
+
+def normals_on(sphere: Sphere, x: NDArray[np.floating], y: NDArray[np.floating]) -> tuple[Array, NDArray[np.bool_]]:
+    """The normals (k, 3), in view space, of those pixels with centres (x, y) that lie on a sphere; and which, (rows, columns).
+
+    Pixels next to the rim are left out: there float32 does not know the normal to 1e-6, whatever is drawn.
+    """
+    right, up = np.meshgrid((x - sphere.x) / sphere.radius, (sphere.y - y) / sphere.radius)
+    facing = np.sqrt((1 - right**2 - up**2).clip(min=0))
+    inside = facing > NEAREST_RIM
+    return np.stack([right, up, facing], axis=-1)[inside], inside
 
 
 def in_blocks(function: Callable[[Array], Array], directions: Array) -> Array:

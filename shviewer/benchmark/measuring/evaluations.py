@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.benchmark.hard_cases.evaluation import towards
-from shviewer.benchmark.hard_cases.shader import in_blocks
+from shviewer.benchmark.hard_cases.shader import in_blocks, normals_on
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight
 from shviewer.benchmark.measuring.timing import Work
 from shviewer.harmonics.basis import Array, evaluate_basis, normalise
@@ -45,9 +45,6 @@ PER_MILLION = "per million directions"
 
 STRIDE = 4
 """Every fourth pixel of every fourth row is compared: 9 000 directions a camera."""
-
-NEAREST_RIM = 0.2
-"""Normals with less than this along the view are left out: there float32 does not know the normal itself to 1e-6."""
 
 MOST_DIRECTIONS, MOST_VALUES = 32_768, 2**20
 """The most directions, and the most values of their basis, in one timed run on the CPU."""
@@ -139,14 +136,8 @@ class Frame:
         self.target = target
         self.cached: Evaluations | None = None
         """The stage whose map is shown."""
-        sphere = FRAME.spheres[1]
-        right, up = np.meshgrid(
-            (np.arange(0, FRAME.width, STRIDE) + 0.5 - sphere.x) / sphere.radius,
-            (sphere.y - np.arange(0, FRAME.height, STRIDE) - 0.5) / sphere.radius,
-        )
-        facing = np.sqrt((1 - right**2 - up**2).clip(min=0))
-        self.inside = facing > NEAREST_RIM
-        self.normals = np.stack([right, up, facing], axis=-1)[self.inside]
+        x, y = np.arange(0, FRAME.width, STRIDE) + 0.5, np.arange(0, FRAME.height, STRIDE) + 0.5
+        self.normals, self.inside = normals_on(FRAME.spheres[1], x, y)
 
     def works(self, stage: Evaluations) -> dict[str, Work]:
         works: dict[str, Work] = {MAKING: lambda: self.make_map(stage)}

@@ -10,7 +10,6 @@ sun         its flux hops from texel to texel, a distance delta with delta_rms^2
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +19,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import directions_from_angles, jittered
-from shviewer.harmonics.scattered import project_samples
+from shviewer.harmonics.scattered import project_values
 from shviewer.lights.layouts.lat_long import LatLongLayout
 
 NOISE_SIZE, NOISE_FRAMES = (32, 64), 100
@@ -56,7 +55,7 @@ def noise(seed: int) -> list[Stated]:
         shaded += band_power(cosine * projected).sum(axis=1)
         points = jittered(few, seed + frame)
         values = pixels[layout.nearest(points.directions)].astype(np.float64)
-        taken += band_power(project_samples(_those(values), points, MOST)).sum(axis=1)
+        taken += band_power(project_values(points.directions, values * points.weights[:, None], MOST)).sum(axis=1)
     share = 1 / (3 * NOISE_FRAMES * 4 * np.pi)  # of a channel and frame, over the sphere
     factors = (2 * np.arange(MOST) + 1) * (irradiance_factors(MOST) / np.pi) ** 2
     drawn = int(np.sqrt(few)) ** 2
@@ -79,11 +78,6 @@ def noise(seed: int) -> list[Stated]:
         Stated(f"{drawn} of its texels read in each frame", n, _root(taken, n, share), n / float(np.sqrt(drawn)))
         for n in (3, 5, 9, 16)
     ]
-
-
-def _those(values: Array) -> Callable[[Array], Array]:
-    """A function of directions that has these values, whatever they are."""
-    return lambda directions: values
 
 
 def _root(power: Array, n: int, share: float) -> float:

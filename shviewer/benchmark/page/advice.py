@@ -51,7 +51,7 @@ def sentences(record: LightRecord, rows: Sequence[Row]) -> list[str]:
 
 
 def _what_reaches(record: LightRecord, tolerance: float, needed: int, rows: Sequence[Row]) -> str:
-    good = [row for row in rows if row.measured and _number(row.total_error, math.inf) <= tolerance * (1 + 1e-12)]
+    good = [row for row in rows if row.measured and known(row.total_error, math.inf) <= tolerance * (1 + 1e-12)]
     if not good:
         return f"{counted(needed, 'band')}, but nothing measured is within it; give it a larger --budget."
     fewest = min(row.n_bands or 0 for row in good)
@@ -109,7 +109,7 @@ def where_bands_stop_paying(rows: Sequence[Row]) -> str:
     if not judged:
         return ""
     last = judged[-1]
-    met = next((row for row in judged if _number(row.truncation) <= _floor(row)), None)
+    met = next((row for row in judged if known(row.truncation) <= _floor(row)), None)
     parts = [
         f"more than {_bands(met)} bring nothing: no more than {error(_floor(met))} is left out, which is lost in rounding"
         if met
@@ -125,7 +125,7 @@ def where_bands_stop_paying(rows: Sequence[Row]) -> str:
 def _direct_sum(direct: list[Row]) -> list[str]:
     """The words on how far more bands pay in the direct sum."""
     steps = list(pairwise(direct))
-    paying = [_number(a.total_error) > _slowdown(a, b) * _number(b.total_error) for a, b in steps]
+    paying = [known(a.total_error) > _slowdown(a, b) * known(b.total_error) for a, b in steps]
     stop = max((number + 1 for number, pays in enumerate(paying) if pays), default=0)
     if stop == len(steps):
         return [
@@ -134,15 +134,15 @@ def _direct_sum(direct: list[Row]) -> list[str]:
     here, after = direct[stop], direct[stop + 1]
     return [
         f"summed in the shader they stop paying at {_bands(here)}: {after.n_bands} take "
-        f"{times(_number(after.milliseconds) / _number(here.milliseconds))} as long as {here.n_bands} and leave "
-        f"{_number(after.total_error) / max(_number(here.total_error), PARSEVAL_FLOOR):.2f} of their error"
+        f"{times(known(after.milliseconds) / known(here.milliseconds))} as long as {here.n_bands} and leave "
+        f"{known(after.total_error) / max(known(here.total_error), PARSEVAL_FLOOR):.2f} of their error"
     ]
 
 
 def _slowdown(a: Row, b: Row) -> float:
     """How many times as long as a b takes; 1 if the quartiles overlap."""
-    apart = _number(b.low_quartile) > _number(a.high_quartile)
-    return _number(b.milliseconds) / _number(a.milliseconds) if apart else 1.0
+    apart = known(b.low_quartile) > known(a.high_quartile)
+    return known(b.milliseconds) / known(a.milliseconds) if apart else 1.0
 
 
 def _crossing(direct: list[Row], cached: list[Row]) -> list[str]:
@@ -164,8 +164,9 @@ def _bands(row: Row) -> str:
 
 def _floor(row: Row) -> float:
     """The truncation error below which it cannot be told from rounding."""
-    return max(_number(row.arithmetic_error), PARSEVAL_FLOOR)
+    return max(known(row.arithmetic_error), PARSEVAL_FLOOR)
 
 
-def _number(value: float | None, otherwise: float = 0.0) -> float:
+def known(value: float | None, otherwise: float = 0.0) -> float:
+    """A number, or another in its place where it is not known."""
     return otherwise if value is None else value

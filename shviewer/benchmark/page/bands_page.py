@@ -10,6 +10,7 @@ from typing import Any
 from shviewer.analysis.roughness import TOLD_BANDS, Staircase
 from shviewer.benchmark.measuring.bands import BANDS_KEY, LEAVE, QUANTITIES, ROUGHNESS_KEY
 from shviewer.benchmark.measuring.measured_lights import MOST_BANDS
+from shviewer.benchmark.page.advice import known
 from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.tables import ABSENT, MOST_COLUMNS, bullet, error, table
 from shviewer.words import all_of, counted
@@ -65,21 +66,17 @@ def _answer(found: Mapping[str, Any]) -> str:
         {name: needs["whole"][what]["within"][ASKED] for name, needs in found.items()} for what in QUANTITIES
     )
     lights = "all of these lights" if len(found) > 1 else next(iter(found))
-    most = max(map(_infinite, shades.values()))
+    most = max(known(count, math.inf) for count in shades.values())
     shading = (
         f"{counted(int(most), 'band')} shade"
         if most < math.inf
         else f"more than {MOST_BANDS} bands are needed to shade"
     )
     counts: dict[str, list[str]] = {}
-    for name, count in sorted(seen.items(), key=lambda light: _infinite(light[1])):
+    for name, count in sorted(seen.items(), key=lambda light: known(light[1], math.inf)):
         counts.setdefault(f"more than {MOST_BANDS}" if count is None else str(count), []).append(name)
     parts = [f"{count} for {all_of(names)}" for count, names in counts.items()]
     return f"Within {100 * float(ASKED):g} %: {shading} with {lights}; to be seen it takes {all_of(parts)}."
-
-
-def _infinite(count: int | None) -> float:
-    return math.inf if count is None else count
 
 
 def _with_and_without_suns(found: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:

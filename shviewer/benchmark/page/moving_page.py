@@ -23,6 +23,12 @@ the frame before, likewise, both turned back to where the light began. *Formula*
 - kappa)/N). Points are jittered anew in each frame, jittered once and the same in every frame, or independent and new in
 each frame."""
 
+NOISE_AND_SUNS = """\
+### noise and suns
+
+Noise of one standard deviation in each texel, and a sun that crosses texels; what is left
+in so many bands, simulated and by the formula:
+"""
 
 STEM = "moving-bands"
 """The file stem of the section's plot."""
@@ -46,24 +52,12 @@ def lines(page: Page) -> list[str]:
     picture = page.picture(STEM, "RMS error of a turning light against bands, for each way to sample its frames")
     tables = [line for name in dict.fromkeys(one.light for one in samples) for line in _sampled_table(name, samples)]
     simulated = [
-        (
-            one.what,
-            "all" if one.n_bands is None else str(one.n_bands),
-            error(one.simulated),
-            error(one.formula),
-        )
+        (one.what, "all" if one.n_bands is None else str(one.n_bands), error(one.simulated), error(one.formula))
         for one in stated
     ]
-    return [
-        *(CLAIM.format(degrees=DEGREES), "", said, "", *exact, "", *picture, *tables),
-        *(
-            "### noise and suns",
-            "",
-            "Noise of one standard deviation in each texel, and a sun that crosses texels; what is left",
-        ),
-        *("in so many bands, simulated and by the formula:", ""),
-        *table(("what moves", "bands", "simulated", "formula"), simulated),
-    ]
+    noise = table(("what moves", "bands", "simulated", "formula"), simulated)
+    claim = CLAIM.format(degrees=DEGREES)
+    return [claim, "", said, "", *exact, "", *picture, *tables, NOISE_AND_SUNS, *noise]
 
 
 def _sampled_table(name: str, samples: Sequence[Sampled]) -> list[str]:

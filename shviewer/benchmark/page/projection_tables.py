@@ -38,20 +38,16 @@ def _matrix(rows: Sequence[Row], cell: Callable[[Row], str]) -> list[str]:
     """A table with a line per experiment and a column per band count; one that is too wide continues below."""
     by_place = {(row.method, row.samples, row.n_bands): cell(row) for row in rows}
     experiments, bands = _experiments(rows), sorted({row.n_bands for row in rows if row.n_bands is not None})
+
+    def part(bands: Sequence[int]) -> list[str]:
+        cells = {each: [by_place.get((*each, n), ABSENT) for n in bands] for each in experiments}
+        body = [(words_of(*each), *line) for each, line in cells.items() if set(line) != {ABSENT}]
+        return table(("", *(counted(n, "band") for n in bands)), body)
+
     found: list[str] = []
     while bands:
-        count = len(bands)
-        while True:
-            body = [
-                (words_of(*experiment), *(by_place.get((*experiment, n), ABSENT) for n in bands[:count]))
-                for experiment in experiments
-            ]
-            body = [line for line in body if set(line[1:]) != {ABSENT}]
-            drawn = table(("", *(counted(n, "band") for n in bands[:count])), body)
-            if count == 1 or len(drawn[0]) <= MOST_COLUMNS:
-                break
-            count -= 1
-        found += [*([""] if found else []), *drawn]
+        count = next((n for n in range(len(bands), 1, -1) if len(part(bands[:n])[0]) <= MOST_COLUMNS), 1)
+        found += [*([""] if found else []), *part(bands[:count])]
         bands = bands[count:]
     return found
 

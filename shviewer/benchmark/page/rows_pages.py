@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from shviewer.benchmark.measuring import end_to_end, peers
 from shviewer.benchmark.measuring import reconstruction_rows as reconstruction
-from shviewer.benchmark.page.advice import times, where_bands_stop_paying
+from shviewer.benchmark.page.advice import known, times, where_bands_stop_paying
 from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.tables import bullet, milliseconds, rows_table
 from shviewer.benchmark.rows.row import Row, alike
@@ -43,19 +43,19 @@ def peers_lines(page: Page) -> list[str]:
 
 
 def _against_peers(rows: Sequence[Row]) -> Iterator[str]:
-    """For each light and kind of data, the fastest peer at the most bands at which one was measured."""
+    """For each light, kind of data and number of bands, the fastest peer."""
+
+    def time(row: Row) -> float:
+        return known(row.milliseconds, math.inf)
+
     for light, note in dict.fromkeys((row.light, row.note) for row in rows if row.measured):
         own = [row for row in rows if (row.light, row.note) == (light, note)]
         others = [row for row in own if not row.method.startswith(peers.OURS)]
         for n_bands in sorted({row.n_bands for row in others if row.n_bands}):
             here = [row for row in own if row.n_bands == n_bands]
-            ours = min((row for row in here if row not in others), key=_milliseconds)
-            best = min((row for row in here if row in others), key=_milliseconds)
+            ours = min((row for row in here if row not in others), key=time)
+            best = min((row for row in here if row in others), key=time)
             yield f"{light}, {note}, {counted(n_bands, 'band')}: the fastest peer, {best.method}, takes {_beside(best, ours)}."
-
-
-def _milliseconds(row: Row) -> float:
-    return math.inf if row.milliseconds is None else row.milliseconds
 
 
 def _beside(best: Row, ours: Row) -> str:

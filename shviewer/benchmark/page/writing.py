@@ -31,6 +31,8 @@ measured together on one machine, which the end of the page names. Errors are re
 closed form or exact texel integrals. A *time* is the median wall time of repeated runs that took turns with those that it is
 compared with; "±12%" is half the distance of its quartiles. A dash is something that was not measured."""
 
+PARTIAL = "**This report is partial: the run did not come to its end, and what it had not measured is missing.**"
+
 NOT_COVERED = (
     "Other machines: times hold for the one below. Ratios between rows of one table travel better.",
     "Times of different tables, band counts or numbers of samples: they did not take turns. The best way and the paper's 10 000"
@@ -99,10 +101,7 @@ def as_markdown(page: Page) -> str:
     report = page.report
     lines = ["# Speed against error", ""]
     if not report.complete:
-        lines += [
-            "**This report is partial: the run did not come to its end, and what it had not measured is missing.**",
-            "",
-        ]
+        lines += [PARTIAL, ""]
     if report.warning:
         lines += [fill(f"**{report.warning[0].upper()}{report.warning[1:]}.**", 124), ""]
     lines += [INTRODUCTION, "", *([page.plot_message, ""] if page.plot_message else [])]
