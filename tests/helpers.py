@@ -9,8 +9,11 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import NoReturn, TypeVar
 
+import numpy as np
 import pytest
 
+from shviewer.errors import LightError
+from shviewer.harmonics.basis import Array
 from shviewer.lights.light import Light
 from shviewer.viewer.composing.composition import Composition, frame_for
 from shviewer.viewer.composing.panes import Box
@@ -70,6 +73,25 @@ def overlap(one: Box, other: Box) -> bool:
 
 def centre(box: Box) -> tuple[float, float]:
     return (box.left + box.right) / 2, (box.top + box.bottom) / 2
+
+
+def refusal(call: Callable[..., object], *arguments: object, **options: object) -> str:
+    """The one line of printable text with which a light is refused."""
+    with pytest.raises(LightError) as caught:
+        call(*arguments, **options)
+    line = str(caught.value)
+    assert line.isprintable()
+    return line
+
+
+def to_srgb(linear: Array) -> Array:
+    """Encoded values of linear ones, 0 to 1: IEC 61966-2-1."""
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def from_srgb(encoded: Array) -> Array:
+    """The way back."""
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 class Lazily(Mapping[str, T]):

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 import pytest
 from helpers import frame_of, picture_of
+from lights.images.hdr_files import raw_exr_header
 from PIL import Image
 from places import ENVIRONMENT
 
@@ -71,40 +72,17 @@ def flat_png(width: int, height: int, bits: int = 8, colour_type: int = 0) -> by
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
 
 
-def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:
-    return name + b"\0" + kind + b"\0" + struct.pack("<I", len(value)) + value
-
-
-def flat_exr(width: int, height: int, channels: str = "BGR", kind: int = 1, more: bytes = b"") -> bytes:
+def flat_exr(width: int, height: int, channels: str = "BGR", kind: int = 1, more: Any = None) -> bytes:
     """A black ZIP file whose chunks, of 16 rows, are all alike. kind: 1 for half, 2 for float. more: other attributes."""
-    listed = b"".join(name.encode() + b"\0" + struct.pack("<4i", kind, 0, 1, 1) for name in channels) + b"\0"
-    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    head = (
-        b"\x76\x2f\x31\x01\x02\0\0\0"
-        + more
-        + b"".join(
-            attribute(*one)
-            for one in (
-                (b"channels", b"chlist", listed),
-                (b"compression", b"compression", b"\3"),
-                (b"dataWindow", b"box2i", window),
-                (b"displayWindow", b"box2i", window),
-                (b"lineOrder", b"lineOrder", b"\0"),
-                (b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
-                (b"screenWindowCenter", b"v2f", bytes(8)),
-                (b"screenWindowWidth", b"float", struct.pack("<f", 1)),
-            )
-        )
-    )
+    window = (0, 0, width - 1, height - 1)
+    head = raw_exr_header([(name, 1) for name in channels], window, compression=3, kind=kind, more=more)
     differences = bytearray(b"\x80" * (16 * width * len(channels) * 2 * kind))
     differences[0] = 0
     packed = zlib.compress(bytes(differences))
-    start = len(head) + 1 + 8 * (height // 16)
+    start = len(head) + 8 * (height // 16)
     size = 8 + len(packed)
     offsets = b"".join(struct.pack("<Q", start + i * size) for i in range(height // 16))
-    return (
-        head + b"\0" + offsets + b"".join(struct.pack("<iI", 16 * i, len(packed)) + packed for i in range(height // 16))
-    )
+    return head + offsets + b"".join(struct.pack("<iI", 16 * i, len(packed)) + packed for i in range(height // 16))
 
 
 def in_a_process(code: str, *arguments: str, address_space: int = 0) -> subprocess.CompletedProcess[str]:
@@ -396,9 +374,9 @@ def test_a_key_of_thirty_thousand_dots_is_refused_before_it_is_parsed(
 @pytest.mark.parametrize(
     ("more", "says"),
     [
-        (b"".join(attribute(b"a%d" % i, b"int", bytes(4)) for i in range(5000)), "more than 4096 attributes"),
-        (attribute(b"note", b"string", b"x" * 2**24), "bytes of metadata"),
-        (attribute(b"more", b"chlist", b"x" * 2**17 + b"x"), "bytes of channels"),
+        ({f"a{i}": ("int", bytes(4)) for i in range(5000)}, "more than 4096 attributes"),
+        ({"note": ("string", b"x" * 2**24)}, "bytes of metadata"),
+        ({"more": ("chlist", b"x" * 2**17 + b"x")}, "bytes of channels"),
     ],
     ids=["attributes", "metadata", "channels"],
 )

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from coefficients.peer_cases import asymmetric
+from helpers import refusal
 
 from shviewer.cli.main import main
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
-from shviewer.errors import LightError, UsageError
+from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
@@ -80,10 +81,7 @@ def test_the_table_of_pyshtools_itself_is_read(tmp_path: Path) -> None:
 )
 def test_a_cilm_of_the_wrong_shape_is_one_line(array: np.ndarray, says: str, tmp_path: Path) -> None:
     np.save(tmp_path / "bad.npy", array)
-    with pytest.raises(LightError) as caught:
-        find_light(str(tmp_path / "bad.npy"), Reading(convention="shtools"))
-    assert says in str(caught.value)
-    assert "\n" not in str(caught.value)
+    assert says in refusal(find_light, str(tmp_path / "bad.npy"), Reading(convention="shtools"))
 
 
 @pytest.mark.parametrize(
@@ -105,10 +103,8 @@ def test_numbers_that_a_convention_cannot_hold_are_one_line(
     numbers: np.ndarray, convention: str, says: str, tmp_path: Path
 ) -> None:
     np.save(tmp_path / "bad.npy", numbers)
-    with pytest.raises(LightError) as caught:
-        find_light(str(tmp_path / "bad.npy"), Reading(convention=convention))
-    assert any(one in str(caught.value) for one in says.split("|"))
-    assert "\n" not in str(caught.value)
+    said = refusal(find_light, str(tmp_path / "bad.npy"), Reading(convention=convention))
+    assert any(one in said for one in says.split("|"))
 
 
 @pytest.mark.parametrize(

@@ -20,8 +20,8 @@ from coefficients.found_lists import (
     lines,
     vector,
 )
+from helpers import refusal
 
-from shviewer.errors import LightError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
@@ -38,14 +38,6 @@ def numbers(path: Path, text: str, convention: str = "shviewer") -> np.ndarray:
     light = read(path, text, convention)
     assert light.file is not None
     return light.file.numbers
-
-
-def refusal(path: Path, text: str, convention: str = "shviewer") -> str:
-    with pytest.raises(LightError) as caught:
-        read(path, text, convention)
-    message = str(caught.value)
-    assert message.isprintable()
-    return message
 
 
 @pytest.mark.parametrize("name", COLOURED)
@@ -82,7 +74,7 @@ def test_a_table_of_shtools_is_that_of_shtools(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("name", "text", "says"), REFUSED)
 def test_what_may_mean_two_things_is_refused_with_the_way_out(name: str, text: str, says: str, tmp_path: Path) -> None:
-    assert says in refusal(tmp_path / name, text)
+    assert says in refusal(read, tmp_path / name, text)
 
 
 @pytest.mark.parametrize("name", IMPLIED)
@@ -135,7 +127,7 @@ def test_a_first_number_among_others_is_no_count(tmp_path: Path) -> None:
 
 def test_a_table_of_cmgen_that_is_no_irradiance_implies_nothing(tmp_path: Path) -> None:
     text = IMPLIED["sh.txt"][0].replace("irradiance, ", "")
-    assert "a bare list of numbers" in refusal(tmp_path / "sh.txt", text, "")
+    assert "a bare list of numbers" in refusal(read, tmp_path / "sh.txt", text, "")
 
 
 def test_what_is_beside_the_coefficients_of_a_light_is_applied_or_said_not_to_be(tmp_path: Path) -> None:

@@ -107,20 +107,21 @@ def test_the_glsl_function_is_the_reconstruction(renderer: Renderer, n_bands: in
     np.testing.assert_allclose(found, wanted, rtol=0, atol=2e-6 * np.abs(wanted).max())
 
 
-@pytest.mark.parametrize("name", ["filament", "three", "unity", "unreal"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("filament", "three", "unity", "unreal"),
+        *(
+            "babylon",
+            "playcanvas",
+            "3dgs",
+            "fuma",
+            "directxmath",
+            "shviewer,order-m-major",
+        ),  # orders of rows and shifts
+    ],
+)
 def test_the_glsl_of_a_program_gives_what_that_program_holds(renderer: Renderer, name: str) -> None:
-    convention = CONVENTIONS[name]
-    over_pi = name in ("filament", "unity")
-    source = projected(3, "light", "irradiance" if over_pi else "radiance").encode(convention, "glsl").decode()
-    held = asymmetric(3) * (np.repeat([1, 2 / 3, 1 / 4], [1, 3, 5])[:, None] if over_pi else 1)
-    wanted = evaluate_basis(DIRECTIONS, 3) @ held
-    function = f"sh_light_{'irradiance_over_pi' if over_pi else 'radiance'}"
-    found = drawn(renderer, source, function, DIRECTIONS @ convention.axes.matrix.T)
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=2e-6 * np.abs(wanted).max())
-
-
-@pytest.mark.parametrize("name", ["babylon", "playcanvas", "3dgs", "fuma", "directxmath", "shviewer,order-m-major"])
-def test_the_glsl_follows_orders_of_rows_and_shifts(renderer: Renderer, name: str) -> None:
     convention = parse_convention(name)
     over_pi = convention.quantity == "irradiance-over-pi"
     source = projected(3, "light", "irradiance" if over_pi else "radiance").encode(convention, "glsl").decode()

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import OpenEXR
-from lights.images.hdr_files import exr_file, exr_part, exr_parts, hdr_file, random_texels, window
+from lights.images.hdr_files import exr_file, exr_part, exr_parts, hdr_file, random_texels, raw_exr_header, window
 from lights.images.ldr_files import (
     GREY,
     GREY_ALPHA,
@@ -251,26 +251,9 @@ def _picture(height: int, width: int, dtype: type) -> NDArray[Any]:
 
 def mip_mapped_exr() -> bytes:
     """An uncompressed file of 8 x 4 texels in tiles of 4 x 4 with its levels, which the library's Python writes not."""
-
-    def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:
-        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
-
     width, height, side = 8, 4, 4
-    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
-    corners = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    header = (
-        struct.pack("<II", 20000630, 2 | 0x200)  # one part, tiled
-        + attribute(b"channels", b"chlist", channels)
-        + attribute(b"compression", b"compression", b"\0")
-        + attribute(b"dataWindow", b"box2i", corners)
-        + attribute(b"displayWindow", b"box2i", corners)
-        + attribute(b"lineOrder", b"lineOrder", b"\0")
-        + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
-        + attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0))
-        + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1))
-        + attribute(b"tiles", b"tiledesc", struct.pack("<IIB", side, side, 1))
-        + b"\0"
-    )
+    tiles = {"tiles": ("tiledesc", struct.pack("<IIB", side, side, 1))}
+    header = raw_exr_header([(c, 1) for c in "BGR"], (0, 0, width - 1, height - 1), flags=0x200, more=tiles)
     chunks = []
     for level in range(4):  # 8 x 4, 4 x 2, 2 x 1, 1 x 1
         columns, rows = max(width >> level, 1), max(height >> level, 1)

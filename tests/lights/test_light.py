@@ -7,10 +7,10 @@ import sys
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
+from helpers import refusal
 from lights.images.hdr_files import exr_file, hdr_file, random_texels
 from numpy.testing import assert_allclose, assert_array_equal
 
-from shviewer.errors import LightError
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, jittered
 from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
@@ -23,14 +23,6 @@ from shviewer.lights.reading import Reading
 
 SCENE = '[[lobe]]\nprofile = "gaussian"\naxis = [1, 2, -1]\nradiance = [3, 2, 1]\nsharpness = 5\n'
 FUNCTION = "import numpy as np\ndef dusk(d):\n    return np.exp(d * [1, -2, 0.5])\n"
-
-
-def refusal(text):
-    with pytest.raises(LightError) as caught:
-        find_light(text)
-    line = str(caught.value)
-    assert "\n" not in line
-    return line
 
 
 def smooth_image(height=64, width=128):
@@ -64,14 +56,14 @@ def test_every_built_in_light_is_found_by_its_name(name):
     ("text", "near"), [("gren", "green"), ("hemispere", "hemisphere"), ("sunsky", "sun-sky"), ("Green", "green")]
 )
 def test_a_misspelt_light_is_answered_with_the_nearest_names(text, near):
-    line = refusal(text)
+    line = refusal(find_light, text)
     assert line.startswith(f"unknown light {text!r}: did you mean {near}")
     assert line.endswith("?")
     assert difflib.get_close_matches(text, list(built_in_lights()), cutoff=0.5)[0] == near
 
 
 def test_a_light_like_no_other_is_answered_with_all_names():
-    assert refusal("qqqqqq") == f"unknown light 'qqqqqq': there is: {', '.join(built_in_lights())}"
+    assert refusal(find_light, "qqqqqq") == f"unknown light 'qqqqqq': there is: {', '.join(built_in_lights())}"
 
 
 def test_a_scene_file_is_found_by_its_path(tmp_path):
@@ -111,10 +103,10 @@ def test_a_function_is_found_by_its_file_and_name(tmp_path):
 
 def test_missing_and_damaged_files_are_one_line(tmp_path):
     (tmp_path / "text.hdr").write_text("no picture")
-    assert "none.toml" in refusal(str(tmp_path / "none.toml"))
-    assert "none.exr" in refusal(str(tmp_path / "none.exr"))
-    assert "text.hdr" in refusal(str(tmp_path / "text.hdr"))
-    assert "no such file" in refusal(f"{tmp_path / 'none.py'}:dusk")
+    assert "none.toml" in refusal(find_light, str(tmp_path / "none.toml"))
+    assert "none.exr" in refusal(find_light, str(tmp_path / "none.exr"))
+    assert "text.hdr" in refusal(find_light, str(tmp_path / "text.hdr"))
+    assert "no such file" in refusal(find_light, f"{tmp_path / 'none.py'}:dusk")
 
 
 @pytest.mark.parametrize(
@@ -135,7 +127,7 @@ def test_a_file_of_another_kind_is_told_the_kinds(tmp_path, name, said):
         path.mkdir()
     else:
         path.write_text("")
-    assert refusal(str(path)) == f"unknown light {str(path)!r}: {said}"
+    assert refusal(find_light, str(path)) == f"unknown light {str(path)!r}: {said}"
 
 
 @pytest.mark.parametrize(
@@ -150,14 +142,14 @@ def test_a_file_of_another_kind_is_told_the_kinds(tmp_path, name, said):
 )
 def test_a_colon_that_names_nothing_is_told_what_it_could_name(tmp_path, text, said):
     path = tmp_path / text
-    assert refusal(text) == f"unknown light {text!r}: {said}"
+    assert refusal(find_light, text) == f"unknown light {text!r}: {said}"
     (tmp_path / text.rpartition(":")[0]).write_bytes(b"")
-    assert refusal(str(path)) == f"unknown light {str(path)!r}: {said}"
+    assert refusal(find_light, str(path)) == f"unknown light {str(path)!r}: {said}"
 
 
 @pytest.mark.parametrize("text", ["a" * 300, "a" * 300 + ".py:dusk"], ids=["name", "function"])
 def test_a_name_longer_than_any_file_may_have_is_one_line(text):
-    refusal(text)
+    refusal(find_light, text)
 
 
 @pytest.fixture(params=["scene", "image", "function", "coefficients", "green", "studio", "cosine", "venice_sunset"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from helpers import to_srgb
 
 from shviewer.analysis.comparison import verdict
 from shviewer.harmonics.basis import Array, evaluate_basis
@@ -37,10 +38,6 @@ def summed(values: Array, n_bands: int, *, weighed: bool) -> Array:
     )
 
 
-def srgb(values: Array) -> Array:
-    return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
-
-
 def said(light: Light, coefficients: Array) -> str:
     return verdict(light, CoefficientLight(coefficients, "theirs"))
 
@@ -53,8 +50,8 @@ def test_the_usual_mistakes_with_an_image_are_named(n_bands: int, seed: int) -> 
     for values, weighed, words in (
         (pixels, False, "all texels count alike, without sin(theta)"),
         (np.minimum(pixels, 1), True, "radiance is clamped at 1"),
-        (srgb(pixels), True, "radiance is encoded for a display"),
-        (srgb(np.minimum(pixels, 1)), True, "radiance is clamped at 1 and encoded for a display"),
+        (to_srgb(pixels), True, "radiance is encoded for a display"),
+        (to_srgb(np.minimum(pixels, 1)), True, "radiance is clamped at 1 and encoded for a display"),
         (np.minimum(pixels, 1), False, "radiance is clamped at 1 and all texels count alike, without sin(theta)"),
     ):
         line = said(light, summed(values, n_bands, weighed=weighed))

@@ -107,33 +107,41 @@ def window(left, top, right, bottom):
     return (np.array([left, top], np.int32), np.array([right, bottom], np.int32))
 
 
-def bare_exr(data_window=(0, 0, 7, 3), display_window=None, deep=False, channels=(("B", 1), ("G", 1), ("R", 1))):
-    """An OpenEXR file of a header and an empty chunk table, for headers that the library would not write.
+def raw_exr_header(channels, data_window, *, display_window=None, flags=0, compression=0, kind=2, more=None):
+    """The header of an OpenEXR file, whatever the library would write.
 
-    channels: (name, subsampling) in alphabetical order.
+    channels: (name, subsampling) in alphabetical order, all of one kind (1: half, 2: float). more: name -> (type, value).
     """
+    listed = [name.encode() + b"\0" + struct.pack("<4i", kind, 0, step, step) for name, step in channels]
+    attributes = {
+        "channels": ("chlist", b"".join(listed) + b"\0"),
+        "compression": ("compression", bytes((compression,))),
+        "dataWindow": ("box2i", struct.pack("<4i", *data_window)),
+        "displayWindow": ("box2i", struct.pack("<4i", *(display_window or data_window))),
+        "lineOrder": ("lineOrder", b"\0"),
+        "pixelAspectRatio": ("float", struct.pack("<f", 1)),
+        "screenWindowCenter": ("v2f", bytes(8)),
+        "screenWindowWidth": ("float", struct.pack("<f", 1)),
+        **(more or {}),
+    }
+    written = [
+        f"{name}\0{of}\0".encode() + struct.pack("<i", len(data)) + data for name, (of, data) in attributes.items()
+    ]
+    return struct.pack("<II", 20000630, 2 | flags) + b"".join(written) + b"\0"
 
-    def attribute(name, kind, value):
-        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
 
-    entries = [name.encode() + b"\0" + struct.pack("<iB3xii", 2, 0, step, step) for name, step in channels]
+def bare_exr(data_window=(0, 0, 7, 3), display_window=None, deep=False, channels=(("B", 1), ("G", 1), ("R", 1))):
+    """An OpenEXR file of a header and an empty chunk table. channels: (name, subsampling) in alphabetical order."""
     chunks = 4
-    return (
-        struct.pack("<II", 20000630, 2 | (0x800 if deep else 0))
-        + attribute(b"channels", b"chlist", b"".join(entries) + b"\0")
-        + attribute(b"chunkCount", b"int", struct.pack("<i", chunks))
-        + attribute(b"compression", b"compression", b"\0")
-        + attribute(b"dataWindow", b"box2i", struct.pack("<4i", *data_window))
-        + attribute(b"displayWindow", b"box2i", struct.pack("<4i", *(display_window or data_window)))
-        + attribute(b"lineOrder", b"lineOrder", b"\0")
-        + attribute(b"name", b"string", b"only")
-        + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1.0))
-        + attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0.0, 0.0))
-        + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1.0))
-        + attribute(b"type", b"string", b"deepscanline" if deep else b"scanlineimage")
-        + attribute(b"version", b"int", struct.pack("<i", 1))
-        + b"\0"
-        + bytes(8 * chunks)
+    more = {
+        "chunkCount": ("int", struct.pack("<i", chunks)),
+        "name": ("string", b"only"),
+        "type": ("string", b"deepscanline" if deep else b"scanlineimage"),
+        "version": ("int", struct.pack("<i", 1)),
+    }
+    flags = 0x800 if deep else 0
+    return raw_exr_header(channels, data_window, display_window=display_window, flags=flags, more=more) + bytes(
+        8 * chunks
     )
 
 
@@ -177,7 +185,7 @@ GOLDEN_PIXELS = [
 
 def checked_message(error, name):
     message = str(error)
-    assert "\n" not in message
+    assert message.isprintable()
     assert name in message.split(": ")[0]
     return message
 

@@ -4,6 +4,7 @@ import io
 
 import numpy as np
 import pytest
+from helpers import from_srgb
 from lights.images.hdr_files import assert_same
 from lights.images.ldr_files import (
     ISO,
@@ -48,11 +49,6 @@ def codes_of(data):
     return np.asarray(Image.open(io.BytesIO(data))).astype(np.float64)
 
 
-def srgb_light(codes):
-    encoded = codes / 255
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-
-
 def formula(light, share, low, high, gamma, base, alternate):
     """The recipe of the specification, a channel at a time in float64."""
     channels = []
@@ -84,7 +80,7 @@ def test_a_gain_map_is_applied_at_its_full_headroom(read, metadata, settings, gr
     picture, gain_map = jpeg(PICTURE), jpeg(MAP[..., 0].copy() if grey else MAP)
     image = read(ultra_hdr(picture, gain_map, metadata), "light.jpg")
     share = codes_of(gain_map).reshape(*MAP.shape[:2], -1) / 255
-    expected = formula(srgb_light(codes_of(picture)), np.broadcast_to(share, PICTURE.shape), *three(settings))
+    expected = formula(from_srgb(codes_of(picture) / 255), np.broadcast_to(share, PICTURE.shape), *three(settings))
     np.testing.assert_allclose(image.pixels, expected, rtol=1e-5, atol=1e-6)  # float32 in powers and differences
     assert image.encoding == "JPEG, 8 bit sRGB with a gain map (HDR)"
     stops = settings["HDRCapacityMax"]
@@ -135,7 +131,7 @@ def test_the_gain_belongs_to_the_primaries_that_its_metadata_name(read):
     """In the picture's (the flag of ISO, and XMP) or in those of the map's own profile."""
     p3, linear_srgb = icc_profile("P3", P3_COLUMNS), icc_profile("s", SRGB_COLUMNS, (LINEAR_CURVE,))
     picture = jpeg(PICTURE, icc_profile=p3)
-    light = srgb_light(codes_of(picture))
+    light = from_srgb(codes_of(picture) / 255)
     srgb, wide = np.transpose(SRGB_COLUMNS), np.transpose(P3_COLUMNS)
     to_709 = np.linalg.inv(srgb) @ wide
     numbers = [np.full(3, v) for v in (0.0, 3.0, 1.0, 1 / 64, 1 / 64)]

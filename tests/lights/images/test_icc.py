@@ -5,6 +5,7 @@ import zlib
 
 import numpy as np
 import pytest
+from helpers import to_srgb
 from lights.images.hdr_files import assert_same
 from lights.images.ldr_files import (
     ADOBE_COLUMNS,
@@ -59,8 +60,7 @@ def as_lcms(codes, profile):
 
 
 def srgb_codes(light):
-    light = np.clip(light, 0, 1)
-    return 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    return 255 * to_srgb(np.clip(light, 0, 1))
 
 
 @pytest.mark.parametrize("profile", PROFILES.values(), ids=PROFILES)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers import frame_of, picture_of
+from helpers import frame_of, picture_of, to_srgb
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from viewer.gl.frames import map_frame, positions, square_frame
@@ -33,10 +33,6 @@ BRIGHT, DARK, EDGE = (120, 170, 255), (40, 40, 44), (176, 206, 255)
 NEGATIVE = np.array([0.06, 0.40, 1.0])
 
 ORIGINAL, RECONSTRUCTION = 0, 1
-
-
-def to_srgb(linear: Array) -> Array:
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
 
 
 def twin(picture: Picture, frame: Composition, radiance: Array, side: int) -> Iterator[Array]:

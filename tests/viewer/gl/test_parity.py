@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
-from helpers import picture_of
+from helpers import from_srgb, picture_of, to_srgb
 from numpy.typing import NDArray
 from PIL import Image
 from viewer.gl.frames import (
@@ -304,17 +304,6 @@ def test_turning_the_light_is_the_same_as_turning_the_camera_the_other_way(rende
 # --- the picture as seen
 
 
-def srgb(value: Array) -> Array:
-    """IEC 61966-2-1."""
-    value = np.clip(value, 0, 1)
-    return np.where(value <= 0.0031308, 12.92 * value, 1.055 * value ** (1 / 2.4) - 0.055)
-
-
-def from_srgb(value: NDArray[np.uint8]) -> Array:
-    share = value / 255
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-
-
 def seen_picture(renderer: Renderer, picture: Picture, frame: Composition | None = None) -> NDArray[np.uint8]:
     return render_rgb(renderer, picture, frame or square_frame(), overlay=False)
 
@@ -330,7 +319,7 @@ def test_what_is_seen_is_the_standards_srgb_of_the_linear_picture(renderer: Rend
         lambda d: np.stack([0.6 + 0.6 * d[:, 0], (1 + d[:, 1]) ** 8 / 256, 0.002 + 0 * d[:, 2]], axis=1)
     )
     picture = picture_of(light, exposure_stops=0.25, n_bands=3, marks=False)
-    wanted = 255 * srgb(2**0.25 * linear(renderer, picture).astype(np.float64))
+    wanted = 255 * to_srgb(np.clip(2**0.25 * linear(renderer, picture).astype(np.float64), 0, 1))
     mask = inner(square_frame(), ORIGINAL)
     difference = np.abs(seen_picture(renderer, picture)[mask] - wanted[mask])
     assert wanted[mask].max() > 254.99
@@ -365,7 +354,7 @@ def test_negative_radiance_stays_negative_in_numbers_and_is_blue_to_the_eye(rend
     assert (blue > green + 4).all()
     assert (green > red).all()
     grown = radiance[:, :1] / (radiance[:, :1] - NEGATIVE_KNEE) * NEGATIVE_FILL * NEGATIVE_HUE
-    np.testing.assert_allclose(np.stack([red, green, blue], axis=1), 255 * srgb(grown), rtol=0, atol=1)
+    np.testing.assert_allclose(np.stack([red, green, blue], axis=1), 255 * to_srgb(grown), rtol=0, atol=1)
 
 
 def test_a_negative_channel_under_a_positive_luminance_keeps_the_others(renderer: Renderer) -> None:
@@ -373,7 +362,7 @@ def test_a_negative_channel_under_a_positive_luminance_keeps_the_others(renderer
     picture = picture_of(light, exposure_stops=0.0, marks=False)
     np.testing.assert_allclose(linear(renderer, picture)[64, 64], [-0.1, 0.5, 0.25], rtol=0, atol=1e-7)
     np.testing.assert_allclose(
-        seen_picture(renderer, picture)[64, 64], 255 * srgb(np.array([0, 0.5, 0.25])), rtol=0, atol=1
+        seen_picture(renderer, picture)[64, 64], 255 * to_srgb(np.array([0, 0.5, 0.25])), rtol=0, atol=1
     )
 
 
@@ -385,7 +374,7 @@ def test_an_unlit_sphere_is_black_and_the_background_is_one_grey(renderer: Rende
     for side, sphere in enumerate(frame.spheres):
         assert not shown[inner(frame, side)].any()
         outside &= np.linalg.norm(positions(frame, sphere), axis=-1) > 1 + 1.5 / sphere.radius
-    grey = np.round(255 * srgb(np.array(BACKGROUND)))
+    grey = np.round(255 * to_srgb(np.array(BACKGROUND)))
     np.testing.assert_array_equal(np.unique(shown[outside], axis=0), [grey])
     assert grey.min() > 30
 
@@ -402,7 +391,7 @@ def test_the_rim_is_as_soft_as_256_samples_a_pixel_make_it(renderer: Renderer, s
     """Coverage from the distance along the normal: measured 0.003 mean and 0.06 largest error (rendering.md 2)."""
     frame = square_frame(side)
     white = picture_of("constant", exposure_stops=0.0)
-    shown = from_srgb(seen_picture(renderer, white, frame))[..., 1]
+    shown = from_srgb(seen_picture(renderer, white, frame) / 255)[..., 1]
     coverage = (shown - BACKGROUND[1]) / (1 - BACKGROUND[1])
     for sphere in frame.spheres:
         offsets = (np.arange(16) + 0.5) / 16 - 0.5
@@ -421,7 +410,7 @@ def test_the_edge_of_a_sun_is_soft_to_the_eye_and_hard_in_numbers(renderer: Rend
     picture = picture_of(sun, camera=(0.0, 0.0), exposure_stops=0.0)
     mask = inner(square_frame(), ORIGINAL)
     assert set(np.unique(linear(renderer, picture)[mask])) == {np.float32(0), np.float32(0.8)}
-    shown = from_srgb(seen_picture(renderer, picture))[mask][:, 0] / 0.8
+    shown = from_srgb(seen_picture(renderer, picture) / 255)[mask][:, 0] / 0.8
     between = (shown > 0.1) & (shown < 0.9)
     circumference = 2 * np.pi * np.sin(0.3) * square_frame().spheres[ORIGINAL].radius
     assert 0.5 * circumference < between.sum() < 2 * circumference  # about one pixel wide

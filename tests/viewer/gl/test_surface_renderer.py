@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 import pytest
+from helpers import from_srgb, to_srgb
 from numpy.typing import NDArray
 from viewer.gl.frames import sum_of_harmonics
 from viewer.gl.silhouettes import coverage, outline
@@ -36,7 +37,7 @@ SPHERE = Sphere(230.37, 229.81, 222.0, Box(0, 0, SIDE, SIDE))
 SKEW = world_from_view(30.0, 20.0)
 FRONT = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """The light's y to the right, its z up, its x to the viewer."""
-EMPTY = np.round(255 * (1.055 * np.array(BACKGROUND) ** (1 / 2.4) - 0.055)).astype(int)
+EMPTY = np.round(255 * to_srgb(np.array(BACKGROUND))).astype(int)
 
 
 @dataclass
@@ -303,11 +304,9 @@ def test_edges_are_blended_in_linear_light(frame: Frame, monkeypatch: pytest.Mon
         for dx in range(fine):
             shift = ((0.5 + dx) / fine - 0.5, (0.5 + dy) / fine - 0.5)
             moved = SPHERE._replace(x=SPHERE.x - shift[0], y=SPHERE.y - shift[1])
-            single = Frame(frame.context, frame.target, surfaces).draw(shown, SKEW, moved) / 255
-            sum_ += np.where(single <= 0.04045, single / 12.92, ((single + 0.055) / 1.055) ** 2.4)
+            sum_ += from_srgb(Frame(frame.context, frame.target, surfaces).draw(shown, SKEW, moved) / 255)
     surfaces.release()
-    mean = sum_ / fine**2
-    wanted = 255 * np.where(mean <= 0.0031308, 12.92 * mean, 1.055 * mean ** (1 / 2.4) - 0.055)
+    wanted = 255 * to_srgb(sum_ / fine**2)
     y, x = np.indices((side, side))
     off_ring = np.abs(np.hypot(x + 0.5 - SPHERE.x, SPHERE.y - y - 0.5) - SPHERE.radius) > 2
     difference = (pixels - wanted)[off_ring]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
-from helpers import picture_of
+from helpers import picture_of, to_srgb
 from viewer.gl.frames import lobes, map_directions, map_frame, reconstructing, square_frame, sum_of_harmonics
 
 from shviewer.harmonics.basis import Array
@@ -90,8 +90,7 @@ def test_a_map_finer_than_the_pixels_is_averaged_and_one_that_is_not_is_left_alo
     picture = picture_of(EnvironmentLight(LatLongMap(texels)), n_bands=1, exposure_stops=0.0, marks=False)
     drawn = render_rgb(renderer, picture, map_frame(64), overlay=False)[:, :64]
     mean = texels.astype(np.float64).reshape(32, finer, 64, finer, 3).mean(axis=(1, 3))
-    wanted = 255 * (1.055 * mean ** (1 / 2.4) - 0.055)
-    assert np.abs(drawn - wanted).max() < 1.5
+    assert np.abs(drawn - 255 * to_srgb(mean)).max() < 1.5
     drawn_linear, directions = shown(renderer, picture, map_frame(64), ORIGINAL)
     np.testing.assert_allclose(drawn_linear, picture.light.radiance(directions), rtol=0, atol=1e-4)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers import Lazily, frame_of, overlap, picture_of
+from helpers import Lazily, frame_of, from_srgb, overlap, picture_of
 from numpy.typing import NDArray
 
 from shviewer.lights.environment import EnvironmentLight
@@ -117,8 +117,7 @@ def contrast(ink: Ink, ground: Ink) -> float:
 
 
 def luminance(ink: Ink) -> float:
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (part / 255 for part in ink[:3])]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    return float(from_srgb(np.array(ink[:3]) / 255) @ [0.2126, 0.7152, 0.0722])
 
 
 @pytest.mark.parametrize(
