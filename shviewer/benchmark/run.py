@@ -240,7 +240,7 @@ def _end_to_end(run: Run, drawing: Renderer | str) -> None:
 
 
 def _moving(run: Run) -> None:
-    seed, found = run.options.seed, list[moving.Sampled]()
+    seed, found = run.options.seed, list[moving.SamplingError]()
     exact = {measured.name: moving.turned_exactly(measured) for measured in run.lights}
     stated = [*moving_texels.noise(seed), *moving_texels.sun(seed)]
     rounds = [(one, count, way) for one in run.lights for count in moving.SAMPLES for way in moving.WAYS]

@@ -26,7 +26,7 @@ FAILED = 1
 
 
 @dataclass(frozen=True)
-class Row:
+class SummaryRow:
     """A row of the summary: what became of one light."""
 
     light: str
@@ -46,7 +46,7 @@ def project_batch(
 ) -> int:
     """Project every light and write it into `folder`, made if need be; return the exit code. jobs: as in `jobs.in_order`."""
     make_folder(folder)
-    rows: list[Row] = []
+    rows: list[SummaryRow] = []
     outcomes = in_order(partial(_projected_alone, projected_of), lights, jobs)
     with status_line() as line:
         for number, light in enumerate(lights):
@@ -65,12 +65,12 @@ def project_batch(
                     write_atomically(path, projected.encode(convention, kind))
                     warn_below_zero(projected)
             except ShviewerError as error:
-                rows.append(Row(light))
+                rows.append(SummaryRow(light))
                 if line:
                     line.clear()
                 print(f"shviewer: {error}", file=sys.stderr)
             else:
-                rows.append(Row(light, str(path), projected))
+                rows.append(SummaryRow(light, str(path), projected))
     print(summary(rows))
     return FAILED if any(row.projected is None for row in rows) else 0
 
@@ -107,7 +107,7 @@ def _free(folder: Path, stem: str, kind: str, taken: set[str]) -> Path:
     return next(folder / name for name in names if str(folder / name) not in taken)
 
 
-def summary(rows: Sequence[Row]) -> str:
+def summary(rows: Sequence[SummaryRow]) -> str:
     """A table: light, bands, relative L2 errors of the quantities, the minimum of the one that is written, and the file."""
     width = max(len("light"), *(min(len(row.light), 40) for row in rows))
     done = [row.projected for row in rows if row.projected is not None]

@@ -12,7 +12,7 @@ from places import kernels
 
 from shviewer.benchmark.measuring import moving
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight, measured_light
-from shviewer.benchmark.measuring.moving import BANDS, MOST, WAYS, Sampled, sampled, turned_exactly
+from shviewer.benchmark.measuring.moving import BANDS, MOST, WAYS, SamplingError, sampled, turned_exactly
 from shviewer.benchmark.measuring.moving_texels import noise, sun
 from shviewer.benchmark.options import Options
 from shviewer.benchmark.page.moving_page import STEM, answer, lines
@@ -34,11 +34,11 @@ def green() -> MeasuredLight:
 
 
 @pytest.fixture(scope="module")
-def few(green: MeasuredLight) -> list[Sampled]:
+def few(green: MeasuredLight) -> list[SamplingError]:
     return [one for way in WAYS for number in (100, 1000) for one in sampled(green, way, number, 0)]
 
 
-def of(found: list[Sampled], way: str, samples: int, n_bands: int) -> Sampled:
+def of(found: list[SamplingError], way: str, samples: int, n_bands: int) -> SamplingError:
     return next(one for one in found if (one.way, one.samples, one.n_bands) == (way, samples, n_bands))
 
 
@@ -49,7 +49,7 @@ def test_a_light_that_is_projected_exactly_does_not_flicker_when_it_turns(green:
     assert turned_exactly(measured_light(find_light("venice_sunset"))) is None
 
 
-def test_independent_samples_have_the_error_of_the_formula(few: list[Sampled]) -> None:
+def test_independent_samples_have_the_error_of_the_formula(few: list[SamplingError]) -> None:
     for samples in (100, 1000):
         for n_bands in BANDS[2:]:  # 64 frames of n^2 numbers each
             one = of(few, INDEPENDENT, samples, n_bands)
@@ -57,7 +57,7 @@ def test_independent_samples_have_the_error_of_the_formula(few: list[Sampled]) -
             assert one.flicker == pytest.approx(np.sqrt(2) * one.rms, rel=0.1)  # fresh ones know nothing of each other
 
 
-def test_sampled_lights_flicker_as_others_have_simulated(few: list[Sampled]) -> None:
+def test_sampled_lights_flicker_as_others_have_simulated(few: list[SamplingError]) -> None:
     """Other seeds and another axis: a fifth is what 64 frames leave open where the errors of few cells are alike."""
     for key, way in (("jittered new seed|100", FRESH), ("independent new seed|100", INDEPENDENT)):
         wanted = REFERENCE["sampling"][f"green|{key}"]
@@ -74,7 +74,7 @@ def test_a_frame_takes_milliseconds_of_the_clock(green: MeasuredLight, monkeypat
     assert {one.milliseconds for one in sampled(green, SAME, 100, 0)} == {250.0}
 
 
-def test_the_same_samples_flicker_less_and_are_as_wrong(few: list[Sampled]) -> None:
+def test_the_same_samples_flicker_less_and_are_as_wrong(few: list[SamplingError]) -> None:
     fresh, same = of(few, FRESH, 961, 5), of(few, SAME, 961, 5)
     assert same.flicker < fresh.flicker / 5
     assert same.rms == pytest.approx(fresh.rms, rel=0.5)
@@ -117,7 +117,7 @@ def test_a_sun_that_hops_moves_all_bands_and_one_that_is_sampled_at_points_comes
     assert points.simulated == pytest.approx(points.formula, rel=0.3)  # about 30 of 4000 places are lit
 
 
-def test_the_answer_names_the_figures_of_the_run_and_stands_without_samples(few: list[Sampled]) -> None:
+def test_the_answer_names_the_figures_of_the_run_and_stands_without_samples(few: list[SamplingError]) -> None:
     stated = [*noise(0), *sun(0)]
     said = answer(few, stated)
     assert said.startswith("Half true.")

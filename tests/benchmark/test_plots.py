@@ -19,7 +19,7 @@ from shviewer.benchmark.measuring.bands import ROUGHNESS_KEY, roughness_extra, s
 from shviewer.benchmark.measuring.evaluations import CACHED, DIRECT, PER_FRAME
 from shviewer.benchmark.measuring.experiments import METHODS
 from shviewer.benchmark.measuring.measured_lights import measured_light
-from shviewer.benchmark.measuring.moving import BANDS, WAYS, Sampled
+from shviewer.benchmark.measuring.moving import BANDS, WAYS, SamplingError
 from shviewer.benchmark.measuring.moving import SECTION as MOVING
 from shviewer.benchmark.page.bands_page import serves_lines
 from shviewer.benchmark.page.plot_marks import (
@@ -96,7 +96,7 @@ def everything() -> Report:
         projected(each.name, 2.0**k * (1 + j), 0.5 / (k + j + 1)) for j, each in enumerate(METHODS) for k in range(4)
     ]
     sampled = [
-        asdict(Sampled("green", way, n, b, 0.1, 0.1, 0.1, 1.0))
+        asdict(SamplingError("green", way, n, b, 0.1, 0.1, 0.1, 1.0))
         for way in WAYS
         for n in (100, 961, 10_000)
         for b in BANDS

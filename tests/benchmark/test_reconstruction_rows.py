@@ -22,7 +22,7 @@ from shviewer.benchmark.measuring.evaluations import (
     PER_MILLION,
     SCATTERED,
     Evaluations,
-    Frame,
+    ShaderFrame,
 )
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight, measured_light
 from shviewer.benchmark.measuring.reconstruction_rows import reconstruction_rows
@@ -99,7 +99,7 @@ def test_an_error_in_the_coefficients_drawn_is_seen(green: MeasuredLight, render
     stage = Evaluations(green, 5)
     brighter = replace(stage.direct, drawn=DirectSum(1.01 * stage.coefficients))
     with offscreen(renderer, FRAME) as target:
-        found = Frame(renderer, target)._error(stage, brighter)
+        found = ShaderFrame(renderer, target)._error(stage, brighter)
     kept = np.sqrt(1 - green.truncation[4] ** 2)
     assert found == pytest.approx(0.01 * kept, rel=0.1)  # on the part of the sphere that is compared
 

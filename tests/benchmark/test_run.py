@@ -17,7 +17,7 @@ from shviewer.benchmark import run as run_module
 from shviewer.benchmark.measuring import end_to_end, projection_rows, timing
 from shviewer.benchmark.options import Clock, Options
 from shviewer.benchmark.page import plots
-from shviewer.benchmark.page.projection_tables import _matrix
+from shviewer.benchmark.page.rows_pages import _matrix
 from shviewer.benchmark.rows.report import read_report
 from shviewer.benchmark.rows.row import COLUMNS, Row
 from shviewer.benchmark.run import write_report

@@ -1,8 +1,7 @@
 """Hard cases of evaluating the basis: factorials, poles, the seam, and directions of any length.
 
-Each function returns the error of `evaluate`, which is the code under test unless a test passes another one.
-
-The bound is `rounding(n)` unless another is named.
+Each function returns the error of the code under test, or of another `evaluate` that a test passes. The bound is `rounding(n)`
+unless another is named.
 """
 
 from __future__ import annotations
@@ -112,7 +111,7 @@ def _norm_at_pole(l: int, m: int) -> Decimal:
     return -square.sqrt() if m % 2 else square.sqrt()
 
 
-def underflow(evaluate: Evaluate = evaluate_basis) -> float:
+def underflow() -> float:
     """Degrees 1000 to 1399 where sin(theta) = 1/e: sin^m falls to e^-1399, out of float64.
 
     Bound: DEGREE_1024 carried on in proportion to n, which is more than it grows.
@@ -120,7 +119,7 @@ def underflow(evaluate: Evaluate = evaluate_basis) -> float:
     sine = np.exp(-1)
     directions = np.array([[sine * np.cos(1), sine * np.sin(1), np.sqrt(1 - sine**2)]])
     orders = [0, 1, -2, *range(100, MAX_BANDS, 50), *range(-740, -600, 20), MAX_BANDS - 1]
-    return against_exact(evaluate, directions, MAX_BANDS, orders, range(1000, MAX_BANDS))
+    return against_exact(evaluate_basis, directions, MAX_BANDS, orders, range(1000, MAX_BANDS))
 
 
 def near_poles(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
@@ -134,7 +133,7 @@ def near_poles(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
     return against_exact(evaluate, np.concatenate([near, near * [1, 1, -1]]), n_bands, orders)
 
 
-def exact_poles(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
+def exact_poles(n_bands: int) -> float:
     """x = y = 0 of either sign: Y(l, 0) = (+-1)^l sqrt((2l+1)/4pi) and all others 0.
 
     Bound: DEGREE_1024, beyond that in proportion to n.
@@ -144,7 +143,7 @@ def exact_poles(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
     wanted = np.zeros((4, n_bands**2))
     wanted[:, l * (l + 1)] = np.sqrt((2 * l + 1) / (4 * np.pi))
     wanted[1::2, l * (l + 1)] *= (-1.0) ** l
-    return largest(np.asarray(evaluate(directions, n_bands)) - wanted)
+    return largest(evaluate_basis(directions, n_bands) - wanted)
 
 
 def seam(evaluate: Evaluate = evaluate_basis) -> float:
@@ -158,11 +157,11 @@ def seam(evaluate: Evaluate = evaluate_basis) -> float:
     return worst
 
 
-def seam_values(evaluate: Evaluate = evaluate_basis) -> float:
+def seam_values() -> float:
     """Values on the seam and 5e-324 to 1e-3 beside it."""
     beside = np.array([0.0, -0.0, 5e-324, -1e-300, 1e-16, -1e-9, 1e-3])
     directions = np.stack([np.full(7, -0.6), beside, np.full(7, 0.8)], axis=-1)
-    return against_exact(evaluate, directions, 129, (0, 1, -1, 2, -7, 64, -64, 127, -128))
+    return against_exact(evaluate_basis, directions, 129, (0, 1, -1, 2, -7, 64, -64, 127, -128))
 
 
 def any_length(evaluate: Evaluate = evaluate_basis) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shviewer.benchmark.hard_cases.shader import View
+from shviewer.benchmark.hard_cases.shader import DrawnSum
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Case:
     """The bound for the result of `measure`. The docstring of the function behind `measure` says where it comes from."""
     measure: Callable[[], float]
     """The error of the code under test, in float64."""
-    views: Callable[[], Sequence[View]] | None = None
+    views: Callable[[], Sequence[DrawnSum]] | None = None
     """The views that the shader draws for this case; None if no shader is concerned."""
 
 

@@ -1,6 +1,6 @@
 """Hard cases of projecting radiance: images, suns, cancelling and endless sums.
 
-Functions take the code under test as an argument, which is that of harmonics/ unless a test passes other code.
+Each function returns the error of the code under test, or of other code that a test passes.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def _speckle(shape: tuple[int, int]) -> NDArray[np.float32]:
 def many_samples(project: ProjectSamples = project_samples) -> float:
     """1e7 samples of radiance 0.1 towards +z, relative to the exact coefficients of 2 bands. Bound: BLAS_SUM."""
     wanted = np.array([1, 0, math.sqrt(3), 0]) * (0.1 * math.sqrt(4 * math.pi))
-    found = project(lambda directions: np.full((len(directions), 3), 0.1), _same_direction(MANY), 2)
+    found = project(lambda directions: np.full((len(directions), 3), 0.1), _many_samples_north(), 2)
     return largest((found - wanted[:, None]) / wanted[0])
 
 
@@ -136,15 +136,14 @@ def many_cancelling_samples(project: ProjectSamples = project_samples) -> float:
         return np.repeat((np.where(number < MANY // 2, 1e6, -1e6) + 1e-3)[:, None], 3, axis=1)
 
     wanted = ((1e6 + 1e-3) + (-1e6 + 1e-3)) / 2 * math.sqrt(4 * math.pi)
-    found = project(radiance, _same_direction(MANY), 1)
+    found = project(radiance, _many_samples_north(), 1)
     return largest(found - wanted) / (1e6 * math.sqrt(4 * math.pi))
 
 
-def _same_direction(count: int) -> DirectionSet:
-    """`count` samples in the direction +z, in the memory of one."""
-    return DirectionSet(
-        np.broadcast_to(np.array([0.0, 0.0, 1.0]), (count, 3)), np.broadcast_to(np.float64(4 * np.pi / count), (count,))
-    )
+def _many_samples_north() -> DirectionSet:
+    """MANY samples in the direction +z, in the memory of one."""
+    north, weight = np.array([0.0, 0.0, 1.0]), np.float64(4 * np.pi / MANY)
+    return DirectionSet(np.broadcast_to(north, (MANY, 3)), np.broadcast_to(weight, (MANY,)))
 
 
 def suns(degrees: Sequence[float], zonal: Zonal = lambda angle, n: Disc(angle).zonal(n)) -> float:

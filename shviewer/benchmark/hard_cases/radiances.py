@@ -9,7 +9,6 @@ import numpy as np
 
 from shviewer.benchmark.hard_cases.figures import shown_as
 from shviewer.benchmark.hard_cases.outcome import Case, largest
-from shviewer.benchmark.hard_cases.projecting import ProjectImage
 from shviewer.benchmark.hard_cases.shader import SEED, SUN_AXIS
 from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
@@ -55,21 +54,21 @@ def black(figures: Callable[[Light], Sequence[float]] = figures_of) -> float:
     return max(largest(figures(light)) for light in lights)
 
 
-def magnitudes(project: ProjectImage = project_image) -> float:
+def magnitudes() -> float:
     """An image times 2^-900 to 2^900 has the same coefficients times that, exactly. Bound: 0, not one bit."""
     image = np.random.default_rng(SEED).random((16, 32, 3))
-    plain = project(image, 8)
-    return max(largest(np.ldexp(project(np.ldexp(image, k), 8), -k) - plain) for k in (-900, -500, 500, 664, 900))
+    plain = project_image(image, 8)
+    return max(largest(np.ldexp(project_image(np.ldexp(image, k), 8), -k) - plain) for k in (-900, -500, 500, 664, 900))
 
 
-def subnormal_image(project: ProjectImage = project_image) -> float:
+def subnormal_image() -> float:
     """A constant image of 5e-324 to 1e-310, in units of 5e-324.
 
     Bound: each of 4 x 8 texel products may be rounded to a whole unit, once more per row and order: 64 units.
     """
     worst = 0.0
     for radiance in (5e-324, 1e-320, 1e-310):
-        found = project(np.full((4, 8, 3), radiance), 4)
+        found = project_image(np.full((4, 8, 3), radiance), 4)
         wanted = np.zeros((16, 3))
         wanted[0] = radiance * np.sqrt(4 * np.pi)
         worst = max(worst, largest((found - wanted) / 5e-324))

@@ -43,7 +43,7 @@ SUN, SKY, SUN_HALF_ANGLE = 1.6e9, 1e3, 0.265
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class DrawnSum:
     """A sphere showing the sum of `coefficients`, (n**2,)."""
 
     coefficients: Array
@@ -52,12 +52,12 @@ class View:
     """The radius in pixels; a large one magnifies the middle."""
 
 
-def bound(views: list[View]) -> float:
+def bound(views: list[DrawnSum]) -> float:
     """The bound, 1e-6 n of the peak: float32 rounding in the recurrence, measured to n = 128."""
     return 1e-6 * max(count_bands(view.coefficients) for view in views)
 
 
-def error_of(view: View, renderer: Renderer) -> float:
+def error_of(view: DrawnSum, renderer: Renderer) -> float:
     """The largest difference over the pixels from float64, relative to the largest magnitude on the whole sphere."""
     from shviewer.viewer.composing.composition import compose
     from shviewer.viewer.composing.panes import Box, Sphere
@@ -134,38 +134,40 @@ def noise(n_bands: int) -> Array:
     return np.random.default_rng(SEED).normal(size=n_bands**2)
 
 
-def pole_views() -> list[View]:
+def pole_views() -> list[DrawnSum]:
     """Both poles in the middle, whole and magnified 50, 1e4 and 1e8 times, for white noise and a point light beside."""
     everything = [noise(32), delta([1e-3, 2e-3, 1]), delta([1e-3, 2e-3, -1])]
     glasses = (78.0, 4e3, 1e6, 1e10)
-    return [View(c, camera, radius) for c in everything for camera in (FROM_NORTH, FROM_SOUTH) for radius in glasses]
+    return [
+        DrawnSum(c, camera, radius) for c in everything for camera in (FROM_NORTH, FROM_SOUTH) for radius in glasses
+    ]
 
 
-def seam_views() -> list[View]:
+def seam_views() -> list[DrawnSum]:
     """A camera on -x: the seam runs down the middle, whole and magnified."""
     from_behind = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    return [View(c, from_behind, r) for c in (noise(32), delta([-1, 1e-3, 0.2])) for r in (78.0, 1e6)]
+    return [DrawnSum(c, from_behind, r) for c in (noise(32), delta([-1, 1e-3, 0.2])) for r in (78.0, 1e6)]
 
 
-def factorial_views() -> list[View]:
+def factorial_views() -> list[DrawnSum]:
     """All orders of the degrees 17 to 31, where factorials have left float32."""
-    return [View(np.where(degrees(32) >= 17, lights, 0), OBLIQUE) for lights in (noise(32), delta([1, 2, 3]))]
+    return [DrawnSum(np.where(degrees(32) >= 17, lights, 0), OBLIQUE) for lights in (noise(32), delta([1, 2, 3]))]
 
 
-def noise_views() -> list[View]:
+def noise_views() -> list[DrawnSum]:
     """White noise from several sides."""
-    return [View(noise(n), camera) for n in (2, 16, 32) for camera in (OBLIQUE, FROM_NORTH, FROM_SOUTH)]
+    return [DrawnSum(noise(n), camera) for n in (2, 16, 32) for camera in (OBLIQUE, FROM_NORTH, FROM_SOUTH)]
 
 
-def sun_views() -> list[View]:
+def sun_views() -> list[DrawnSum]:
     """The sun and the sky in 32 bands."""
     sun = orient(Disc(float(np.radians(SUN_HALF_ANGLE))).zonal(32), np.array(SUN_AXIS)) * (SUN - SKY)
     sun[0] += SKY * np.sqrt(4 * np.pi)
-    return [View(sun, OBLIQUE), View(sun)]
+    return [DrawnSum(sun, OBLIQUE), DrawnSum(sun)]
 
 
-def cancelling_views() -> list[View]:
+def cancelling_views() -> list[DrawnSum]:
     """Two suns of +-1e6 close together over 1e-3: away from them terms of 1e6 have to leave 1e-3."""
     pair = (delta([0.6, 0, 0.8]) - delta([0.62, 0.01, 0.8])) * 1e6
     pair[0] += 1e-3 * np.sqrt(4 * np.pi)
-    return [View(pair, OBLIQUE), View(pair), View(pair, FROM_SOUTH)]
+    return [DrawnSum(pair, OBLIQUE), DrawnSum(pair), DrawnSum(pair, FROM_SOUTH)]

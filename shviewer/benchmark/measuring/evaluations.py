@@ -1,6 +1,6 @@
 """The ways to evaluate the sum of one light's first n bands: their works, to be timed, and the error of their arithmetic.
 
-`Evaluations` has those on the CPU, `Frame` those in the shader, summed directly or drawn from a map.
+`Evaluations` has those on the CPU, `ShaderFrame` those in the shader, summed directly or drawn from a map.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ class Evaluations:
         }
 
 
-class Frame:
+class ShaderFrame:
     """A renderer and a framebuffer of the window's size and format."""
 
     def __init__(self, renderer: Renderer, target: moderngl.Framebuffer) -> None:

@@ -41,7 +41,7 @@ WAYS: dict[str, Callable[[int, int, int], DirectionSet]] = {
 
 
 @dataclass(frozen=True)
-class Sampled:
+class SamplingError:
     """The error of a light projected by samples in every frame, with its first n bands."""
 
     light: str
@@ -90,7 +90,7 @@ def turned_exactly(measured: MeasuredLight) -> float | None:
     return worst / norm if norm else 0.0
 
 
-def sampled(measured: MeasuredLight, way: str, count: int, seed: int) -> list[Sampled]:
+def sampled(measured: MeasuredLight, way: str, count: int, seed: int) -> list[SamplingError]:
     """One way to sample a light that turns, for each of BANDS."""
     exact, norm = measured.exact[: MOST**2], float(np.trace(measured.products))
     frames, times = [], []
@@ -108,7 +108,7 @@ def sampled(measured: MeasuredLight, way: str, count: int, seed: int) -> list[Sa
     held = band_power(exact).sum(axis=1)
     drawn = len(points.weights)
     return [
-        Sampled(
+        SamplingError(
             measured.name,
             way,
             drawn,

@@ -25,7 +25,7 @@ from shviewer.benchmark.measuring.evaluations import (
     PER_FRAME,
     PER_MILLION,
     Evaluations,
-    Frame,
+    ShaderFrame,
     shader_methods,
 )
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight
@@ -61,7 +61,7 @@ def reconstruction_rows(
     works: dict[Name, Work] = {}
     turn = step = step_turn = 0.0  # seconds: of one run of every work; of the last band count, alone and of its works
     with nullcontext() if isinstance(drawing, str) else offscreen(drawing, FRAME) as target:
-        frame = None if isinstance(drawing, str) or target is None else Frame(drawing, target)
+        frame = None if isinstance(drawing, str) or target is None else ShaderFrame(drawing, target)
 
         def before(name: Name, repeat: int) -> None:
             if frame is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 
-from shviewer.benchmark.measuring.moving import BANDS, DEGREES, MOST, SECTION, WAYS, Sampled
+from shviewer.benchmark.measuring.moving import BANDS, DEGREES, MOST, SECTION, WAYS, SamplingError
 from shviewer.benchmark.measuring.moving_texels import SUN_WIDTH, Stated
 from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.tables import MOST_COLUMNS, bullet, error, table
@@ -42,7 +42,7 @@ def lines(page: Page) -> list[str]:
     found = page.report.extra.get(SECTION)
     if not found:
         return []
-    samples, stated = [Sampled(**one) for one in found["sampled"]], [Stated(**one) for one in found["stated"]]
+    samples, stated = [SamplingError(**one) for one in found["sampled"]], [Stated(**one) for one in found["stated"]]
     said = textwrap.fill(f"**{answer(samples, stated)}**", MOST_COLUMNS, break_on_hyphens=False)
     exact = [
         bullet(f"{name}, projected in closed form, and turned back: it changes by {flicker:.0e} of its norm.")
@@ -60,7 +60,7 @@ def lines(page: Page) -> list[str]:
     return [claim, "", said, "", *exact, "", *picture, *tables, NOISE_AND_SUNS, *noise]
 
 
-def _sampled_table(name: str, samples: Sequence[Sampled]) -> list[str]:
+def _sampled_table(name: str, samples: Sequence[SamplingError]) -> list[str]:
     """What one light that turns is off by, and what it flickers by, for each way to sample its frames."""
     own = {(one.way, one.samples, one.n_bands): one for one in samples if one.light == name}
     rows = []
@@ -72,7 +72,7 @@ def _sampled_table(name: str, samples: Sequence[Sampled]) -> list[str]:
     return [f"### {name}, turning", "", *table(("points of a frame", "number", *headings), rows), ""]
 
 
-def answer(samples: Sequence[Sampled], stated: Sequence[Stated]) -> str:
+def answer(samples: Sequence[SamplingError], stated: Sequence[Stated]) -> str:
     """One paragraph that can be quoted, with the figures of this run."""
     left = {one.n_bands: one.simulated for one in stated if "exactly projected" in one.what}
     shaded = [one.simulated for one in stated if "irradiance over pi" in one.what]

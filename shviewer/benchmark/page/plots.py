@@ -1,4 +1,4 @@
-"""The report's plots, made from its rows: time against error, error against bands, frame time against bands.
+"""The report's plots: time against error; error, frame time and roughness against bands; and lights that move.
 
 They fit a column of print: 86 mm wide, 8 pt, with a colour, a marker and a dash for each curve, and a legend below the axes.
 Equal reports give equal bytes with the same version of matplotlib.
@@ -21,14 +21,16 @@ from shviewer.benchmark.measuring.experiments import METHODS
 from shviewer.benchmark.measuring.measured_lights import TOLERANCES
 from shviewer.benchmark.measuring.moving import SECTION as MOVING
 from shviewer.benchmark.measuring.projection_rows import SECTION as PROJECTION
-from shviewer.benchmark.page.bands_page import BANDS_STEM, ROUGHNESS_STEM
-from shviewer.benchmark.page.further_plots import draw_moving, draw_staircases
+from shviewer.benchmark.page.bands_page import BANDS_STEM, ROUGHNESS_STEM, staircases_of
 from shviewer.benchmark.page.moving_page import STEM as MOVING_STEM
+from shviewer.benchmark.page.moving_page import curves as moving_curves
 from shviewer.benchmark.page.plot_marks import (
     BELOW,
+    DASHES,
     FRONT,
     INCHES,
     MARKED,
+    MARKERS,
     SCREEN,
     WHITE,
     Curve,
@@ -61,6 +63,8 @@ BAND_FLOOR = 1e-3
 """The same in the plot of error against bands, where tolerances of 10 to 1 % matter."""
 
 SIXTY_HERTZ = 1000 / 60
+
+BAND_TICKS = (*reconstruction.BANDS, 128)
 
 
 def make_plots(report: Report, folder: Path) -> tuple[tuple[Path, ...], str]:
@@ -206,12 +210,53 @@ def draw_frames(figure: Figure, curves: Sequence[Curve]) -> None:
     figure.legend(**BELOW)
 
 
+def draw_staircases(figure: Figure, found: Mapping[str, Any]) -> None:
+    """Draw the fewest bands within 5 % against roughness, a staircase for each light; it begins where there is a count.
+
+    found: the report's `extra` on roughness.
+    """
+    counts = {name: steps_of[0.05].counts for name, steps_of in staircases_of(found).items()}
+    roughness = found["roughness"]
+    most = max([max(filter(None, row), default=1) for row in counts.values()], default=1)
+    axes = log_axes(figure, "fewest bands to reflect within 5 %", (roughness[0], roughness[-1]), (0.9, 1.15 * most), "")
+    axes.set_xscale("linear")
+    axes.set_xticks([0.1, 0.2, 0.4, 0.6, 0.8, 1.0])
+    ticks = [tick for tick in BAND_TICKS if tick <= 1.15 * most]
+    axes.set_yticks(ticks, [str(tick) for tick in ticks])
+    axes.set_xlabel("roughness of the surface (GGX)")
+    for look, (name, row) in enumerate(counts.items()):
+        values = [float("nan") if count is None else float(count) for count in row]
+        shift = 1 + 0.012 * (look - len(counts) / 2)  # counts that are equal are seen beside each other
+        line = {"color": f"C{look % len(MARKERS)}", "linestyle": DASHES[look % len(DASHES)]}
+        axes.step(roughness, [shift * value for value in values], where="post", label=shorten(name), **line)
+    figure.legend(**BELOW)
+
+
+def draw_moving(figure: Figure, samples: list[dict[str, Any]]) -> None:
+    """Draw the RMS error of a light that turns against bands; beyond 100 % it is noise.
+
+    A way to sample its frames has a colour, a number of samples a dash.
+    """
+    found: list[Curve] = []
+    families = dict[str, int]()
+    for name, points in moving_curves(samples).items():
+        look = families.setdefault(name.partition(",")[0], len(families))
+        found.append(Curve(name, tuple(points), look, dash=sum(other.look == look for other in found)))
+    x, y = padded(n for n, _ in found[0].points), padded(error for curve in found for _, error in curve.points)
+    axes = log_axes(figure, f"{shorten(samples[0]['light'])}, turning: RMS error", x, y)
+    axes.set_xticks([n for n, _ in found[0].points], [f"{n:g}" for n, _ in found[0].points])
+    axes.set_xlabel("bands")
+    axes.axhline(100, **MARKED)
+    draw_curves(axes, found)
+    figure.legend(**BELOW)
+
+
 def _band_axes(figure: Figure, title: str, curves: Sequence[Curve], y: tuple[float, float], unit: str = " %") -> Axes:
     """Axes on which the band counts of the curves go to the right."""
     bands = [x for curve in curves for x, _ in curve.points]
     low, high = min(bands) / 1.12, max(bands) * 1.12
     axes = log_axes(figure, title, (low, high), y, unit)
-    ticks = [n for n in (*reconstruction.BANDS, 128) if low <= n <= high]
+    ticks = [n for n in BAND_TICKS if low <= n <= high]
     axes.set_xticks(ticks, [tick_text(n) for n in ticks])
     axes.set_xlabel("bands n" if "first n" in title else "bands")
     return axes

@@ -1,20 +1,36 @@
-"""The sections that are tables of rows with a few sentences on them: peers, reconstruction, end to end."""
+"""The sections that are tables of rows, with a few sentences on them: projection, peers, reconstruction, end to end."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
-from shviewer.benchmark.measuring import end_to_end, peers
+from shviewer.benchmark.measuring import end_to_end, peers, projection_rows
 from shviewer.benchmark.measuring import reconstruction_rows as reconstruction
+from shviewer.benchmark.measuring.experiments import METHODS
 from shviewer.benchmark.page.advice import known, times, where_bands_stop_paying
 from shviewer.benchmark.page.section import Page
-from shviewer.benchmark.page.tables import bullet, milliseconds, rows_table
+from shviewer.benchmark.page.tables import (
+    ABSENT,
+    MOST_COLUMNS,
+    bullet,
+    error_of,
+    milliseconds,
+    rows_table,
+    table,
+    time_of,
+    words_of,
+)
 from shviewer.benchmark.rows.row import Row, alike
-from shviewer.words import counted
+from shviewer.words import counted, grouped
 
 FRAME_STEM = "frame-time"
 """The file stem of the plot of frame times."""
+
+PROJECTION = """\
+Every row measured: times and errors of the coefficients, ||c - exact|| / ||exact||; "±" is half the range over the seeds.
+The smallest comes first, and what the time did not allow is left: another run may measure other rows, but the errors of
+those that both have are the same."""
 
 PEERS = """\
 The same projections by other libraries, one thread each, in one process of their own, taking turns. All start from the same
@@ -29,6 +45,55 @@ the arithmetic reaches what is left out, more bands are of no use."""
 END_TO_END = """\
 What a user waits for. *Warm*: in a process that has drawn, but does not know the light; everything a new process takes is over
 its floor, `--version`."""
+
+
+def projection_lines(page: Page) -> list[str]:
+    """A table of the methods, then three tables per light."""
+    rows = page.report.measured(projection_rows.SECTION)
+    methods = [(each.words, each.name, each.explanation) for each in METHODS]
+    found = [PROJECTION, "", *table(("method", "METHOD", "what it is"), methods, left=3), ""] if rows else []
+    for name in page.report.lights:
+        own = [row for row in rows if row.light == name]
+        if own:
+            found += [f"### {name}: milliseconds", "", *_matrix(own, time_of), ""]
+            found += [f"### {name}: error of the coefficients", "", *_matrix(own, error_of), ""]
+            found += [f"### {name}: evaluations, set-up and memory", "", *_set_up(own), ""]
+    return found
+
+
+def _matrix(rows: Sequence[Row], cell: Callable[[Row], str]) -> list[str]:
+    """A table with a line per experiment and a column per band count; one that is too wide continues below."""
+    by_place = {(row.method, row.samples, row.n_bands): cell(row) for row in rows}
+    experiments, bands = _experiments(rows), sorted({row.n_bands for row in rows if row.n_bands is not None})
+
+    def part(bands: Sequence[int]) -> list[str]:
+        cells = {each: [by_place.get((*each, n), ABSENT) for n in bands] for each in experiments}
+        body = [(words_of(*each), *line) for each, line in cells.items() if set(line) != {ABSENT}]
+        return table(("", *(counted(n, "band") for n in bands)), body)
+
+    found: list[str] = []
+    while bands:
+        count = next((n for n in range(len(bands), 1, -1) if len(part(bands[:n])[0]) <= MOST_COLUMNS), 1)
+        found += [*([""] if found else []), *part(bands[:count])]
+        bands = bands[count:]
+    return found
+
+
+def _experiments(rows: Sequence[Row]) -> list[tuple[str, int | None]]:
+    """The methods and their numbers of samples, sorted as the table of methods, then by samples."""
+    order = [each.name for each in METHODS]
+    return sorted({(row.method, row.samples) for row in rows}, key=lambda item: (order.index(item[0]), item[1] or 0))
+
+
+def _set_up(rows: Sequence[Row]) -> list[str]:
+    """A table of set-up and memory, for the most bands with which each experiment was measured."""
+    body = []
+    for experiment in _experiments(rows):
+        row = max((row for row in rows if (row.method, row.samples) == experiment), key=lambda row: row.n_bands or 0)
+        evaluations = ABSENT if row.evaluations is None else grouped(row.evaluations)
+        peak = ABSENT if row.peak_mib is None else f"{row.peak_mib:.1f}"
+        body.append((words_of(*experiment), str(row.n_bands), evaluations, milliseconds(row.set_up_milliseconds), peak))
+    return table(("", "bands", "evaluations", "set-up ms", "peak MiB"), body)
 
 
 def peers_lines(page: Page) -> list[str]:

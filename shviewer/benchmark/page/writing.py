@@ -12,7 +12,6 @@ from textwrap import fill
 from shviewer.benchmark.hard_cases import table as stability
 from shviewer.benchmark.page import bands_page, encodings_page, moving_page, rows_pages, use_page
 from shviewer.benchmark.page.html import as_html
-from shviewer.benchmark.page.projection_tables import projection_lines
 from shviewer.benchmark.page.section import Page, Section
 from shviewer.benchmark.page.tables import bullet
 from shviewer.benchmark.rows.report import Report
@@ -62,7 +61,7 @@ SECTIONS = (
     Section("End to end", "shviewer report LIGHT", rows_pages.end_to_end_lines),
     Section("Peers", "shviewer report LIGHT --peers", rows_pages.peers_lines),
     Section("Lights that move", "shviewer report LIGHT --moving", moving_page.lines),
-    Section("Projection", "shviewer report LIGHT --methods METHOD", projection_lines),
+    Section("Projection", "shviewer report LIGHT --methods METHOD", rows_pages.projection_lines),
     Section("Hard cases", "shviewer report --stability", _hard_cases),
 )
 """The sections in the order of the page: answers first, long tables last."""

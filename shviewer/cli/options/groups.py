@@ -6,7 +6,7 @@ No mode is imported here, so that --help stays fast.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Container
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
@@ -89,10 +89,10 @@ def add_numbers(parser: OneLineParser) -> None:
     add_table(parser.add_argument_group("bands and projection"), Recipe)
 
 
-def add_table(parser: Adding, holder: type, names: Container[str] = ()) -> None:
-    """Add the options that a dataclass holds, or only those in `names`. An option that is not given is None."""
+def add_table(parser: Adding, holder: type) -> None:
+    """Add the options that a dataclass holds. An option that is not given is None."""
     for row in options_of(holder).values():
-        if row.flag and (not names or row.name in names):
+        if row.flag:
             takes = {"action": "store_const", "const": row.const} if row.const is not None else _values(row)
             parser.add_argument(row.flag, dest=row.name, help=row.help.replace("%", "%%"), **takes)
 
