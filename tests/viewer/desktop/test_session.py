@@ -113,7 +113,7 @@ def test_the_title_is_that_of_the_light_shown_however_it_came_there() -> None:
     assert session.press("Right") is None
     assert session.press("T") is None
     session.prepare()
-    assert session.title == "shviewer - constant"
+    assert session.title == "shviewer - constant (2 of 2)"
 
 
 @pytest.mark.usefixtures("fresh_memory")
