@@ -74,7 +74,9 @@ class Showing:
     @property
     def title(self) -> str:
         shown = self.picture.state
-        place = f" ({shown.place + 1} of {len(shown.lights)})" if shown.place is not None and len(shown.lights) > 1 else ""
+        place = (
+            f" ({shown.place + 1} of {len(shown.lights)})" if shown.place is not None and len(shown.lights) > 1 else ""
+        )
         return f"shviewer - {self.picture.light.name}{place}"
 
     @property

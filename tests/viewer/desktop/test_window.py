@@ -284,7 +284,10 @@ with window.open_window((320, 160)) as handle:
 def test_keys_between_two_frames_leave_neither_an_old_title_nor_what_opengl_cannot_hold(display: str) -> None:
     """T makes the picture before the frame does, so that the frame finds nothing new."""
     printed = output_of(display, TWO_KEYS_SCRIPT)
-    assert printed.splitlines() == ["shviewer - constant (2 of 3)", "shviewer - constant (2 of 3)|constant|a map too large"]
+    assert printed.splitlines() == [
+        "shviewer - constant (2 of 3)",
+        "shviewer - constant (2 of 3)|constant|a map too large",
+    ]
 
 
 def test_a_map_that_another_thread_hands_to_opengl_is_that_of_the_screenshot(start: Start, tmp_path: Path) -> None:
