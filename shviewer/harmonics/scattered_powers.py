@@ -57,14 +57,7 @@ class PowerSums:
 
     def coefficients(self) -> Array:
         """Coefficients (n_bands**2, 3) of all samples added."""
-        n = self.n_bands
-        powers = np.zeros((n, n, 2, 3))  # m, k, {Re, Im}
-        for (m, part, j), sums in zip(self.rows, self.sums.reshape(-1, 2, 3), strict=True):
-            count = min(2, n - m - 2 * j)
-            powers[m, 2 * j : 2 * j + count, part] = sums[:count]
-        by_order = np.matmul(_power_table(n), powers.reshape(n, n, 6)).reshape(n, n, 2, 3)
-        degree, order, sine = degrees_and_orders(n)
-        return np.asarray(by_order[order, degree, sine])
+        return np.asarray(_table(self.n_bands) @ self.sums.reshape(-1, 3))
 
     def _square(self, xy: Array, z: Array, squares: Array) -> bool:
         """Fill in the squares of x, y and z; whether all directions are unit."""
@@ -116,17 +109,18 @@ def _steps(n_bands: int) -> tuple[tuple[int, int, int, bool], ...]:
     return tuple((row, rows.index((m, 0, j - 1) if j else (m - 1, 0, 0)), 2 if m else 1, j > 0) for row, m, j in first)
 
 
-@lru_cache(maxsize=8)
-def _power_table(n_bands: int) -> Array:
-    """The coefficient of z^k in Y(l, m) over {Re, Im} (x + iy)^m, (m, l, k): the recurrence of basis.py, in powers."""
-    table = np.zeros((n_bands, n_bands, n_bands))
+@lru_cache(maxsize=POWER_BANDS)
+def _table(n_bands: int) -> Array:
+    """The factors of each row, as it is and times z, in Y(l, m), (n_bands**2, 2 rows): the recurrence of basis.py, in powers."""
+    powers = np.zeros((n_bands, n_bands, n_bands + 1))  # the factor of z^k in Y(l, m) over {Re, Im} (x + iy)^m: m, l, k
     for m in range(n_bands):
-        table[m, m, 0] = 1
+        powers[m, m, 0] = 1
         for l in range(m + 1, n_bands):
             q = (2 * l - 1) / (l + m)
-            table[m, l, 1:] = q * table[m, l - 1, :-1]
+            powers[m, l, 1:] = q * powers[m, l - 1, :-1]
             if l > m + 1:
-                table[m, l] -= (q - 1) * table[m, l - 2]
-    table *= normalisation(n_bands).T[..., None]
-    table.flags.writeable = False
-    return table
+                powers[m, l] -= (q - 1) * powers[m, l - 2]
+    powers *= normalisation(n_bands).T[..., None]
+    degree, order, sine = degrees_and_orders(n_bands)
+    table = [powers[m, degree, 2 * j : 2 * j + 2].T * ((order == m) & (sine == part)) for m, part, j in _rows(n_bands)]
+    return np.ascontiguousarray(np.concatenate(table).T)
