@@ -141,8 +141,8 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
     "harmonics/row_transform.py": (
         (
             "south folded with the sign of the north",
-            "(minus, plus) if parity else (plus, minus)",
-            "(plus, minus) if parity else (minus, plus)",
+            "((0, even), (1, odd), (0, odd), (1, even))",
+            "((0, even), (1, even), (0, odd), (1, odd))",
         ),
     ),
     "harmonics/sampling/spread.py": (

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 
-FOLD_BANDS = 28
+FOLD_BANDS = 24
 """The number of bands from which north and south are folded, too; below, the fold costs more than it saves."""
 
 BLOCK_ROWS = 64
@@ -26,8 +26,11 @@ BLOCK_ROWS = 64
 NARROW = 1024
 """The fewest columns for float32, whose rounding averages out over them; with fewer, float64 is as fast and is used."""
 
-LARGEST_PRODUCT = 4_000_000
-"""Multiplications in one product."""
+LARGEST_PRODUCT = 1_000_000
+"""Multiplications in one product: up to so many, OpenBLAS reads operands in place, at up to twice the speed."""
+
+FOLD_VALUES = 100_000
+"""How many values are folded at a time, so that they stay in the cache."""
 
 MAX_STEP = 3072
 """The most values of a row in one product, so that a block stays in the cache."""
@@ -92,29 +95,26 @@ def row_sums(
 def _sum_rows(flat: Values, functions: RowFunctions, precision: Precision, mirrored: bool) -> Array:
     """Sums over rows: (rows, halves, width) -> (even and odd m, width, n_bands)."""
     rows, _, width = flat.shape
-    n_bands, half = len(functions.cosines), rows // 2
+    n_bands = len(functions.cosines)
     work = _Pass(flat, functions, np.zeros((2, width, n_bands)), precision)
-    if n_bands < FOLD_BANDS or not half or not mirrored:
-        work.add_rows(0, rows)
-    else:
-        work.add_pairs(half)
-        work.add_rows(half, rows - half)
+    pairs = rows // 2 if mirrored and n_bands >= FOLD_BANDS else 0
+    if pairs:
+        work.add(0, pairs, mirrored=True)
+    if pairs < rows - pairs:
+        work.add(pairs, rows - pairs, mirrored=False)
     return work.sums
 
 
 def _repeat_outstanding(flat: Values, functions: RowFunctions, sums: Array) -> None:
     """Sum again in float64 columns that hold much of the whole, such as a sun's: their rounding does not average out."""
-    rows, halves, width = flat.shape
-    weight = np.abs(sums[0, :, 0]).reshape(-1, 3)
-    share = weight.max(axis=1) / max(float(weight.max(axis=1).sum()), np.finfo(np.float64).tiny)
+    weight = np.maximum.reduce(np.abs(sums[0, :, 0]).reshape(-1, 3).T)
+    share = weight / max(float(weight.sum()), np.finfo(np.float64).tiny)
     wanted = np.flatnonzero(share > max(OUTSTANDING, TIMES_THE_MEAN / len(share)))
-    if not len(wanted):
-        return
-    some = flat.reshape(rows, halves, -1, 3)[:, :, wanted].reshape(rows, halves, -1).astype(np.float64)
-    west, east = some[:, 0], some[:, 1] if halves == 2 else 0.0
-    for parity, folded in enumerate((west + east, west - east)):
-        again = functions.exact[parity] @ folded
-        sums[parity].reshape(width // 3, 3, -1)[wanted] = again.T.reshape(len(wanted), 3, -1)
+    for run in np.split(wanted, np.flatnonzero(np.diff(wanted) > 1) + 1) if len(wanted) else ():
+        columns = slice(3 * run[0], 3 * run[-1] + 3)
+        west, *east = flat[:, :, columns].astype(np.float64).swapaxes(0, 1)
+        for parity, folded in enumerate((west + east[0], west - east[0]) if east else (west, west)):
+            sums[parity, columns] = (functions.exact[parity] @ folded).T
 
 
 class _Pass:
@@ -122,83 +122,81 @@ class _Pass:
 
     def __init__(self, flat: Values, functions: RowFunctions, sums: Array, precision: Precision) -> None:
         self.flat, self.sums, self.precision = flat, sums, precision
-        self.cosines = functions.exact[0]
+        self.exact = functions.exact
         self.functions: tuple[Values, Values] = functions.rounded if precision is np.float32 else functions.exact
-        self.n_even = (len(self.cosines) + 1) // 2
 
-    def add_rows(self, start: int, stop: int) -> None:
-        """Add the products of rows `start` to `stop`, not folded."""
+    def add(self, start: int, stop: int, mirrored: bool) -> None:
+        """Add the products of rows `start` to `stop`; mirrored: of each such row and its mirror in the south, folded."""
         width, n_bands = self.sums.shape[1:]
+        split = (n_bands + 1) // 2
+        even, odd, every = slice(split), slice(split, n_bands), slice(n_bands)
+        # m even or odd, and k of what _fold writes: cos(k (pi - t)) = (-1)^k cos(k t), sin(k (pi - t)) = -(-1)^k sin(k t)
+        parts = ((0, even), (1, odd), (0, odd), (1, even)) if mirrored else ((0, every), (1, every))
         height = min(BLOCK_ROWS, stop - start)
-        folded = np.empty((2, max(height, 1), width), self.precision)
-        step = _step(n_bands, height, width)
-        product = np.empty((step, n_bands), self.precision)
-        for first in range(start, stop, BLOCK_ROWS):
-            rows = slice(first, min(first + BLOCK_ROWS, stop))
-            block = folded[:, : rows.stop - rows.start]
-            self._fold_halves(rows, block)
+        step = _step(split if mirrored else n_bands, height, width)
+        folded = np.empty((len(parts), height, width), self.precision)
+        product = np.empty((2, step, n_bands), self.precision)
+        for first in range(start, stop, height):
+            rows = slice(first, min(first + height, stop))
+            block = folded[:, : rows.stop - first]
+            self._fold(rows, mirrored, block)
             for left in range(0, width, step):
                 columns = slice(left, min(left + step, width))
-                out = product[: columns.stop - columns.start]
-                for parity in (0, 1):
-                    np.matmul(block[parity][:, columns].T, self.functions[parity][:, rows].T, out=out)
-                    self.sums[parity][columns] += out
+                out = product[:, : columns.stop - left]
+                for (parity, k), part in zip(parts, block, strict=True):
+                    np.matmul(part[:, columns].T, self.functions[parity][k, rows].T, out=out[parity, :, k])
+                self.sums[:, columns] += out
 
-    def add_pairs(self, count: int) -> None:
-        """Add the products of the first and last `count` rows, each northern row folded with its mirror in the south."""
-        width, n_bands = self.sums.shape[1:]
-        rows = len(self.flat)
-        height = min(BLOCK_ROWS, count)
-        step = _step(self.n_even, height, width)
-        north, south = np.empty((2, 2, height, width), self.precision)
-        total, difference = np.empty((2, height, step), self.precision)
-        product = np.empty((step, n_bands), self.precision)
-        split = self.n_even
-        for first in range(0, count, BLOCK_ROWS):
-            pairs = slice(first, min(first + BLOCK_ROWS, count))
-            size = pairs.stop - pairs.start
-            self._fold_halves(pairs, north[:, :size])
-            self._fold_halves(slice(rows - pairs.stop, rows - pairs.start), south[:, size - 1 :: -1] if size else south)
-            for left in range(0, width, step):
-                columns = slice(left, min(left + step, width))
-                out = product[: columns.stop - columns.start]
-                plus, minus = total[:size, : len(out)], difference[:size, : len(out)]
-                for parity in (0, 1):
-                    np.add(north[parity, :size, columns], south[parity, :size, columns], out=plus)
-                    np.subtract(north[parity, :size, columns], south[parity, :size, columns], out=minus)
-                    even, odd = (minus, plus) if parity else (plus, minus)  # sin(k (pi - t)) = -(-1)^k sin(k t)
-                    np.matmul(even.T, self.functions[parity][:split, pairs].T, out=out[:, :split])
-                    np.matmul(odd.T, self.functions[parity][split:, pairs].T, out=out[:, split:])
-                    self.sums[parity][columns] += out
+    def _fold(self, rows: slice, mirrored: bool, out: Values) -> None:
+        """Write left plus right and left minus right: (2, rows, width), some rows at a time, so that they stay in the cache.
+
+        mirrored: (4, rows, width), of north plus south, then of north minus south.
+        """
+        count = out.shape[1]
+        step = -(-count // -(-count * self.flat[0].size // FOLD_VALUES))
+        north, south = np.empty((2, 2, step, out.shape[2]), self.precision)
+        for top in range(rows.start, rows.stop, step):
+            some = slice(top, min(top + step, rows.stop))
+            here = out[:, some.start - rows.start : some.stop - rows.start]
+            if not mirrored:
+                self._fold_halves(some, here)
+                continue
+            one, other = north[:, : here.shape[1]], south[:, : here.shape[1]]
+            self._fold_halves(some, one)
+            self._fold_halves(slice(len(self.flat) - some.stop, len(self.flat) - some.start), other[:, ::-1])
+            np.add(one, other, out=here[:2])
+            np.subtract(one, other, out=here[2:])
 
     def _fold_halves(self, rows: slice, out: Values) -> None:
         """Write into out (2, rows, width) left plus right and left minus right, or the row twice if it has no halves."""
-        block = self.flat[rows]
-        if block.shape[1] == 1:
-            out[:] = block[:, 0]
-        elif block.dtype == self.precision:
-            np.add(block[:, 0], block[:, 1], out=out[0])
-            np.subtract(block[:, 0], block[:, 1], out=out[1])
+        values = self._taken(rows)
+        if values.shape[1] == 1:
+            out[:] = values[:, 0]
+        elif values.dtype == self.precision:
+            np.add(values[:, 0], values[:, 1], out=out[0])
+            np.subtract(values[:, 0], values[:, 1], out=out[1])
         else:
-            np.copyto(out, block.transpose(1, 0, 2))
+            np.copyto(out, values.transpose(1, 0, 2))
             out[0] += out[1]
             out[1] *= -2
             out[1] += out[0]
-        if self.precision is np.float32:
-            self._take_out_alike(rows, out[0])
 
-    def _take_out_alike(self, rows: slice, block: Values) -> None:
-        """In rows whose columns are alike, sum the first column's value in float64, and leave only the differences from it."""
-        middle = block.shape[1] // 6 * 3
-        if abs(block[0, middle] - block[0, 0]) > ALIKE * abs(block[0, 0]):
-            return
-        texels = block.reshape(len(block), -1, 3)
-        some = texels[:, :: max(texels.shape[1] // 8, 1)]
-        first = texels[:, :1].copy()
-        if (np.abs(some - first) <= ALIKE * np.abs(first)).all():
-            texels -= first
-            exact = first[:, 0].T.astype(np.float64) @ self.cosines[:, rows].T
-            self.sums[0].reshape(-1, *exact.shape)[:] += exact
+    def _taken(self, rows: slice) -> Values:
+        """Rows, (rows, halves, width); in float32, where columns are alike, only what they differ by from the first.
+
+        Its own value, whose rounding would add up, is summed in float64.
+        """
+        values = self.flat[rows]
+        if self.precision is np.float64 or abs(values[0, 0, 0] - values[0, -1, -3]) > ALIKE * abs(values[0, 0, 0]):
+            return values
+        texels = values.reshape(len(values), -1, 3)
+        first, some = texels[:, :1], texels[:, :: max(texels.shape[1] // 16, 1)]
+        if (np.abs(some - first) > ALIKE * np.abs(first)).any():
+            return values
+        for sums, functions in zip(self.sums[: 3 - values.shape[1]], self.exact, strict=False):
+            exact = values.shape[1] * first[:, 0].T.astype(np.float64) @ functions[:, rows].T
+            sums.reshape(-1, *exact.shape)[:] += exact
+        return np.asarray(texels - first).reshape(values.shape)
 
 
 def _step(n_functions: int, height: int, width: int) -> int:

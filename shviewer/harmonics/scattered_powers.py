@@ -111,7 +111,7 @@ def _steps(n_bands: int) -> tuple[tuple[int, int, int, bool], ...]:
 
 @lru_cache(maxsize=POWER_BANDS)
 def _table(n_bands: int) -> Array:
-    """The factors of each row, as it is and times z, in Y(l, m), (n_bands**2, 2 rows): the recurrence of basis.py, in powers."""
+    """The factors of each row, and of z times it, in Y(l, m), (n_bands**2, 2 rows): by the recurrence of basis.py."""
     powers = np.zeros((n_bands, n_bands, n_bands + 1))  # the factor of z^k in Y(l, m) over {Re, Im} (x + iy)^m: m, l, k
     for m in range(n_bands):
         powers[m, m, 0] = 1

@@ -96,8 +96,14 @@ def from_waves(sums: Array) -> Array:
     n_bands, _, channels, _ = sums.shape
     rows = sums.reshape(n_bands, -1, n_bands)
     table = _by_table(rows) if n_bands <= TABLE_BANDS else _by_passing(rows)
+    return np.asarray(table.reshape(-1).take(_places(n_bands, channels)))
+
+
+@lru_cache(maxsize=8)
+def _places(n_bands: int, channels: int) -> Indices:
+    """Where the channels of each coefficient stand in a table (m, {cos, sin}, channel, l), (n**2, channels)."""
     degree, order, sine = degrees_and_orders(n_bands)
-    return np.asarray(table.reshape(n_bands, 2, channels, n_bands)[order, sine, :, degree])
+    return ((2 * order + sine)[:, None] * channels + np.arange(channels)) * n_bands + degree[:, None]
 
 
 def to_waves(by_order: Array) -> Array:

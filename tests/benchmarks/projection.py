@@ -36,7 +36,7 @@ from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_image, project_product
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
-from shviewer.harmonics.row_transform import BLOCK_ROWS, FOLD_BANDS, MAX_STEP, NARROW
+from shviewer.harmonics.row_transform import BLOCK_ROWS, FOLD_BANDS, FOLD_VALUES, NARROW, _step
 from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import degrees_and_orders, series_by_parity, theta_series
@@ -103,31 +103,35 @@ def least_work(image: np.ndarray, n_bands: int, precision: type[np.floating]) ->
     """
     rows, columns = image.shape[:2]
     precision = np.float64 if columns < NARROW else precision
-    folds = n_bands >= FOLD_BANDS
+    folds = 1 + (n_bands >= FOLD_BANDS)
     flat = image.reshape(rows, 2, columns // 2 * 3)
     height, width = min(BLOCK_ROWS, rows // 2), flat.shape[2]
-    wide = np.ones((2, height, width), precision)
-    halves, folded = np.ones((2, 2, height, width), precision), np.ones((2, 2, height, width), precision)
-    along_theta = np.ones((height, n_bands // 2 if folds else n_bands), precision)
+    n_functions, some = n_bands // folds, max(1, FOLD_VALUES // flat[0].size)
+    step = _step(n_functions, height, width)
+    halves, folded = np.ones((folds, 2, some, width), precision), np.ones((2 * folds, height, width), precision)
+    along_theta = np.ones((n_functions, height), precision)
     sums, along_phi = np.ones((columns // 4, 3 * n_bands)), np.ones((n_bands // 2, columns // 4))
-    product = np.empty((width, along_theta.shape[1]), precision)
+    product = np.empty((step, n_functions), precision)
 
     def work() -> None:
-        for start in range(0, rows // (1 + folds), height):
-            for half in halves[: 1 + folds]:
-                left, right = flat[start : start + height].swapaxes(0, 1)
-                if precision is np.float64:
-                    np.copyto(wide, (left, right))
-                    left, right = wide
-                np.add(left, right, out=half[0])
-                np.subtract(left, right, out=half[1])
-            if folds:
-                np.add(*halves, out=folded[0])
-                np.subtract(*halves, out=folded[1])
-            for part in folded.reshape(4, height, width) if folds else halves[0]:
-                for first in range(0, width, MAX_STEP):
-                    here = slice(first, first + MAX_STEP)
-                    np.matmul(part[:, here].T, along_theta, out=product[here])
+        for top in range(0, rows // folds, height):
+            for start in range(0, height, some):
+                out = folded[:, start : start + some]
+                here = halves[..., : out.shape[1], :] if folds == 2 else out[None]
+                for half in here:
+                    left, right = flat[top + start : top + start + out.shape[1]].swapaxes(0, 1)
+                    if precision is np.float64:
+                        np.copyto(half, (left, right))
+                        left, right = half
+                    np.add(left, right, out=half[0])
+                    np.subtract(left, right, out=half[1])
+                if folds == 2:
+                    np.add(*here, out=out[:2])
+                    np.subtract(*here, out=out[2:])
+            for part in folded:
+                for first in range(0, width, step):
+                    columns_here = part[:, first : first + step]
+                    np.matmul(columns_here.T, along_theta.T, out=product[: columns_here.shape[1]])
         for _ in range(4):
             np.matmul(along_phi, sums)
 
