@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from threading import Event
 
 from shviewer.analysis.recipe import light_name
@@ -257,7 +256,7 @@ class Session(Showing):
 
     def _written(self, written: Written) -> None:
         path, what = written
-        self.say(f"saved {path} in {Path.cwd()}{f', {what}' if what else ''}", DONE)
+        self.say(f"saved {path.name} in {path.parent.absolute()}{f', {what}' if what else ''}", DONE)
         self.log(f"saved {path}")
 
     def _failed(self, error: ShviewerError) -> None:

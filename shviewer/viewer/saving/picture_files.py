@@ -56,13 +56,15 @@ def write_exr(
     write_atomically(path, buffer.getvalue())
 
 
-def write_numbered(stem: str, write: Callable[[Path], object], first: int = 1, suffix: str = ".png") -> Path:
-    """Write under the next free name stem-001.png, stem-002.png, ... in the current folder; return its path.
+def write_numbered(
+    stem: str, write: Callable[[Path], object], first: int = 1, suffix: str = ".png", folder: Path = Path()
+) -> Path:
+    """Write under the next free name stem-001.png, stem-002.png, ... in the current folder or another; return its path.
 
     write: writes a path exclusively. first: the number to begin with; 0 is stem.png.
     """
     for number in range(first, 10_000):
-        path = Path(f"{stem}-{number:03d}{suffix}" if number else f"{stem}{suffix}")
+        path = folder / (f"{stem}-{number:03d}{suffix}" if number else f"{stem}{suffix}")
         if not os.path.lexists(path):
             with suppress(FileExistsError):  # somebody else was faster
                 write(path)

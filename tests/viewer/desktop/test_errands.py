@@ -194,3 +194,23 @@ def test_a_turned_light_is_written_behind_the_window(
     session.saving.finish()
     assert session.state.view.message.startswith("saved shviewer-green-001.json")
     assert (tmp_path / "shviewer-green-001.json").exists()
+
+
+def test_where_nothing_can_be_written_files_go_home_and_the_message_says_so(
+    at_once: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A window that is opened by a click may stand in a folder of the system."""
+    home, system = tmp_path / "home", tmp_path / "system"
+    home.mkdir()
+    system.mkdir()
+    monkeypatch.chdir(system)
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.setenv("USERPROFILE", str(home))
+    monkeypatch.setattr(saving.os, "access", lambda path, mode: False)
+    session = Session(state_of("green"))
+    for number in ("001", "002"):
+        session.press("Ctrl+E")
+        session.saving.finish()
+        assert session.state.view.message == f"saved shviewer-green-{number}.json in {home}"
+    assert len(list(home.iterdir())) == 2
+    assert not list(system.iterdir())

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Generator
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -132,12 +134,13 @@ class _Drawing:
 
 
 def save_picture(picture: Picture, composition: Composition, opengl: str, pixels: Read) -> Written:
-    """Write the picture, with the pixels that OpenGL drew of it, under the next free name in the present folder.
-
-    OutputError if that fails.
-    """
+    """Write the picture, with the pixels that OpenGL drew of it, under the next free name. OutputError if that fails."""
     text = metadata(picture, composition, opengl)
-    return Written(write_numbered(_stem(picture), lambda path: write_png(path, pixels(), text, exclusive=True)))
+
+    def write(path: Path) -> None:
+        write_png(path, pixels(), text, exclusive=True)
+
+    return Written(write_numbered(_stem(picture), write, folder=_folder()))
 
 
 def save_coefficients(picture: Picture) -> Written:
@@ -147,7 +150,7 @@ def save_coefficients(picture: Picture) -> Written:
     if projected.encoding and projected.stored is None:
         what += f": no numbers of {projected.encoding} have a window or muted bands"
     write = partial(write_atomically, data=data, exclusive=True)
-    return Written(write_numbered(_stem(picture), write, suffix=".json"), what)
+    return Written(write_numbered(_stem(picture), write, suffix=".json", folder=_folder()), what)
 
 
 def coefficients_text(picture: Picture) -> str:
@@ -159,6 +162,14 @@ def _projected(picture: Picture) -> Projected:
     view = picture.state.view
     projected, rotation = project_recipe(picture.state.recipe, view.encode), view.light_rotation
     return projected if rotation == camera.IDENTITY else projected.turned(camera.matrix(rotation))
+
+
+def _folder() -> Path:
+    """The present folder, or the user's own, where nothing can be written there: a window may be opened by a click anywhere."""
+    if not os.access(".", os.W_OK):
+        with suppress(RuntimeError):  # a user without one
+            return Path.home()
+    return Path()
 
 
 def _stem(picture: Picture) -> str:
