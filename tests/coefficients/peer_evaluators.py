@@ -7,14 +7,12 @@ returns (d, k). Constants are exact where the sources print six digits.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Numbers = NDArray[Any]
-Evaluator = Callable[[Numbers, NDArray[np.float64]], Numbers]
 
 PI = math.pi
 

@@ -31,11 +31,7 @@ GREEN = LobeLight(
 HEMISPHERE = LobeLight((Lobe(Disc(np.pi / 2), np.array([0, 0, 1.0]), np.ones(3)),))
 NOWHERE = np.zeros((0, 3))
 
-# peers.md 2a: n -> relative L2 error (analytic), minimum of the reconstruction (grid of 400 x 800)
-GREEN_ERRORS = {
-    1: 0.911729, 2: 0.782844, 3: 0.692852, 4: 0.511715, 5: 0.283285, 6: 0.159216, 8: 0.121286, 10: 0.083163,
-    12: 0.059892, 16: 0.040762, 20: 0.030556,
-}  # fmt: skip
+# peers.md 2a: n -> minimum of the reconstruction (grid of 400 x 800)
 GREEN_MINIMA = {1: 0.1125, 2: -0.109, 3: -0.145, 4: -0.184, 5: -0.137, 6: -0.096, 8: -0.052, 10: -0.061}
 # numerics.md 5: n -> relative L2 error, minimum
 HEMISPHERE_TABLE = {
@@ -75,11 +71,6 @@ def integrated_squared_error(light, shown):
 def relative_error(light, n_bands):
     norm_squared, coefficients = light.products().diagonal(), light.coefficients(n_bands)
     return relative(sum(squared_error(norm_squared, coefficients, coefficients)), norm_squared)
-
-
-@pytest.mark.parametrize(("n_bands", "expected"), GREEN_ERRORS.items())
-def test_greens_light_has_the_published_error(n_bands, expected):
-    assert relative_error(GREEN, n_bands) == pytest.approx(expected, rel=0, abs=1e-6)
 
 
 def test_greens_light_has_the_error_of_eighty_digits():
@@ -215,13 +206,6 @@ def test_a_function_of_z_alone_is_negative_on_exactly_half_the_sphere(n_rows):
     assert found.negative_area == pytest.approx(0.5, rel=0, abs=equator / 2 + 1e-15)
 
 
-def test_negative_area_is_weighted_by_solid_angle():
-    coefficients = orient(np.array([0.0, 4 * np.pi / 3]), np.array([0, 0, 1.0]))[:, None] * np.ones(3)  # z
-    coefficients[0] -= 0.8 * np.sqrt(4 * np.pi)  # z - 0.8: nine tenths of the area, four fifths of the rows
-    found = ErrorGrid(black, NOWHERE, 400).compare(coefficients)
-    assert found.negative_area == pytest.approx(0.9, rel=0, abs=0.6 * np.pi / 400 / 4 + 1e-12)  # half a row of cells
-
-
 @pytest.mark.parametrize(
     ("colour", "share"), [((1, 0, 0), 0), ((-1, -1, -1), 1), ((1, -0.29, 0), 0), ((1, -0.3, 0), 1)]
 )
@@ -321,12 +305,3 @@ def test_a_channel_that_is_all_but_black_has_figures_beside_a_white_one(factor):
 def test_a_reconstruction_whose_squares_are_0_has_no_negative_energy():
     shown = np.full((4, 3), -1e-200)
     assert ErrorGrid(GREEN.radiance, GREEN.landmarks(), 16).compare(shown).negative_energy == 0
-
-
-def test_errors_by_band_count_hold_what_is_left_out_and_what_is_added() -> None:
-    """c(l, 0) = 2^-l for ever, of which half is shown: 4^-n is left out and a quarter of the rest added."""
-    n = np.arange(1, 9)
-    exact = np.zeros((64, 3))
-    exact[n * (n - 1)] = (0.5 ** (n - 1))[:, None]
-    errors = errors_by_band_count(np.eye(3) * 4 / 3, exact, exact / 2)
-    np.testing.assert_allclose(errors, np.sqrt(0.25 + 0.75 * 0.25**n), rtol=1e-12)

@@ -5,7 +5,6 @@ from itertools import combinations_with_replacement
 import numpy as np
 import pytest
 from harmonics.independent import cap_rule
-from scipy.integrate import quad
 from scipy.special import eval_legendre
 
 from shviewer.harmonics.overlap import inner_product
@@ -165,21 +164,6 @@ def test_opposite_gaussians_of_one_sharpness_have_a_constant_product(sharpness):
     expected = 4 * np.pi * np.exp(-2 * sharpness)
     found = inner_product(Gaussian(sharpness), Gaussian(sharpness), np.pi)
     assert found == pytest.approx(expected, rel=1e-12, abs=0)
-
-
-@pytest.mark.parametrize("angle", [0.3, 1.0, 2.5])
-def test_two_clamped_cosines_agree_with_an_adaptive_integral(angle):
-    def half_circles(t):
-        """Integral over one circle about the first axis, from the definition, arc by arc."""
-        middle, swing = np.cos(t) * np.cos(angle), np.sin(t) * np.sin(angle)
-        edge = np.arccos(np.clip(-middle / swing, -1, 1)) if swing > 0 else np.pi
-        return quad(lambda p: max(0.0, middle + swing * np.cos(p)), 0, edge, epsabs=1e-12)[0] * 2
-
-    bend = abs(angle - np.pi / 2)
-    expected = quad(
-        lambda t: np.cos(t) * np.sin(t) * half_circles(t), 0, np.pi / 2, points=[bend], epsabs=1e-10, limit=200
-    )[0]
-    assert inner_product(ClampedLinear(), ClampedLinear(), angle) == pytest.approx(expected, rel=0, abs=1e-9)
 
 
 @pytest.mark.parametrize("a", [1e-2, 1e-4, pytest.param(1e-6)])

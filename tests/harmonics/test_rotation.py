@@ -10,7 +10,6 @@ from places import hard_cases
 from scipy.spatial.transform import Rotation
 
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.rotation import rotate, turn
 from shviewer.harmonics.scattered import project_samples
@@ -43,28 +42,6 @@ def test_the_rotated_function_has_the_rotated_values(n_bands: int, bound: float)
     before = evaluate_basis(directions, n_bands) @ coefficients
     after = evaluate_basis(directions @ matrix.T, n_bands) @ rotate(coefficients, matrix)
     assert_allclose(after, before, rtol=0, atol=bound * np.abs(before).max())
-
-
-@pytest.mark.parametrize("beta", [0.0, np.pi, 1e-8, -1e-8, np.pi / 2, np.pi - 1e-8])
-def test_no_angle_is_special(beta: float) -> None:
-    matrix = Rotation.from_euler("zyz", [0.7, beta, -1.9]).as_matrix()
-    coefficients = np.random.default_rng(1).normal(size=(256, 3))
-    back = rotate(rotate(coefficients, matrix), matrix.T)
-    assert_allclose(back, coefficients, rtol=0, atol=1e-12)
-    assert_allclose(band_power(rotate(coefficients, matrix)), band_power(coefficients), rtol=1e-13)
-
-
-def test_ten_thousand_rotations_leave_what_their_product_leaves() -> None:
-    """A random word of eight rotations, applied one by one to 16 bands, and at once."""
-    steps = [Rotation.random(rng=seed) for seed in range(8)]
-    dense = [rotate(np.eye(256), step.as_matrix()) for step in steps]
-    vector = np.random.default_rng(2).normal(size=(256, 3))
-    turned, product = vector, Rotation.identity()
-    for choice in np.random.default_rng(3).integers(8, size=10_000):
-        turned = dense[choice] @ turned
-        product = steps[choice] * product
-    assert_allclose(turned, rotate(vector, product.as_matrix()), rtol=0, atol=1e-12 * np.abs(vector).max())
-    assert_allclose(np.linalg.norm(turned), np.linalg.norm(vector), rtol=1e-12)
 
 
 def rotated_light(light: Light, matrix: np.ndarray) -> FunctionLight:

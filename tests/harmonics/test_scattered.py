@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from harmonics.independent import HARD_CASES, random_directions, scipy_basis
+from harmonics.independent import HARD_CASES, random_directions
 from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.harmonics import scattered
@@ -64,13 +64,6 @@ def test_at_the_poles_only_zonal_functions_remain(n_bands):
     expected = np.zeros((n_bands**2, 3))
     expected[l * (l + 1)] = np.stack([north, north * (-1.0) ** l, north], axis=1)
     assert_allclose(found, expected, rtol=0, atol=1e-13)
-
-
-def test_scattered_samples_are_weighted_and_summed():
-    samples = jittered(300, seed=4)
-    values = random_values(289, seed=5)
-    expected = scipy_basis(samples.directions, 6).T @ (values * samples.weights[:, None])
-    assert_allclose(project_samples(lambda _: values, samples, 6), expected, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("n_bands", [4, 9, 24, WAVE_BANDS + 1])

@@ -46,20 +46,6 @@ def test_rows_on_the_poles_have_their_radiance_there(height, width):
     assert_allclose(image.sample(np.array([[0, 0, 1.0], [0, 0, -1.0]])), image.texels[[0, -1], 0], rtol=0, atol=1e-13)
 
 
-def test_half_way_between_two_texels_is_their_mean():
-    image = random_map(4, 8)
-    corner = towards(np.pi / 2, np.pi * (1 - 2 * 3 / 8))  # between rows 1, 2 and columns 2, 3
-    assert_allclose(image.sample(corner)[0], image.texels[1:3, 2:4].mean(axis=(0, 1)), rtol=0, atol=FLOAT32)
-    quarter = towards(np.pi * 1.5 / 4, np.pi * (1 - 2 * 2.75 / 8))
-    assert_allclose(
-        image.sample(quarter)[0], image.texels[1, 2] * 0.75 + image.texels[1, 3] * 0.25, rtol=0, atol=FLOAT32
-    )
-    quarter = towards(np.pi * 1.75 / 4, np.pi * (1 - 2 * 2.5 / 8))
-    assert_allclose(
-        image.sample(quarter)[0], image.texels[1, 2] * 0.75 + image.texels[2, 2] * 0.25, rtol=0, atol=FLOAT32
-    )
-
-
 @pytest.mark.parametrize(("height", "width"), SIZES + ODD_SIZES)
 @pytest.mark.parametrize("rows_on_poles", [False, True])
 def test_the_seam_does_not_show(height, width, rows_on_poles):

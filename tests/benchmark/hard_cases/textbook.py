@@ -91,22 +91,18 @@ def midpoint_rule(n_samples: int):
     return DirectionSet(directions_from_angles(theta[:, None], phi).reshape(-1, 3), np.repeat(area, 2 * rows))
 
 
-def project_image(image: np.ndarray, n_bands: int, accumulator: type = np.float64) -> np.ndarray:
+def project_image(image: np.ndarray, n_bands: int) -> np.ndarray:
     """Point weights: each texel is a sample at its centre, weighing sin(theta) dtheta dphi; one sum over rows of texels."""
     height, width = image.shape[:2]
     theta, phi = np.pi * (np.arange(height) + 0.5) / height, np.pi * (1 - (2 * np.arange(width) + 1) / width)
-    total = np.zeros((n_bands**2, 3), dtype=accumulator)
+    total = np.zeros((n_bands**2, 3))
     for angle, row in zip(theta, image, strict=True):
         directions = np.stack(
             [np.sin(angle) * np.cos(phi), np.sin(angle) * np.sin(phi), np.full(width, np.cos(angle))], axis=-1
         )
         weighted = evaluate_basis(directions, n_bands) * (np.sin(angle) * np.pi / height * 2 * np.pi / width)
-        total += sequential_sum((weighted[:, :, None] * row[:, None, :]).astype(accumulator))
-    return total.astype(np.float64)
-
-
-def project_image_float32(image: np.ndarray, n_bands: int) -> np.ndarray:
-    return project_image(image, n_bands, np.float32)
+        total += sequential_sum(weighted[:, :, None] * row[:, None, :])
+    return total
 
 
 def sequential_sum(terms: np.ndarray) -> np.ndarray:

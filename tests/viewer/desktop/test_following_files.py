@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable
 from itertools import pairwise
@@ -45,12 +44,6 @@ def replace_file(path: Path, data: bytes) -> None:
     other = path.with_name("written-beside")
     other.write_bytes(data)
     other.replace(path)
-
-
-def light_shown(viewer: Viewer) -> dict[str, object]:
-    described = json.loads(viewer.saved_picture()[1])
-    assert isinstance(described, dict)
-    return described
 
 
 # --- by key
