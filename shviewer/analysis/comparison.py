@@ -32,7 +32,7 @@ LONGEST_NAME = 28
 """The most characters of a name in a caption."""
 
 EXACT = 1e-6
-"""Numbers that are off by less are the same, printed with six digits."""
+"""A relative error below which numbers are the same, printed with six digits."""
 
 ALL, MOST = 0.05, 0.5
 """A factor is all, or most, of an error, of which at most this share is left without it."""

@@ -185,7 +185,7 @@ def figures_of(light: Light, projection: Projection, what: Shown) -> Figures:
 
 @remember(most=64)
 def lows_of(light: Light, projection: Projection, what: Shown) -> Lows:
-    """Those of the extremes that take no look at the light."""
+    """The extremes of the reconstruction alone, for which no look at the light is taken."""
     return error_grid(light, grid_rows(what.n_bands)).lows(sums(light, projection, what)[0])
 
 

@@ -133,7 +133,7 @@ class Projected(InNotebooks):
     def turned(self, rotation: ArrayLike) -> Projected:
         """The same of the light carried along by a rotation, a 3 x 3 matrix, v_out = M v_in. ValueError for another matrix.
 
-        Suns and the directions of the figures turn with it; all other figures stay. But a cube is made anew, and so are its.
+        Suns and the directions of the figures turn with it; other figures stay. An ambient cube and its figures are made anew.
         """
         matrix = check_rotation(rotation)
         whole = matrix if self.turn is None else matrix @ self.turn

@@ -169,7 +169,7 @@ NEEDS: dict[str, tuple[Callable[[Recipe], bool], str]] = {
 """Options that can be without any effect: whether a recipe lets them have one, and what is missing, {option} by its name."""
 
 OF_SAMPLES = ("samples", "seed")
-"""What any second reconstruction by another method takes, too."""
+"""Options that have an effect on a second reconstruction by another method, too."""
 
 
 def idle(recipe: Recipe, given: Iterable[str]) -> list[str]:

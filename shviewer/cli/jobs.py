@@ -34,7 +34,7 @@ AHEAD = 2
 """Lights given out for each process, so that none waits for the next one."""
 
 UNSAID = "ignore:resource_tracker"
-"""Python's warning of the semaphores that it takes away itself after a process that a signal has ended."""
+"""Python warns of semaphores that a process ended by a signal has left behind; it removes them itself."""
 
 
 def in_order(work: Callable[[str], T], lights: Sequence[str], jobs: int | None) -> Iterator[T | ShviewerError]:

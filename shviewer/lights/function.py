@@ -39,7 +39,7 @@ NEWS = 1.5
 
 MOST_LANDMARKS = 8
 NEAR = np.cos(np.radians(6))
-"""Within so much of a place that was refined nothing is news."""
+"""The cosine of an angle: so near to a place that was refined, nothing is news."""
 
 
 DirectionFunction = Callable[[Array], ArrayLike]

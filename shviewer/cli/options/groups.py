@@ -42,7 +42,7 @@ Adding: TypeAlias = argparse._ActionsContainer
 
 
 class OneLineParser(argparse.ArgumentParser):
-    """An argparse parser that reports a mistake in one line on stderr, without the usage, and says how many values are what."""
+    """An argparse parser that reports a mistake in one line on stderr, without the usage, and names values that are missing."""
 
     def error(self, message: str) -> NoReturn:
         for action in self._actions:

@@ -1,4 +1,4 @@
-"""DirectDraw surfaces of floating-point texels, which OpenImageIO does not read; anything else in a DDS is its.
+"""DirectDraw surfaces of floating-point texels, which OpenImageIO does not read; it reads any other DDS.
 
 Faces of a cube lie in the order +X -X +Y -Y +Z -Z, each before its smaller levels [Microsoft, Programming guide for DDS].
 """
