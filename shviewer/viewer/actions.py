@@ -216,7 +216,7 @@ def auto_exposure(state: State) -> State:
 
 
 def toggle_sheet(state: State, sheet: str) -> State:
-    """Show that sheet over the spheres instead of any other, or take it away."""
+    """Plot that in place of the curve, or the curve again."""
     return changed(state, sheet="" if state.view.sheet == sheet else sheet)
 
 
@@ -276,7 +276,7 @@ def reset(state: State) -> State:
 
 
 def escape(state: State) -> State | Command:
-    """Close the help, or else the sheet over the spheres, or else stop the sweep or the light, or else leave."""
+    """Close the help, or else what is in place of the curve, or else stop the sweep or the light, or else leave."""
     if state.view.help_visible:
         return changed(state, help_visible=False)
     if state.view.sheet:

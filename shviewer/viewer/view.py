@@ -116,7 +116,7 @@ class View:
         const=True,
     )
     sheet: str = ""
-    """One of the SHEETS over the spheres: "plane" is time against error in this session, and no two runs agree on it."""
+    """One of the SHEETS in place of the curve: "plane" is time against error in this session, and no two runs agree on it."""
     evaluate: str = option(
         "auto",
         Choice(EVALUATIONS),

@@ -182,8 +182,7 @@ class Canvas:
         if written is None:
             return mark_layers(picture, composition)
         layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
-        covered = written.sheet is not None and pointer is not None and written.sheet.contains(*pointer)
-        if pointer is None or covered or picture.state.view.help_visible:
+        if pointer is None or picture.state.view.help_visible:
             return layers
         with suppress(ShviewerError):  # a light that cannot be evaluated there has no values to show
             found = probe(picture, composition, *pointer)

@@ -1,1 +1,1 @@
-"""The overlay that Pillow draws over the spheres: text, figures, marks, sheets."""
+"""The overlay that Pillow draws over the spheres: text, figures, plots, marks."""

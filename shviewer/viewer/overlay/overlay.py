@@ -12,9 +12,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
@@ -30,13 +30,13 @@ from shviewer.viewer.overlay.foot import (
     turning_pieces,
 )
 from shviewer.viewer.overlay.help_sheet import help_pieces
-from shviewer.viewer.overlay.layers import Layer, strips
+from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
 from shviewer.viewer.overlay.pieces import Piece, Text, named_boxes
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots
 from shviewer.viewer.overlay.plots.legend import hovered_pieces, legend_pieces
-from shviewer.viewer.overlay.plots.plane import Plane, draw_plane, measured
+from shviewer.viewer.overlay.plots.plane import Plane, measured, plane_legend, plane_of, plane_pieces
 from shviewer.viewer.overlay.plots.steps import steps_legend, steps_of, steps_pieces
 from shviewer.viewer.overlay.plots.stored import stored_errors, stored_legend, stored_pieces
 from shviewer.viewer.overlay.plots.trace import trace_pieces
@@ -55,14 +55,11 @@ class Overlay:
     blocks: tuple[tuple[Piece, ...], ...]
     boxes: dict[str, Box] = field(default_factory=dict)
     bars: dict[int, Box] = field(default_factory=dict)
-    plane: Plane | None = None
-    """The time-error plane, if it is shown; the boxes of its texts are among `boxes`, too."""
-    sheet_layers: tuple[Layer, ...] = ()
 
     @cached_property
     def layers(self) -> tuple[Layer, ...]:
         """The layers of everything written, one of each block; drawn when first asked for."""
-        return (*(found for found in map(layer_of, self.blocks) if found is not None), *self.sheet_layers)
+        return tuple(found for found in map(layer_of, self.blocks) if found is not None)
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -78,14 +75,9 @@ class Overlay:
         return [piece for piece in self.pieces if isinstance(piece, Text)]
 
     @property
-    def sheet(self) -> Box | None:
-        """The box of the sheet over the spheres, if there is one."""
-        return self.plane.box if self.plane else None
-
-    @property
     def obstacles(self) -> tuple[Box, ...]:
-        """The boxes of all text and of the sheet, which marks and probed values keep clear of."""
-        return (*self.boxes.values(), *((self.sheet,) if self.sheet else ()))
+        """The boxes of all text, which marks and probed values keep clear of."""
+        return tuple(self.boxes.values())
 
 
 def draw_overlay(
@@ -111,13 +103,9 @@ def draw_overlay(
     numbers = at.numbers
     heads, feet, unsaid = caption_blocks(picture, at, timing)
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]
-    plane = None
-    remark = ""
-    if state.view.sheet == "plane":
-        sheet = Image.new("RGBA", (at.width, at.height))
-        plane = draw_plane(sheet, picture, at, _boxes([*blocks, *feet]).values())
-        remark = "" if plane else NO_ROOM if measured(picture) else NOT_TIMED
-    said = said_of(picture, remark)
+    plane = plane_of(picture, at) if state.view.sheet == "plane" else None
+    missing = state.view.sheet == "plane" and plane is None
+    said = said_of(picture, (NO_ROOM if measured(picture) else NOT_TIMED) if missing else "")
     exposure = exposure_pieces(picture, at, numbers.exposure, unsaid) if numbers.exposure else []
     turning = bool(numbers.foot and state.view.turning and not said and work is None)
     if turning:
@@ -125,7 +113,8 @@ def draw_overlay(
     shared = numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline
     if shared and (said or work is not None or turning):  # both are on one line
         exposure = []
-    line, explained = numbers.legend, state.view.by_roughness or state.view.encode or hovered is not None
+    line = numbers.legend
+    explained = plane or state.view.by_roughness or state.view.encode or hovered is not None
     if line is None and explained and not (said or work is not None or turning):  # in place of keys
         line, exposure, foot = numbers.foot, exposure if not shared else [], []
     elif not turning:
@@ -139,39 +128,43 @@ def draw_overlay(
             blocks = heads
     blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
     if numbers.curve is not None:
-        legend: list[Piece] = []
-        if state.view.by_roughness:
-            steps = steps_of(picture)
-            blocks.append(steps_pieces(steps, picture, at))
-            legend = steps_legend(steps, picture, line, at) if line else []
-        elif state.view.encode:
-            blocks.append(stored_pieces(stored_errors(picture), picture, at))
-            legend = stored_legend(picture, line, at) if line else []
-        else:
-            series = band_series(picture, least_slots(at))
-            axes = axes_of(series, at)
-            bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
-            blocks += curve_blocks(series, state, at)
-            if line:
-                over = hovered is not None and hovered < series.slots
-                legend = hovered_pieces(series, hovered or 0, line, at) if over else legend_pieces(state, line, at)
-        if state.view.trace and line:
-            legend = trace_pieces(state.view.trace, line, at)
+        plotted, legend, head_words, bars = _plotted(picture, at, line, plane, hovered)
+        blocks += plotted
         beside = numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline
         if not (beside and (work is not None or takes_legend(at, said))):  # or else how far the work is stands there
             blocks.append(legend)
         if numbers.curve_head is not None:
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)
-            words = "error of each encoding" if state.view.encode else "error against bands"
-            words = "bands against roughness" if state.view.by_roughness else words
-            blocks.append([Text("curve_head", head.left, head.baseline, words, size, INK, SEMIBOLD)])
-    found = _overlay(at, blocks, bars)
+            blocks.append([Text("curve_head", head.left, head.baseline, head_words, size, INK, SEMIBOLD)])
+    return _overlay(at, blocks, bars)
+
+
+def _plotted(
+    picture: Picture, at: Composition, line: Line | None, plane: Plane | None, hovered: int | None
+) -> tuple[list[list[Piece]], list[Piece], str, dict[int, Box]]:
+    """What is plotted: its blocks, what explains it on a line, if there is one, its head, and where a click finds bands."""
+    view, legend, bars = picture.state.view, list[Piece](), dict[int, Box]()
     if plane is not None:
-        found.plane = plane
-        found.sheet_layers = strips(np.asarray(sheet))
-        found.boxes.update(plane.boxes)
-    return found
+        blocks, head = [plane_pieces(plane, at)], "time against error"
+        legend = plane_legend(plane, picture, line, at) if line else []
+    elif view.by_roughness:
+        steps, head = steps_of(picture), "bands against roughness"
+        blocks = [steps_pieces(steps, picture, at)]
+        legend = steps_legend(steps, picture, line, at) if line else []
+    elif view.encode:
+        blocks, head = [stored_pieces(stored_errors(picture), picture, at)], "error of each encoding"
+        legend = stored_legend(picture, line, at) if line else []
+    else:
+        series, head = band_series(picture, least_slots(at)), "error against bands"
+        axes = axes_of(series, at)
+        bars = {band: axes.slot(band, at.px(20)) for band in range(axes.slots)}
+        blocks = curve_blocks(series, picture.state, at)
+        if line and hovered is not None and hovered < series.slots:
+            legend = hovered_pieces(series, hovered, line, at)
+        elif line:
+            legend = legend_pieces(picture.state, line, at)
+    return blocks, trace_pieces(view.trace, line, at) if view.trace and line else legend, head, bars
 
 
 def status_layers(work: Work, composition: Composition) -> tuple[Layer, ...]:

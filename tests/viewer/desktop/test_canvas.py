@@ -42,17 +42,6 @@ def test_a_light_that_fails_in_one_direction_does_not_end_the_program(canvas: Ca
     assert len(canvas.layers(frame_of(shown), (sphere.x, sphere.y))) == len(canvas.layers(frame_of(shown)))
 
 
-def test_nothing_is_read_through_a_sheet(canvas: Canvas) -> None:
-    shown = picture_of(sheet="plane", error="signed")
-    canvas.show(shown, frame_of(shown))
-    assert canvas.overlay is not None
-    sheet = canvas.overlay.sheet
-    assert sheet is not None
-    middle = (sheet.left + sheet.right) / 2, (sheet.top + sheet.bottom) / 2
-    assert frame_of(shown).spheres[0].position(*middle) is not None
-    assert len(canvas.layers(frame_of(shown), middle)) == len(canvas.layers(frame_of(shown)))
-
-
 def test_the_values_of_the_band_under_the_pointer_are_in_place_of_the_legend(canvas: Canvas) -> None:
     shown = picture_of()
     canvas.show(shown, frame_of(shown))

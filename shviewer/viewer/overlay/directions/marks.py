@@ -100,7 +100,7 @@ def _on(text: str, x: float, y: float, pane: Pane, composition: Composition, obs
     size, reach = type_size(composition), radius + composition.px(GAP)
     baseline = 0.5 + 0.36 * size
     words = Text("", 0.0, baseline, text, size, INK, MEDIUM, composition.px(CASING_WIDTH))
-    high, low = pane.clip.top + 2 - (top + words.box.top), pane.clip.bottom - 2 - (top + words.box.bottom)
+    high, low = pane.clip.top + 3 - (top + words.box.top), pane.clip.bottom - 3 - (top + words.box.bottom)
     level = min(max(0.0, high), low)
     for start in (0.5 + reach, 0.5 - reach - words.right):
         moved = replace(words, x=start, baseline=round(level) + baseline)

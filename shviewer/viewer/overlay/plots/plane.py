@@ -1,4 +1,4 @@
-"""Time against error: how long each way to project the light has taken in this session, and how good it was, on log axes.
+"""Time against error, in place of the curve: how long each way to project the light took in this session, and how good it was.
 
 All errors are those with the bands shown, neither muted nor windowed, so that points differ by their method alone. A point
 that lies lower and further left is better.
@@ -7,25 +7,32 @@ that lies lower and further left is better.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
-
-from PIL import Image
 
 from shviewer.analysis.projections import BEST, Measurement, measurements, way_of
 from shviewer.harmonics.metrics import pareto_front
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, INK, RULE
+from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, GROUND, INK, MEDIUM, RULE, Ink, width_of
+from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Point, Text
 from shviewer.viewer.overlay.plots.log_axis import Axis, padded_axis
-from shviewer.viewer.overlay.plots.markers import LOOKS, Place
-from shviewer.viewer.overlay.plots.sheet import Entry, Sheet, Size, place
+from shviewer.viewer.overlay.setting import ended, sentence
 from shviewer.viewer.picture import Picture
-from shviewer.words import counted, grouped_number, percent, round_percent, short_count
+from shviewer.words import grouped_number, percent, round_percent, short_count
 
-MOST, LEAST = Size(440, 270), Size(380, 190)
-"""Largest and smallest size of the sheet; a smaller one would not hold its legend."""
+LOOKS: dict[str, tuple[str, Ink]] = {
+    "best": ("diamond", INK),
+    "jittered": ("disc", (240, 164, 66, 255)),
+    "gauss-legendre": ("square", (60, 190, 150, 255)),
+}
+"""Shape and colour of each method: either alone tells them apart, to any kind of colour vision."""
+
+LABELS, MARK, APART = 56.0, 4.5, 14.0
+"""Room for the labels of the axis at its left, half a mark, and what is free beside the points; pixels of the design."""
 
 SHORTEST = 1e-4
 """The least time, in milliseconds: a log axis has no place for the 0 that a coarse clock may measure."""
@@ -36,19 +43,20 @@ Sampling = tuple[str, int, int]
 """A way to project: method, samples, seed."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Plane:
-    """The places of a drawn plane, in pixels: the sheet, its axes, the middle of each point, and the boxes of all texts."""
+    """The axes in a frame, and the places of the points in pixels."""
 
-    box: Box
+    area: Box
     milliseconds: Axis
     error: Axis
+    known: dict[Sampling, Measurement]
+    errors: dict[Sampling, float]
     floor: float
     """The error of the best way, which no samples get below."""
     present: Sampling
-    places: dict[Sampling, Place]
+    places: dict[Sampling, Point]
     front: list[Sampling]
-    boxes: dict[str, Box] = field(default_factory=dict)
 
 
 def measured(picture: Picture) -> tuple[Measurement, ...]:
@@ -56,135 +64,127 @@ def measured(picture: Picture) -> tuple[Measurement, ...]:
     return measurements(picture.light, picture.projection.n_bands)
 
 
-def draw_plane(image: Image.Image, picture: Picture, composition: Composition, taken: Iterable[Box]) -> Plane | None:
-    """Draw the plane clear of the boxes that are taken; None, and nothing drawn, where it does not fit."""
-    box = place(composition, taken, MOST, LEAST)
-    known = measured(picture)
-    if box is None or not known:
+def plane_of(picture: Picture, at: Composition) -> Plane | None:
+    """The plane of a picture in the place of the curve; None where there is none, or nothing was measured."""
+    box, known = at.numbers.curve, {found.sampling: found for found in measured(picture)}
+    least = picture.figures.floor  # a smaller error is rounding, and has no place on a log axis
+    errors = {key: max(float(found.errors[picture.state.recipe.n_bands - 1]), least) for key, found in known.items()}
+    times = {key: max(found.milliseconds, SHORTEST) for key, found in known.items()}
+    keys = [key for key in known if math.isfinite(errors[key])]
+    if box is None or not keys:
         return None
-    drawing = _Drawing(Sheet(image, composition, box, "plane"), picture, known)
-    drawing.axes()
-    drawing.legend()
-    drawing.lines()
-    drawing.points()
-    drawing.labels()
-    return drawing.plane
+    floor = errors.get(BEST, min(errors[key] for key in keys))
+    area, pad = box._replace(left=box.left + at.px(LABELS)), at.px(APART)
+    highest = max(errors[key] for key in keys)
+    error = padded_axis(floor, highest, 2.0, area.bottom, area.top, pad, pad, centred=False)
+    every = times.values()
+    milliseconds = padded_axis(min(every), max(every), 10.0, area.left, area.right, pad, pad, centred=True)
+    places = {key: (milliseconds.at(times[key]), error.at(errors[key])) for key in keys}
+    front = [keys[i] for i in pareto_front([(times[key], errors[key]) for key in keys])]
+    return Plane(area, milliseconds, error, known, errors, floor, way_of(picture.state.recipe), places, front)
 
 
-class _Drawing:
-    """One plane being drawn."""
+def plane_pieces(plane: Plane, at: Composition) -> list[Piece]:
+    """Grid, floor and front; the points, slow ones first, so that the front is on top, and the present choice in a ring."""
+    pieces = [*_axes(plane, at), *_front(plane, at)]
+    order = sorted(plane.places, key=lambda key: (key == plane.present, -plane.places[key][0]))
+    for key in order:
+        (x, y), (shape, ink) = plane.places[key], LOOKS[key[0]]
+        if key == plane.present:
+            pieces.append(Disc(x, y, at.px(2 * MARK), ACCENT, at.px(1.5), GROUND, "plane_present"))
+        pieces += [_mark(shape, x, y, at.px(MARK + 1), GROUND), _mark(shape, x, y, at.px(MARK), ink)]
+    return [*pieces, *_samples(plane, at)]
 
-    def __init__(self, sheet: Sheet, picture: Picture, known: Sequence[Measurement]) -> None:
-        self.sheet, self.picture = sheet, picture
-        self.known = {found.sampling: found for found in known}
-        box, unit = sheet.box, sheet.unit
-        n_bands = picture.state.recipe.n_bands
-        least = picture.figures.floor  # a smaller error is rounding, and has no place on a log axis
-        self.errors = {key: max(float(found.errors[n_bands - 1]), least) for key, found in self.known.items()}
-        finite = [error for error in self.errors.values() if math.isfinite(error)]
-        floor = self.errors.get(BEST, min(finite))
-        top, bottom = box.top + 58 * unit, box.bottom - 46 * unit
-        below = sheet.radius + 7 + sheet.face.size
-        error = padded_axis(floor, max(finite), 2.0, bottom, top, below, 14 * unit, centred=False)
-        self.error_ticks = sheet.level_ticks(error)
-        shares = [sheet.width_of(round_percent(value)) for value in self.error_ticks]
-        left, right = box.left + 24 * unit + max(shares, default=0), box.right - 18 * unit
-        self.times = {key: max(found.milliseconds, SHORTEST) for key, found in self.known.items()}
-        times, pad = self.times.values(), 18 * unit
-        milliseconds = padded_axis(min(times), max(times), 10.0, left, right, pad, pad, centred=True)
-        self.area = Box(round(left), round(top), round(right), round(bottom))
-        places = {
-            key: (milliseconds.at(time), error.at(self.errors[key]))
-            for key, time in self.times.items()
-            if math.isfinite(self.errors[key])
-        }
-        keys = list(places)
-        best = pareto_front([(self.times[key], self.errors[key]) for key in keys])
-        present = way_of(picture.state.recipe)
-        front = [keys[i] for i in best]
-        self.plane = Plane(box, milliseconds, error, floor, present, places, front, sheet.boxes)
 
-    def axes(self) -> None:
-        """Draw title, captions, and a faint grid with round values."""
-        sheet, area, unit, state = self.sheet, self.area, self.sheet.unit, self.picture.state
-        title = f"time against error, {counted(state.recipe.n_bands, 'band')}"
-        apart = [
-            words
-            for words, so in (("none muted", state.recipe.muted_shown), ("no window", state.recipe.window != "none"))
-            if so
-        ]
-        self.caption = sheet.title([", ".join([title, *apart]), title], "relative L2 error")
-        words = f"ms to project {self.picture.projection.n_bands} bands"
-        sheet.write("milliseconds", area.right, sheet.box.bottom - 15 * unit, words, FAINT, "rm")
-        for number, value in enumerate(self.plane.milliseconds.ticks(4 * sheet.face.size)):
-            x = round(self.plane.milliseconds.at(value))
-            sheet.rule(Box(x, area.top, x + sheet.line, area.bottom + 1), RULE)
-            sheet.write(f"time_{number}", x, area.bottom + 13 * unit, _time(value), GREY, "mm")
-        sheet.levels("share", self.plane.error, self.error_ticks, area)
+def plane_legend(plane: Plane, picture: Picture, line: Line, at: Composition) -> list[Piece]:
+    """What each mark stands for, unless there is one alone, and the figures of the present choice, whose room comes first."""
+    size, n_bands = at.px(12.0), picture.state.recipe.n_bands
+    said = [MORE] if len(plane.places) == 1 else [""]
+    if plane.present in plane.places:
+        found, error = plane.known[plane.present], _percent(plane.errors[plane.present], picture)
+        name = found.words if plane.present == BEST else f"{found.words} {short_count(found.samples)}"
+        time = f"{name}: {grouped_number(found.milliseconds)} ms"
+        full = f"{time} for {picture.projection.n_bands} bands, {error} in {n_bands}"
+        said = [*(f"{full}; {MORE}" for _ in said if said[0]), full, f"{time}, {error}"]
+    shown = {method for method, _, _ in plane.places}
+    for names in ([method for method in LOOKS if method in shown], []):
+        pieces: list[Piece] = []
+        x = line.left
+        for method in names if len(names) > 1 else []:
+            words = plane.known[next(key for key in plane.known if key[0] == method)].words.partition("; ")[0]
+            shape, ink = LOOKS[method]
+            pieces.append(_mark(shape, x + at.px(MARK), line.baseline - 0.36 * size, at.px(MARK), ink))
+            name = "best" if method == "best" else words
+            pieces.append(Text(f"plane_{method}", round(x + at.px(14)), line.baseline, name, size, GREY))
+            x = pieces[-1].box.right + at.px(18)
+        if x + width_of(typeset(said[-1]), size) <= line.right:
+            break
+    return [*pieces, *sentence("plane_sentence", line._replace(left=round(x)), said, size, INK)]
 
-    def legend(self) -> None:
-        """Write right of the caption what each mark stands for, unless there is only one; name the best way if that fits."""
-        words = {found.method: found.words.partition("; ")[0] for found in self.known.values()}
-        if len(words) < 2:
-            return
-        room = self.caption._replace(left=self.caption.right + 14 * self.sheet.unit, right=self.area.right)
-        for names in (words, words | {"best": "best"}):
-            entries = [Entry(key, shape, names[key], ink) for key, (shape, ink) in LOOKS.items() if key in names]
-            if self.sheet.legend(room, entries):
-                break
 
-    def lines(self) -> None:
-        """Draw the floor, dashed, and the front as steps down to it: the best way is the last point of any front."""
-        area, plane, sheet = self.area, self.plane, self.sheet
-        sheet.dashes(area.left, area.right, plane.error.at(plane.floor), FAINT)
-        corners = [(round(x), round(y)) for x, y in (plane.places[key] for key in plane.front)]
-        for (left, high), (right, low) in pairwise(corners):
-            sheet.bar(Box(left, high, right + sheet.line, high + sheet.line), GREY)
-            sheet.bar(Box(right, high, right + sheet.line, low + sheet.line), GREY)
+def _axes(plane: Plane, at: Composition) -> Iterator[Piece]:
+    """Round errors and times with their lines, and the floor as a dashed line with its error."""
+    area, size, line = plane.area, at.px(11.0 if at.compact else 12.0), max(1, round(at.scale))
+    end, baseline = area.left - at.px(8), area.bottom + at.px(13 if at.compact else 17)
+    level = round(plane.error.at(plane.floor))
+    floor = ended("plane_floor", end, level + 0.36 * size, percent(plane.floor), size, INK, MEDIUM)
+    for number, value in enumerate(plane.error.ticks(1.6 * size)):
+        y = round(plane.error.at(value))
+        yield Fill(Box(area.left, y, area.right, y + line), RULE)
+        label = ended(f"plane_share_{number}", end, y + 0.36 * size, round_percent(value), size, FAINT)
+        if not label.box.overlaps(floor.box):
+            yield label
+    for number, value in enumerate(plane.milliseconds.ticks(4 * size)):
+        x, text = round(plane.milliseconds.at(value)), typeset(f"{value:,g}".replace(",", " "))
+        yield Fill(Box(x, area.top, x + line, area.bottom), RULE)
+        left = round(min(x - width_of(text, size) / 2, area.right - width_of(text, size)))
+        yield Text(f"plane_time_{number}", left, baseline, text, size, GREY)
+    yield ended("plane_milliseconds", end, baseline, "ms", size, FAINT)
+    yield floor
+    dash = at.px(4)
+    for number in range(int((area.right - area.left) / (2 * dash))):
+        start = area.left + 2 * number * dash
+        yield Fill(Box(start, level, start + dash, level + line), GREY)
 
-    def points(self) -> None:
-        """Draw the points, slow ones first, so that the front stays on top; the present choice last, in a ring."""
-        plane, sheet = self.plane, self.sheet
-        order = sorted(plane.places, key=lambda key: (key == plane.present, -self.times[key]))
-        for key in order:
-            shape, ink = LOOKS[key[0]]
-            sheet.point(shape, sheet.radius, plane.places[key], ink)
-        if plane.present in plane.places:
-            sheet.stamp("ring", sheet.ring, plane.places[plane.present], ACCENT)
 
-    def labels(self) -> None:
-        """Write the present choice and the floor in as many words as fit, then the samples of the others."""
-        plane, area, sheet = self.plane, self.area, self.sheet
-        if plane.present in plane.places:
-            found = self.known[plane.present]
-            name = found.words if plane.present == BEST else f"{found.words} {short_count(found.samples)}"
-            figures = f"{name}: {grouped_number(found.milliseconds)} ms, {self._percent(self.errors[plane.present])}"
-            again = [f"{figures}, best of {found.repetitions}"] if found.repetitions > 1 else []
-            texts = (*again, figures, name)
-            spot, reach = plane.places[plane.present], sheet.ring + sheet.gap + 1
-            any(sheet.label("present", spot, text, INK, reach, area) for text in texts) or any(
-                sheet.label("present", spot, text, INK, reach, area, away=True, over_lines=True) for text in texts
+def _front(plane: Plane, at: Composition) -> Iterator[Piece]:
+    """The front as steps down: the best way is the last point of any front."""
+    line = max(1, round(at.scale))
+    corners = [(round(x), round(y)) for x, y in (plane.places[key] for key in plane.front)]
+    for (left, high), (right, low) in pairwise(corners):
+        yield Fill(Box(left, high, right + line, high + line), GREY)
+        yield Fill(Box(right, high, right + line, low + line), GREY)
+
+
+def _samples(plane: Plane, at: Composition) -> Iterator[Piece]:
+    """How many samples a point has, over or under it, where nothing else is."""
+    size, reach = at.px(11.0 if at.compact else 12.0), at.px(MARK)
+    taken = [Box(x, y, x, y).grown(reach, reach) for x, y in plane.places.values()]
+    for key in sorted(plane.places, key=lambda key: -plane.places[key][0]):
+        method, samples, seed = key
+        x, y = plane.places[key]
+        ring = reach if key == plane.present else 0.0
+        for baseline in (y - reach - ring - at.px(3), y + reach + ring + at.px(3) + 0.76 * size) if key != BEST else ():
+            text, name = short_count(samples), f"plane_{method}_{samples}_{seed}"
+            left = x - width_of(text, size) / 2
+            label = Text(
+                name, round(left), round(baseline), text, size, LOOKS[method][1], casing=at.px(1.6), rim=GROUND
             )
-        below = plane.error.at(plane.floor) + sheet.radius + sheet.gap
-        n_bands, share = self.picture.state.recipe.n_bands, self._percent(plane.floor)
-        left_out = f"{n_bands} band{' leaves' if n_bands == 1 else 's leave'} out {share}"
-        for text in (f"no samples get below: {left_out}", left_out, share):
-            if sheet.put("floor", text, GREY, sheet.row(text, below, area), area):
+            if label.box.inside(plane.area) and not any(label.box.overlaps(other) for other in taken):
+                taken.append(label.box.grown(0.5 * size, 0))
+                yield label
                 break
-        if len(plane.places) == 1:
-            width, height = sheet.size_of(MORE)
-            rows = sorted(map(plane.error.at, (*self.error_ticks, plane.floor)))
-            lower = max(range(len(rows)), key=lambda i: rows[i] - (rows[i - 1] if i else area.top))
-            middle = (rows[lower] + (rows[lower - 1] if lower else area.top)) / 2  # of the widest gap
-            sheet.put("more", MORE, GREY, [((area.left + area.right - width) / 2, middle - height / 2)], area)
-        for key in sorted(plane.places, key=lambda key: -self.times[key]):
-            if key not in (plane.present, BEST):
-                name, reach = "_".join(map(str, key)), sheet.radius + sheet.gap + 1
-                sheet.label(name, plane.places[key], short_count(key[1]), LOOKS[key[0]][1], reach, area)
-
-    def _percent(self, share: float) -> str:
-        return percent(share, floor=self.picture.figures.floor * (1 + 1e-9))
 
 
-def _time(milliseconds: float) -> str:
-    return f"{milliseconds:,g}".replace(",", " ")
+def _mark(shape: str, x: float, y: float, reach: float, ink: Ink) -> Piece:
+    around = Box(x, y, x, y).grown(reach, reach)
+    if shape == "disc":
+        return Disc(x, y, reach, ink)
+    if shape == "square":
+        return Fill(Box(*(float(round(side)) for side in around)), ink)
+    corners = ((x, around.top), (around.right, y), (x, around.bottom), (around.left, y))
+    return Curve(corners, 0.0, ink, around.grown(1, 1), closed=True)
+
+
+def _percent(share: float, picture: Picture) -> str:
+    return percent(share, floor=picture.figures.floor * (1 + 1e-9))

@@ -1,4 +1,4 @@
-"""Time against error: points stand where the axes say, the present choice is marked, and no text is cut or covered."""
+"""Time against error: points stand where the axes say, the present choice is marked, and it is there where the curve is."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers import centre, overlap
+from helpers import centre, frame_of
+from viewer.overlay.collisions import faults
 
 from shviewer import api
 from shviewer.analysis import projections
@@ -26,15 +27,16 @@ from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.lettering import ACCENT
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
+from shviewer.viewer.overlay.pieces import Disc
 from shviewer.viewer.overlay.plots import plane
 from shviewer.viewer.overlay.plots.log_axis import Axis
-from shviewer.viewer.overlay.plots.markers import LOOKS
-from shviewer.viewer.overlay.plots.plane import Plane, measured
+from shviewer.viewer.overlay.plots.plane import LOOKS, Plane, measured, plane_of
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import changed, state_of
+from shviewer.viewer.state import state_of
+from shviewer.words import grouped_number, percent
 
 SIZES = [
-    (320, 160), (400, 300), (640, 320), (700, 400), (800, 800), (1280, 640), (1920, 1080), (2560, 1280), (900, 1200),
+    (400, 300), (640, 320), (700, 400), (800, 800), (1280, 640), (1920, 1080), (2560, 1280), (900, 1200),
     (3000, 500),
 ]  # fmt: skip
 COUNTS = (625, 2_500, 10_000, 40_000, 160_000)
@@ -69,10 +71,11 @@ def session(counts: tuple[int, ...] = COUNTS, **changes: object) -> Picture:
     return last
 
 
-def plane_of(picture: Picture, size: tuple[int, int] = (1280, 640)) -> tuple[Overlay, Plane]:
-    drawn = draw_overlay(picture, compose(*size))
-    assert drawn.plane is not None
-    return drawn, drawn.plane
+def drawn_of(picture: Picture, size: tuple[int, int] = (1280, 640)) -> tuple[Overlay, Plane]:
+    at = compose(*size)
+    found = plane_of(picture, at)
+    assert found is not None
+    return draw_overlay(picture, at), found
 
 
 def made_up(errors: dict[tuple[str, int, int], tuple[float, float]]) -> tuple[Measurement, ...]:
@@ -176,8 +179,8 @@ def test_what_was_not_projected_has_no_time(tmp_path: Path) -> None:
     picture = shown(light=str(written))
     assert picture.projection.milliseconds is None
     drawn = draw_overlay(picture, compose(1280, 640), timing=True)
-    assert drawn.plane is None
-    assert {"method", "message"} <= set(drawn.boxes)
+    assert plane_of(picture, compose(1280, 640)) is None
+    assert {"method", "message", "legend_radiance"} <= set(drawn.boxes)
     compared = shown(light="green", compare=CoefficientLight.read(written), n_bands=4)
     assert compared.projection.milliseconds is None
     assert {found.sampling for found in measured(compared)} == {BEST}
@@ -197,7 +200,7 @@ def test_measurements_go_with_their_light() -> None:
         MEMORY.results(FunctionLight(lambda d: d[:, 2], str(number)), "anything")
     assert measured(first) == ()
     assert first.light not in MEMORY  # looking it up brings nothing back
-    assert draw_overlay(first, compose(1280, 640)).plane is None
+    assert plane_of(first, compose(1280, 640)) is None
 
 
 # --- axes
@@ -230,12 +233,12 @@ def test_points_stand_where_the_labels_of_the_axes_say_on_log_scales(monkeypatch
     """Read off as a person would: between the labels of 1 and 100 ms, and of 10 and 100 %; a label is centred to a pixel."""
     points = {BEST: (1.0, 0.05), ("jittered", 625, 0): (3.0, 0.9), ("jittered", 10_000, 0): (150.0, 0.07)}
     monkeypatch.setattr(plane, "measurements", lambda light, n_bands: made_up(points))
-    _, found = plane_of(shown(method="jittered"))
-    times, shares = found.milliseconds.ticks(50), found.error.ticks(20)
+    drawn, found = drawn_of(shown(method="jittered"))
+    times, shares = found.milliseconds.ticks(48), found.error.ticks(19.2)
     assert times == [1, 10, 100]
     assert shares == [0.1, 1]
-    x = [centre(found.boxes[f"plane_time_{number}"])[0] for number in (0, 2)]
-    y = [centre(found.boxes[f"plane_share_{number}"])[1] for number in (0, 1)]
+    x = [centre(drawn.boxes[f"plane_time_{number}"])[0] for number in (0, 2)]
+    y = [centre(drawn.boxes[f"plane_share_{number}"])[1] for number in (0, 1)]
     for key, (time, error) in points.items():
         place = found.places[key]
         assert place[0] == pytest.approx(x[0] + (x[1] - x[0]) * np.log10(time) / 2, abs=2)
@@ -244,7 +247,7 @@ def test_points_stand_where_the_labels_of_the_axes_say_on_log_scales(monkeypatch
 
 @pytest.mark.usefixtures("steady")
 def test_a_point_is_drawn_in_the_colour_of_its_method() -> None:
-    drawn, found = plane_of(session())
+    drawn, found = drawn_of(session())
     others = [key for key in found.places if key != found.present]
     hidden = 0
     for key in others:
@@ -258,7 +261,7 @@ def test_errors_and_times_that_a_log_axis_cannot_show_are_kept_at_its_end(monkey
     points = {BEST: (0.0, 0.0), ("jittered", 10_000, 0): (1.0, 1e-12), ("jittered", 16, 0): (1.0, np.inf)}
     monkeypatch.setattr(plane, "measurements", lambda light, n_bands: made_up(points))
     picture = shown(method="jittered")
-    _, found = plane_of(picture)
+    _, found = drawn_of(picture)
     assert set(found.places) == {BEST, ("jittered", 10_000, 0)}
     assert found.floor == picture.figures.floor
     assert found.places[BEST][1] == found.places[("jittered", 10_000, 0)][1]
@@ -270,7 +273,7 @@ def test_errors_and_times_that_a_log_axis_cannot_show_are_kept_at_its_end(monkey
 @pytest.mark.parametrize("n_bands", [1, 5, 15, 32])
 def test_the_floor_is_the_error_that_the_metrics_give_for_the_best_way(n_bands: int) -> None:
     picture = session(n_bands=n_bands)
-    _, found = plane_of(picture)
+    _, found = drawn_of(picture)
     light = picture.light
     exact = light.coefficients(MAX_DIRECT_BANDS)
     assert found.floor == pytest.approx(errors_by_band_count(light.products(), exact, exact)[n_bands - 1], rel=1e-12)
@@ -283,7 +286,7 @@ def test_the_front_is_drawn_as_steps_to_the_best_way(monkeypatch: pytest.MonkeyP
     fast = ("gauss-legendre", 625, 0)
     points = {BEST: (10.0, 0.05), fast: (1.0, 0.5), ("jittered", 10_000, 0): (150.0, 0.07)}
     monkeypatch.setattr(plane, "measurements", lambda light, n_bands: made_up(points))
-    drawn, found = plane_of(shown(method="jittered"))
+    drawn, found = drawn_of(shown(method="jittered"))
     assert found.front == [fast, BEST]
     (left, high), (right, low) = found.places[fast], found.places[BEST]
     lighter = drawn.image[..., 0].astype(int) > 100
@@ -296,31 +299,31 @@ def test_the_front_is_drawn_as_steps_to_the_best_way(monkeypatch: pytest.MonkeyP
 def test_the_present_choice_has_a_ring_and_its_name_time_and_error(sampling: tuple[str, int]) -> None:
     session()
     picture = shown(method=sampling[0], samples=sampling[1])
-    drawn, found = plane_of(picture)
+    drawn, found = drawn_of(picture)
     assert found.present == (BEST if sampling[0] == "best" else (*sampling, 0))
-    ringed = np.argwhere(np.abs(drawn.image.astype(int) - ACCENT).max(axis=-1) < 40)
-    box = found.box
-    ringed = ringed[(ringed[:, 0] > box.top) & (ringed[:, 0] < box.bottom)]
-    ringed = ringed[(ringed[:, 1] > box.left) & (ringed[:, 1] < box.right)]
-    x, y = found.places[found.present]
-    np.testing.assert_allclose(ringed.mean(axis=0), (y, x), rtol=0, atol=1.5)
-    distances = np.hypot(ringed[:, 0] - y, ringed[:, 1] - x)
-    assert distances.min() > 4
-    assert distances.max() < 12
-    label = found.boxes["plane_present"]
-    assert max(label.left - x, x - label.right, 0) < 20
-    assert max(label.top - y, y - label.bottom, 0) < 20
+    assert centre(drawn.boxes["plane_present"]) == pytest.approx(found.places[found.present])
+    ring = next(piece for piece in drawn.pieces if isinstance(piece, Disc) and piece.name == "plane_present")
+    assert ring.ink == ACCENT
+    (said,) = (text.text.replace("\u202f", " ") for text in drawn.texts if text.name == "plane_sentence")
+    time = grouped_number(found.known[found.present].milliseconds)
+    assert f"{time} ms for 32 bands" in said
+    assert said.endswith(f"{percent(found.errors[found.present])} in 15")
 
 
 def test_one_point_says_how_to_get_more() -> None:
-    assert "plane_more" in plane_of(shown())[1].boxes
-    assert "plane_legend_best" not in plane_of(shown())[1].boxes
-    more = plane_of(shown(method="jittered"))[1].boxes
-    assert "plane_more" not in more
-    assert {"plane_legend_best", "plane_legend_jittered"} <= set(more)
+    def said(picture: Picture) -> tuple[str, set[str]]:
+        drawn, _ = drawn_of(picture)
+        names = {text.name.removeprefix("plane_") for text in drawn.texts}
+        return next(text.text for text in drawn.texts if text.name == "plane_sentence"), names & set(LOOKS)
+
+    assert said(shown())[0].endswith("M changes the method, S the samples")
+    assert said(shown())[1] == set()
+    more, names = said(shown(method="jittered"))
+    assert "M changes" not in more
+    assert names == {"best", "jittered"}
 
 
-# --- the sheet
+# --- its place
 
 
 @pytest.mark.usefixtures("steady")
@@ -333,65 +336,44 @@ def test_no_text_in_it_is_cut_or_covered(size: tuple[int, int]) -> None:
         "irradiance": {"quantity": "irradiance", "n_bands": 3},
         "image": {"lights": ("venice_sunset",), "method": "gauss-legendre", "muted": frozenset({1}), "window": "hann"},
         "zoomed": {"zoom": 3.0, "message": "saved"},
+        "map": {"whole_sphere": True, "error": "signed"},
     }
-    for (name, changes), content_scale in itertools.product(states.items(), (1.0, 2.0)):
+    for content_scale, (name, changes) in zip(itertools.cycle((1.0, 2.0, 1.0)), states.items(), strict=False):
         picture = shown(**changes)
-        composition = compose(*size, picture.state.view.zoom, content_scale)
-        drawn = draw_overlay(picture, composition, timing=True)
-        for (one, box), (two, other) in itertools.combinations(drawn.boxes.items(), 2):
-            assert not overlap(box, other), (name, one, two)
-        if drawn.plane is None:
+        at = frame_of(picture, *size, content_scale)
+        drawn = draw_overlay(picture, at, timing=True)
+        assert faults(picture, at, drawn) == [], (name, content_scale)
+        found = plane_of(picture, at)
+        assert (found is None) == (at.numbers.curve is None)
+        if found is None or at.numbers.curve is None:
             continue
-        sheet = drawn.plane.box
-        assert set(drawn.plane.boxes) <= set(drawn.boxes)
-        assert {"plane_title", "plane_error", "plane_milliseconds", "plane_present"} <= set(drawn.plane.boxes)
-        for one, box in drawn.plane.boxes.items():
-            assert sheet.left < box.left < box.right < sheet.right, (name, one)
-            assert sheet.top < box.top < box.bottom < sheet.bottom, (name, one)
-        assert sheet.bottom <= composition.hairline.top
-        assert not any(overlap(sheet, box) for one, box in drawn.boxes.items() if one not in drawn.plane.boxes), name
+        assert all(at.numbers.curve.contains(*place) for place in found.places.values())
+        assert ("plane_sentence" in drawn.boxes) == bool(at.numbers.legend or (at.numbers.foot and name != "zoomed"))
 
 
 @pytest.mark.usefixtures("steady")
 @pytest.mark.parametrize("size", [(800, 400), (1280, 640), (2560, 1280)])
-def test_at_the_usual_sizes_axes_legend_floor_and_most_points_are_labelled(size: tuple[int, int]) -> None:
-    _, found = plane_of(session(), size)
-    assert {"plane_floor", *(f"plane_legend_{method}" for method in LOOKS)} <= set(found.boxes)
-    labelled = [key for key in found.places if f"plane_{'_'.join(map(str, key))}" in found.boxes]
+def test_at_the_usual_sizes_axes_floor_and_most_points_are_labelled(size: tuple[int, int]) -> None:
+    drawn, found = drawn_of(session(), size)
+    assert {"plane_floor", "plane_milliseconds"} <= set(drawn.boxes)
+    labelled = [key for key in found.places if f"plane_{'_'.join(map(str, key))}" in drawn.boxes]
     assert len(labelled) >= 4
 
 
-@pytest.mark.usefixtures("steady")
-def test_what_is_outside_the_sheet_is_as_it_is_without_it() -> None:
-    picture = session()
-    drawn, found = plane_of(picture)
-    without = draw_overlay(replace(picture, state=changed(picture.state, sheet="")), compose(1280, 640))
-    assert without.plane is None
-    differs = np.argwhere((drawn.image != without.image).any(axis=-1))
-    assert found.box.top <= differs[:, 0].min()
-    assert differs[:, 0].max() < found.box.bottom
-    assert found.box.left <= differs[:, 1].min()
-    assert differs[:, 1].max() < found.box.right
-
-
-def test_it_covers_less_of_the_spheres_than_any_place_over_one_of_them() -> None:
-    _, found = plane_of(session())
-    spheres = compose(1280, 640).spheres
-    y, x = np.mgrid[:640, :1280] + 0.5
-    lit = np.any([np.hypot(x - s.x, y - s.y) < s.radius for s in spheres], axis=0)
-    sheet = found.box
-    rows, width = slice(int(sheet.top), int(sheet.bottom)), int(sheet.right - sheet.left)
-    covered = [lit[rows, left : left + width].sum() for left in range(0, 1280 - width, 10)]
-    assert lit[rows, int(sheet.left) : int(sheet.right)].sum() <= min(covered[: len(covered)]) * 1.01
+def test_it_takes_the_place_of_the_curve_and_covers_nothing_of_the_spheres() -> None:
+    at = compose(1280, 640)
+    drawn, _ = drawn_of(shown(method="jittered"))
+    assert drawn.bars == {}
+    assert not any(name.startswith(("band_", "legend_")) for name in drawn.boxes)
+    assert all(box.top >= at.hairline.bottom for name, box in drawn.boxes.items() if name.startswith("plane_"))
 
 
 def test_a_window_without_room_says_so() -> None:
-    for size, room in (((640, 320), False), ((800, 400), True)):
+    for size, room in (((400, 300), False), ((800, 400), True)):
         drawn = draw_overlay(shown(), compose(*size))
-        assert (drawn.plane is not None) == room
+        assert ("plane_floor" in drawn.boxes) == room
         assert ("message" in drawn.boxes) == (not room)
 
 
 def test_the_help_hides_it() -> None:
-    composition = compose(1280, 640)
-    assert draw_overlay(shown(help_visible=True), composition).plane is None
+    assert "plane_floor" not in draw_overlay(shown(help_visible=True), compose(1280, 640)).boxes
