@@ -180,7 +180,7 @@ def _turned_projection(light: Light, how: Turned, samples: int, seed: int, n_ban
 def turned_exactly(light: Light, turn: tuple[float, ...], n_bands: int) -> Projection:
     """The best way, as it stands in the world and turned back. Exact coefficients of an image or a function turn with it."""
     found, source = project(light, *BEST, n_bands), light.source
-    if not source.lobes or n_bands > MAX_DIRECT_BANDS:  # to rotate more takes seconds
+    if not source.lobes:
         return found
     light_from_world = np.reshape(turn, (3, 3))
     lobes = [replace(lobe, axis=lobe.axis @ light_from_world) for lobe in source.lobes]
