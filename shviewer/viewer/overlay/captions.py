@@ -61,28 +61,26 @@ def exposure_pieces(picture: Picture, at: Composition, line: Line, unsaid: Seque
 
     unsaid: what stands before it, in its shortest wording, as it has no room elsewhere.
     """
-    if isinstance(picture.drawn, Surfaces):
-        size, ink = at.px(SMALL if at.compact else FOOT), INK if at.over else FAINT
-        found = set_on([RADIUS], [line], size)[0]
-        return [_text("radius", line.left, line.baseline, words, size, ink, at) for _, words in found]
+    surfaces = isinstance(picture.drawn, Surfaces)
     view, stops = picture.state.view, typeset(f"{picture.exposure_stops:+z.1f} stops")
     size = at.px(SMALL if at.compact else FOOT)
     curve = "" if view.tone == "none" else f", {view.tone} curve"
     fixed = "" if view.exposure_stops is None else ", fixed"
-    white = view.tone == "none" and picture.figures.peak * 2.0**picture.exposure_stops > 1.0 and view.marks
+    beyond = picture.figures.peak * 2.0**picture.exposure_stops > 1.0
+    white = beyond and view.tone == "none" and view.marks and not surfaces
     ink = INK if at.over else FAINT
     others = [next(words for words in reversed(part) if words) for part in unsaid]
     notes = typeset(", ".join([*_notes(picture) * at.compact, *others]))  # elsewhere the second line has the light's
-    choices: tuple[str, ...] = (f"exposure {stops}{curve}{fixed}", f"exposure {stops}", stops)
+    choices: tuple[str, ...] = RADIUS if surfaces else (f"exposure {stops}{curve}{fixed}", f"exposure {stops}", stops)
     if notes:
-        choices = (f"{notes}, {choices[0]}", f"{notes}, {stops}", notes, notes.partition(",")[0])
+        choices = (f"{notes}, {choices[0]}", f"{notes}, {choices[-1]}", notes, notes.partition(",")[0])
     for words in choices:
         length = width_of(words, size)
         if line.left + length <= line.right:
             break
     else:
         return []
-    pieces: list[Piece] = [_text("exposure", line.left, line.baseline, words, size, ink, at)]
+    pieces: list[Piece] = [_text("radius" if surfaces else "exposure", line.left, line.baseline, words, size, ink, at)]
     x, side = line.left + length + at.px(12), at.px(ZEBRA)
     for label in ("beyond white", "> white"):
         if white and x + side + at.px(5) + width_of(label, size) <= line.right:

@@ -157,6 +157,7 @@ def _fitting(
                 return (said, bound), large, small
     for said, bound in wordings:
         alone = min(size, floor(4 * size * room / width_of(said, size, weight)) / 4)  # type has quarters of a pixel
+        alone -= 0.25 if width_of(said, alone, weight) > room else 0.0  # and raised digits have rounded ones
         if not bound and alone >= label:
             return (said, ""), alone, label
     return wordings[-1], label, label

@@ -65,7 +65,7 @@ def _phrase(name: str) -> str:
 
 def _said_twice(drawn: Overlay) -> Iterator[str]:
     """Sentences that stand twice: not names of keys and lines, and not what two panes have alike."""
-    names = ("key_", "legend_", "in_use", "count_", "radiance_label", *FIGURES)
+    names = ("key_", "legend_", "in_use", "count_", "radiance_label", "stored_", *FIGURES)
     said = [piece.text for piece in drawn.texts if not piece.name.startswith(names)]
     for text, count in Counter(said).items():
         if count > 1 and " " in text and not text.startswith(("radius", "cut at", ">")):

@@ -15,8 +15,9 @@ from shviewer.lights.function import FunctionLight
 from shviewer.viewer import message
 from shviewer.viewer.composing.composition import Composition, compose, frame_for
 from shviewer.viewer.composing.panes import Box
+from shviewer.viewer.overlay.figures import _fitting
 from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces
-from shviewer.viewer.overlay.lettering import ACCENT, ERROR, FAINT, GREY, GROUND, INK, WARNING, Ink
+from shviewer.viewer.overlay.lettering import ACCENT, ERROR, FAINT, GREY, GROUND, INK, REGULAR, WARNING, Ink, width_of
 from shviewer.viewer.overlay.numerals import value
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.pieces import Disc, Fill, Swatch
@@ -352,6 +353,13 @@ def test_the_words_under_a_figure_do_not_read_on_in_the_next() -> None:
     boxes = draw_overlay(picture_of(FunctionLight(lambda d: 1 + d[:, 2], "f")), compose(1280, 640)).boxes
     for one, next_ in itertools.pairwise(("relative_l2", "max_error", "minimum", "negative_area", "energy")):
         assert boxes[f"{next_}_label"].left - boxes[f"{one}_label"].right >= 10
+
+
+@pytest.mark.parametrize("said", ["9.49 × 10⁻⁴", "−1.08 × 10⁻¹²", "−0.0958", "99.9999 %"])
+def test_a_figure_that_is_set_smaller_fits_its_column(said: str) -> None:
+    for room in np.arange(60.0, 200.0, 0.25):
+        _, size, _ = _fitting([(said, "")], room, (22.5, 13.0, 11.0), REGULAR)
+        assert width_of(said, size, REGULAR) <= room or size == 13.0, (room, size)
 
 
 def test_swatches_are_the_legend_of_what_is_negative_and_of_nothing_else() -> None:

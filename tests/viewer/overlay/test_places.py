@@ -102,3 +102,10 @@ def test_what_was_changed_is_said_at_every_size(size: tuple[int, int], maps: boo
     least = 1 if size == (400, 300) else 2 if size in ((500, 1000), (640, 320)) else 3
     assert sum(any(words in said for words in part) for part in (("Hann",), ("muted",), ("sun apart",))) >= least
     assert said.count("exposure") + said.count(" stops") <= 2
+
+
+@pytest.mark.parametrize("size", [(400, 300), (500, 1000), (640, 360), (720, 720), (1280, 640)], ids=str)
+def test_what_was_changed_of_surfaces_is_said_beside_their_radius(size: tuple[int, int]) -> None:
+    shown = picture_of("studio", n_bands=9, window="hann", muted=frozenset({3}), lobe_view=True, error="signed")
+    said = " | ".join(piece.text for piece in draw_overlay(shown, frame_of(shown, *size)).texts)
+    assert all(words in said for words in ("muted 3", "Hann", "radius: ")), said
