@@ -14,6 +14,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.evaluation import Evaluation
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.carrier import Carrier
+from shviewer.viewer.gl.kept import Kept
 from shviewer.viewer.gl.renderer import PART_SECONDS, Part, Renderer, surfaces_in
 from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.directions.marks import mark_layers
@@ -33,6 +34,9 @@ UPLOAD_SECONDS = 0.02
 
 UPLOADING, MESHING = "handing the map to OpenGL", "making the surfaces"
 
+PLAIN_FRAMES = 2
+"""How many frames of the same panes are drawn as they are; further ones copy them, which takes a fifth of a frame."""
+
 MOST_SUMMED = 0.05
 """Seconds after which the rest of a sum is not waited for, where a map could be drawn."""
 
@@ -45,6 +49,7 @@ class Canvas:
     ) -> None:
         """wake: called from another thread when something has been made for the next frame."""
         self.renderer = Renderer(context, carrier)
+        self.screen = context.screen
         self.overlay: Overlay | None = None
         self.again = False
         """Whether the last frame asks for another one."""
@@ -56,6 +61,11 @@ class Canvas:
         self._pending: Work | None = None
         """What the next picture waits for."""
         self._frame: _Frame | None = None
+        self._kept = Kept(self.renderer)
+        self._exact = True
+        """Whether surfaces have the triangles that they should have."""
+        self._panes: tuple[object, int] = None, 0
+        """The key of the panes that were drawn last, and in how many frames they were."""
 
     @property
     def pending(self) -> str:
@@ -122,7 +132,8 @@ class Canvas:
     def _meshed(self, picture: Picture, composition: Composition) -> bool:
         """Whether surfaces that are shown have triangles, if only until there are better ones."""
         triangles, wanted = self.renderer.surfaces.triangles, surfaces_in(picture, composition)
-        return triangles.bring(wanted, self._wake) or all(triangles.has(surface) for surface, _ in wanted)
+        self._exact = triangles.bring(wanted, self._wake)
+        return self._exact or all(triangles.has(surface) for surface, _ in wanted)
 
     def band_at(self, pointer: Point | None) -> int | None:
         """The band whose slot in the curve is there; None for any other place."""
@@ -132,7 +143,7 @@ class Canvas:
 
     def wait(self, work: Work, composition: Composition) -> None:
         """Draw what is being done, as long as there is no picture."""
-        self.renderer.draw_text(self.renderer.context.screen, composition, status_layers(work, composition))
+        self.renderer.draw_text(self.screen, composition, status_layers(work, composition))
 
     def begin(self, composition: Composition, pointer: Point | None = None, *, alone: bool = True) -> None:
         """Begin with a frame of the picture last shown, with the values under the pointer.
@@ -140,15 +151,21 @@ class Canvas:
         alone: nothing else is at work. Then a picture that is summed per pixel is timed, and may turn out to be too slow.
         Until there is a picture, the frame says what is being done.
         """
-        self.again = False
-        screen = self.renderer.context.screen
+        again, self.again = self.again, False
         if self._shown is None:
             self.wait(self._pending or Work(UPLOADING), composition)
             self._frame = _Frame(iter(()), composition, False)
             return
         layers = self.layers(composition, pointer)
-        parts = self.renderer.parts(screen, composition, layers, seconds=PART_SECONDS)
-        self._frame = _Frame(parts, composition, alone and _choosable(self._shown))
+        key = _panes_key(self._shown, composition, self._exact)
+        frames = self._panes[1] + 1 if key == self._panes[0] else 1
+        self._panes = key, frames
+        copied = frames > PLAIN_FRAMES and not again
+        if copied:
+            parts = self._kept.parts(key, self.screen, composition, layers, PART_SECONDS)
+        else:
+            parts = self.renderer.parts(self.screen, composition, layers, seconds=PART_SECONDS)
+        self._frame = _Frame(parts, composition, alone and not copied and _choosable(self._shown))
 
     def go_on(self, seconds: float | None = None) -> bool:
         """Draw on for about so long; return whether the frame is whole. A sum that takes too long is given up."""
@@ -191,6 +208,7 @@ class Canvas:
         return layers
 
     def release(self) -> None:
+        self._kept.release()
         self.renderer.release()
         if self.renderer.carrier is not None:
             self.renderer.carrier.end()
@@ -215,6 +233,15 @@ def _choosable(picture: Picture) -> bool:
 def summed_pixels(composition: Composition) -> float:
     """The number of visible pixels that show the reconstruction or its error."""
     return sum(pane.visible_area for pane in composition.panes[1:])
+
+
+def _panes_key(picture: Picture, composition: Composition, exact: bool) -> object:
+    """A key that is equal as long as no pixel of a pane changes, but for what is written over it."""
+    view = picture.state.view
+    seen = picture.world_from_view.tobytes(), picture.light_from_world.tobytes(), picture.exposure_stops
+    drawn = picture.drawn, picture.beside, picture.error_scale, view.tone, view.marks, exact
+    place = composition.width, composition.height, composition.scale, composition.panes
+    return picture.original, picture.compared, picture.suns, drawn, seen, place
 
 
 def _overlay_key(picture: Picture, composition: Composition) -> object:

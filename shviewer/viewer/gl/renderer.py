@@ -97,14 +97,15 @@ class Renderer:
         self,
         target: moderngl.Framebuffer,
         composition: Composition,
-        layers: Sequence[Layer] = (),
+        layers: Sequence[Layer] | None = (),
         *,
         linear: bool = False,
         seconds: float | None = None,
     ) -> Iterator[Part]:
         """Draw the same part by part; between two of them others may be drawn, of other pictures with the same maps.
 
-        seconds: about how long a part may take. The pixels are the same, however they are divided.
+        layers: None draws the panes alone. seconds: about how long a part may take. However the frame is divided, its pixels
+        are the same.
         """
         picture = self.picture
         if picture is None:
@@ -132,7 +133,7 @@ class Renderer:
                     first, rows = False, max(int(rows * min(GROWTH, seconds / max(took, 1e-9))), 1)
         target.use()
         target.viewport = (0, 0, composition.width, composition.height)
-        if not linear:
+        if layers is not None and not linear:
             self.layers.draw(target, composition, layers)
         if self.carrier is not None:
             self.carrier.drawn()

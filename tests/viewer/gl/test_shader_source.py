@@ -98,7 +98,15 @@ def test_a_drivers_message_is_placed_in_the_file_that_people_edit(log: str, said
 
 
 def test_every_shader_that_is_shipped_is_used() -> None:
-    used = "screen.vert", "sphere.frag", "layer.frag", "surface.vert", "surface.frag", "surface_resolve.frag"
+    used = (
+        "screen.vert",
+        "sphere.frag",
+        "layer.frag",
+        "kept.frag",
+        "surface.vert",
+        "surface.frag",
+        "surface_resolve.frag",
+    )
     joined = {file for name in used for file, _ in origins(name)}
     assert joined - {"constants.glsl"} == {path.name for path in resource_folder("shaders").iterdir()}
 
