@@ -23,6 +23,7 @@ from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.lights.suns.sun import points_of_suns
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.progress import tell
 from shviewer.viewer import camera
 from shviewer.viewer.beside import Beside, recipe_beside
 from shviewer.viewer.colour.error_scale import ErrorScale
@@ -187,6 +188,7 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
     state.check()
     recipe, view = state.recipe, state.view
     shown = subject(recipe)
+    tell("projecting")
     for part in (shown.whole, shown.light):
         _ = part.map  # first, so that whoever looks at the light in a few directions takes them from it
     found = reconstruction_of(recipe, ahead, view.encode)

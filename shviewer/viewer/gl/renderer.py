@@ -159,6 +159,8 @@ class Renderer:
         target.viewport = (0, 0, composition.width, composition.height)
         self.context.disable(moderngl.BLEND)
         target.clear(color=colour)
+        self.rest.use()  # Mesa forgets at a clear that a program drew upside down, into a window, until it is bound anew
+        target.use()
 
     def _works(
         self, target: moderngl.Framebuffer, composition: Composition, picture: Picture, linear: bool

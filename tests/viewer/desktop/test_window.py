@@ -319,3 +319,42 @@ def test_a_window_closes_while_a_map_is_opened(start: Start, tmp_path: Path) -> 
     viewer = start("green", "large.npy")
     viewer.xdotool("key", "Right", "ctrl+q")
     assert viewer.process.wait(PATIENCE) == 0
+
+
+TAKING_TURNS = """
+import numpy as np
+from viewer.desktop.still_window import window, window_of
+from shviewer.viewer.screenshot import read_rgb, render_in_parts, render_rgb
+from shviewer.viewer.state import state_of
+
+def pixels(screen):
+    return np.frombuffer(screen.read((0, 0, 320, 160)), np.uint8)
+
+with window.open_window((320, 160)) as handle:
+    shown = window_of(handle, state_of("studio", n_bands=6, evaluate="direct"))
+    canvas, picture, composition = shown.canvas, shown.session.picture, shown.composition()
+    for lines in (1, 2, 3):
+        canvas.show(picture, composition)
+        canvas.begin(composition)
+        canvas.go_on()
+        frame, saved = pixels(canvas.screen), render_rgb(canvas.renderer, picture, composition)
+        parts, whole = render_in_parts(canvas.renderer, picture, composition), False
+        canvas._panes = None, 0
+        canvas.begin(composition)
+        while True:
+            try:
+                for _ in range(lines):
+                    next(parts)
+            except StopIteration as last:
+                print((last.value() == saved).all(), (frame == pixels(canvas.screen)).all() or not whole)
+                break
+            whole = whole or canvas.go_on(0.0)
+        if not whole:
+            canvas.go_on()
+        print((frame == pixels(canvas.screen)).all())
+"""
+
+
+def test_a_frame_and_a_picture_that_take_turns_are_what_they_are_alone(display: str) -> None:
+    """Mesa drew one of them upside down: a window is, a framebuffer is not, and both are drawn by one program."""
+    assert set(output_of(display, TAKING_TURNS).split()) == {"True"}
