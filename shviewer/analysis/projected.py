@@ -153,7 +153,7 @@ class Projected(InNotebooks):
         )
 
     def save(self, path: str | os.PathLike[str], convention: str = "shviewer", *, force: bool = False) -> None:
-        """Write a .json, .csv, .npz, .h, .glsl, .js or .cs file, with everything stamped on it, whole or not at all.
+        """Write a .json, .csv, .npz, .h, .glsl, .hlsl, .js or .cs file, with everything stamped on it, whole or not at all.
 
         A file that the light was read from is never replaced, and one that shviewer did not write only by `force`.
         UsageError for another suffix or a convention that does not fit, OutputError if it cannot be written.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-_TEXT, _ARRAYS = (".txt", ".h", ".glsl", ".js", ".cs"), (".npz", ".npy")
+_TEXT, _ARRAYS = (".txt", ".h", ".glsl", ".hlsl", ".js", ".cs"), (".npz", ".npy")
 
 HOLDS = {
     ".json": "json",

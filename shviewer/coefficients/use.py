@@ -108,9 +108,9 @@ _ROWS = {
 def use_of(convention: Convention, kind: str, n_bands: int, symbol: str, function: str) -> str:
     """What to type for a file of a kind; "" if nothing is to be.
 
-    symbol: the name of the table in source code; function: that of the function in GLSL.
+    symbol: the name of the table in source code; function: that of the function in a shader, in whose words of GLSL it is told.
     """
-    if kind == "glsl":
+    if kind in ("glsl", "hlsl"):
         return f"vec3 value = {function}(direction);"
     if kind == "cs" and convention.name == "unity":
         return f"RenderSettings.ambientProbe = {symbol}.Probe();"

@@ -1,4 +1,4 @@
-"""Coefficients as files: JSON, CSV, NPZ, and source code of C, GLSL, JavaScript and C#.
+"""Coefficients as files: JSON, CSV, NPZ, and source code of C, GLSL, HLSL, JavaScript and C#.
 
 Every number is exact: text holds the fewest digits that give the same float64 again. Every file states its convention, and what
 to type. Equal arguments give equal bytes. stamp.py explains the keys of the stamp.
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from shviewer.coefficients.client_code import csharp_class, javascript_module
 from shviewer.coefficients.convention import Convention
+from shviewer.coefficients.hlsl import hlsl_of
 from shviewer.coefficients.source_code import Row, c_header, function_name, glsl_source, identifier
 from shviewer.coefficients.stamp import Value
 from shviewer.coefficients.stored_code import FORMULAS, check_stored, glsl_decoder, in_axes, stored_rows
@@ -28,7 +29,7 @@ from shviewer.words import meant
 OF_A_BASIS = ("basis", "phase", "index", "normalisation")
 """Keys of the stamp that say nothing where the numbers are no coefficients."""
 
-FORMATS = ("json", "csv", "npz", "h", "glsl", "js", "cs")
+FORMATS = ("json", "csv", "npz", "h", "glsl", "hlsl", "js", "cs")
 
 
 class _Table(NamedTuple):
@@ -75,7 +76,7 @@ def encode_stored(stored: Stored, stamp: dict[str, Value], convention: Conventio
     }
     if not stored.encoding.turns:
         stamp = {key: value for key, value in stamp.items() if key not in OF_A_BASIS}
-    if _known(kind) == "glsl":
+    if _known(kind) in ("glsl", "hlsl"):
         added["use"] = f"vec3 irradiance = {function_name(name, stored.name)}(normal);"
     rows = stored_rows(stored.encoding, numbers)
     return _ENCODERS[kind](_Table(numbers, with_keys(stamp, added), convention, name, rows, stored.encoding))
@@ -136,6 +137,12 @@ def _glsl(table: _Table) -> bytes:
     return glsl_source(name, function, comments, rows, factors, convention.shift, convention.pole.text).encode()
 
 
+def _hlsl(table: _Table) -> bytes:
+    if str(table.stamp.get("use", "")).startswith("vec3 "):
+        table = table._replace(stamp=table.stamp | {"use": f"float3{str(table.stamp['use']).removeprefix('vec3')}"})
+    return hlsl_of(_glsl(table).decode()).encode()
+
+
 def _js(table: _Table) -> bytes:
     use = USES.get(table.convention.name)
     applied = (str(table.stamp["use"]), use.takes) if use and use.language == JAVASCRIPT else None
@@ -153,6 +160,7 @@ _ENCODERS: dict[str, Callable[[_Table], bytes]] = {
     "npz": _npz,
     "h": _h,
     "glsl": _glsl,
+    "hlsl": _hlsl,
     "js": _js,
     "cs": _cs,
 }

@@ -173,7 +173,7 @@ def test_a_batch_without_failures_is_done(tmp_path: Path, capsys: Capture) -> No
 @pytest.mark.parametrize(
     ("arguments", "code", "says"),
     [
-        (("-o", "x.png"), 2, "FILE must end in .json, .csv, .npz, .h, .glsl, .js, .cs"),
+        (("-o", "x.png"), 2, "FILE must end in .json, .csv, .npz, .h, .glsl, .hlsl, .js, .cs"),
         (("-o", "x.json", "--format", "csv"), 2, "contradict each other"),
         (("-o", "-"), 2, "name a format"),
         (("-o", "-", "--format", "exr"), 2, "format 'exr'"),

@@ -95,7 +95,7 @@ def test_a_file_of_the_program_is_the_same_radiance_here(name: str, tmp_path: Pa
 def test_our_own_numbers_survive_every_program_and_every_format(tmp_path: Path) -> None:
     for name, convention in CONVENTIONS.items():
         for kind in FORMATS:
-            if (name, kind) == ("scipy", "glsl"):
+            if name == "scipy" and kind in ("glsl", "hlsl"):
                 continue
             path = tmp_path / f"{name}.{kind}"
             path.write_bytes(projected(name, 3).encode(convention, kind))

@@ -134,7 +134,9 @@ def _written() -> dict[str, bytes]:
     projected = project_recipe(Recipe("green", n_bands=3))
     files = {f"light/written.{kind}": projected.encode(CONVENTIONS["shviewer"], kind) for kind in FORMATS}
     files |= {
-        f"light/complex.{kind}": projected.encode(CONVENTIONS["scipy"], kind) for kind in FORMATS if kind != "glsl"
+        f"light/complex.{kind}": projected.encode(CONVENTIONS["scipy"], kind)
+        for kind in FORMATS
+        if kind not in ("glsl", "hlsl")
     }
     irradiance = replace(CONVENTIONS["shviewer"], quantity="irradiance")
     return {

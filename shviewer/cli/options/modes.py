@@ -191,9 +191,11 @@ def project_parser() -> OneLineParser:
         "--output",
         metavar="FILE",
         required=True,
-        help="FILE.json, .csv, .npz, .h, .glsl, .js or .cs; - is stdout; a folder if there are several lights",
+        help="FILE.json, .csv, .npz, .h, .glsl, .hlsl, .js or .cs; - is stdout; a folder if there are several lights",
     )
-    parser.add_argument("--format", metavar="F", help="json, csv, npz, h, glsl, js or cs, where FILE does not say it")
+    parser.add_argument(
+        "--format", metavar="F", help="json, csv, npz, h, glsl, hlsl, js or cs, where FILE does not say it"
+    )
     parser.add_argument(
         "--convention",
         metavar="C",
