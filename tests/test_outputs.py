@@ -90,7 +90,7 @@ def test_a_picture_is_not_written_over_what_it_is_made_of(nine: Path, force: lis
 
 
 @pytest.mark.parametrize(
-    "name", ["a.png", "a.exr", "a.json", "a.csv", "a.npz", "a.h", "a.glsl", "a.js", "a.cs", "a.gif", "a.webp"]
+    "name", ["a.png", "a.exr", "a.json", "a.csv", "a.npz", "a.h", "a.glsl", "a.hlsl", "a.js", "a.cs", "a.gif", "a.webp"]
 )
 def test_a_file_of_somebody_else_is_replaced_only_by_force_and_one_of_ours_at_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str

@@ -20,7 +20,7 @@ def spoilt(name: str, data: bytes, others: tuple[bytes, ...], random: Random) ->
         data = (spoilt_npz if suffix == ".npz" else spoilt_npy)(data, random)
     elif suffix == ".json" and random.random() < 0.6:
         data = spoilt_tree(data, random)
-    elif suffix in (".txt", ".csv", ".h", ".glsl", ".js", ".cs") and random.random() < 0.15:
+    elif suffix in (".txt", ".csv", ".h", ".glsl", ".hlsl", ".js", ".cs") and random.random() < 0.15:
         data = encoded(laid_out(random), random)
     else:
         data = spoilt_text(data, other, random, suffix)

@@ -115,7 +115,7 @@ def test_missing_and_damaged_files_are_one_line(tmp_path):
         (
             "picture.gif",
             "a file must end in .toml, .hdr, .pic, .rgbe, .exr, .png, .jpg, .jpeg, .pfm, .dds, .tif, .tiff, .psd, .psb, .webp,"
-            " .bmp, .json, .gltf, .csv, .txt, .h, .glsl, .js, .cs, .npz or .npy: convert it",
+            " .bmp, .json, .gltf, .csv, .txt, .h, .glsl, .hlsl, .js, .cs, .npz or .npy: convert it",
         ),
         ("light.py", "a Python file; name a function in it, such as light.py:light"),
         ("folder", "a directory; name one file in it"),
