@@ -147,10 +147,11 @@ class _Placed:
         return Box(left, top, left + self.pane_width, shape_top + self.size), shape_top
 
     def picture(self, number: int) -> Box:
-        """The rectangle of a pane's picture."""
+        """The rectangle of a pane's picture: in the middle of its cell, but maps beside each other at the left of it."""
         cell, top = self.pane(number)
         half = self.size * (1.0 if self.design.maps else 0.5)
-        middle = (cell.left + cell.right) / 2
+        aside = self.design.maps and self.design.columns(self.rows) > 1
+        middle = cell.left + half if aside else (cell.left + cell.right) / 2
         return Box(middle - half, top, middle + half, cell.bottom)
 
     def pixels(self, number: int, scale: float) -> Box:
@@ -183,7 +184,7 @@ class _Placed:
         free = None
         if self.rows * design.columns(self.rows) > design.n_panes:
             cell, top = self.pane(design.n_panes)
-            free = self.picture(design.n_panes) if design.maps else cell._replace(top=max(top, cell.top + UNDER_HEAD))
+            free = cell._replace(top=top if design.maps else max(top, cell.top + UNDER_HEAD))
         feet = self._foot(0) is not None
         numbers = numbers_area(self.mode, area, compact=design.compact, third=third, cell=free, exposed=feet)
         if free is not None and self.mode in (Mode.CELL, Mode.COLUMN):

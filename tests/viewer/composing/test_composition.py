@@ -166,6 +166,14 @@ def test_the_error_of_maps_makes_two_rows_of_two_and_the_curve_is_the_fourth() -
     assert first.width > 0.75 * pictures(row)[0].width
 
 
+@pytest.mark.parametrize("size", [(820, 560), (1600, 640), (2000, 400), (1000, 700)])
+@pytest.mark.parametrize("n_panes", [2, 3])
+def test_maps_beside_each_other_begin_with_their_numbers(size: tuple[int, int], n_panes: int) -> None:
+    at = compose(*size, n_spheres=n_panes, whole_sphere=True)
+    assert abs(at.maps[0].clip.left - at.numbers.answers[0].left) <= 1 or at.hairline.height > at.hairline.width
+    assert abs(at.maps[0].clip.left - at.margin) <= 1
+
+
 def test_maps_with_their_error_stand_on_the_margin_like_the_foot() -> None:
     at = compose(1280, 640, n_spheres=3, whole_sphere=True)
     assert at.numbers.foot is not None
