@@ -10,7 +10,9 @@ from random import Random
 
 import numpy as np
 import pytest
+from harmonics.independent import random_directions
 
+from shviewer.harmonics.basis import evaluate_basis
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import is_code
 from shviewer.lights.function import FunctionLight
@@ -21,6 +23,7 @@ from shviewer.viewer import picture as picture_module
 from shviewer.viewer.actions import Command, step_sweep, toggle_band, with_bands
 from shviewer.viewer.animation.turning import step_turn
 from shviewer.viewer.composing.composition import Composition, frame_for
+from shviewer.viewer.desktop.behind.saving import projected_of
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
 from shviewer.viewer.gl.renderer import Renderer
@@ -42,12 +45,14 @@ SIZES = ((64, 64), (96, 64), (160, 80), (64, 200), (320, 160))
 
 KEYS = sorted(ACTIONS)
 
+NORMALS = random_directions(20)
+
 
 class Walk:
     """One seeded walk of a session, drawn without a window."""
 
     def __init__(self, seed: int, lights: tuple[str | Light, ...], drops: tuple[str, ...], renderer: Renderer) -> None:
-        self.random = Random(seed)
+        self.random, self.checks = Random(seed), Random(seed)
         self.renderer = renderer
         self.drops = drops
         compare = CoefficientLight(np.random.default_rng(seed).normal(size=(36, 3)), "given") if seed % 4 == 3 else None
@@ -114,6 +119,8 @@ class Walk:
             assert np.isfinite(render_linear(self.renderer, picture, composition)).all()
         self._point(picture, composition)
         self._stamp(picture, composition)
+        if self.checks.random() < 0.1:
+            self._export(picture)
         assert self.renderer.context.error == "GL_NO_ERROR"
 
     def _stamp(self, picture: Picture, composition: Composition) -> None:
@@ -122,6 +129,15 @@ class Walk:
         light = None if isinstance(recipe.light, str) and not is_code(recipe.light) else recipe.light
         read = state_of_stamp(metadata(picture, composition, self.renderer.version), light, recipe.compare)
         assert (read.recipe, read.view) == (recipe, picture.state.view)
+
+    def _export(self, picture: Picture) -> None:
+        """What Ctrl+E writes is what is shown, as it stands."""
+        projected, rotation = projected_of(picture), picture.light_from_world
+        shown = picture.rest_at(NORMALS @ rotation.T)
+        written = evaluate_basis(NORMALS, projected.n_bands) @ projected.coefficients
+        if projected.stored is not None:
+            written = projected.stored.irradiance(NORMALS)
+        np.testing.assert_allclose(written, shown, rtol=0, atol=1e-10 * np.abs(projected.coefficients).max())
 
     def _point(self, picture: Picture, composition: Composition) -> None:
         x, y = self.random.uniform(0, composition.width), self.random.uniform(0, composition.height)

@@ -145,7 +145,7 @@ def save_picture(picture: Picture, composition: Composition, opengl: str, pixels
 
 def save_coefficients(picture: Picture) -> Written:
     """Write what `shviewer project` would, with the light turned as it is shown. OutputError if that fails."""
-    projected = _projected(picture)
+    projected = projected_of(picture)
     data, what = projected.encode(OURS, "json"), projected.extent if projected.encoding else ""
     if projected.encoding and projected.stored is None:
         what += f": no numbers of {projected.encoding} have a window or muted bands"
@@ -155,10 +155,11 @@ def save_coefficients(picture: Picture) -> Written:
 
 def coefficients_text(picture: Picture) -> str:
     """The same as CSV with its stamp."""
-    return _projected(picture).encode(OURS, "csv").decode()
+    return projected_of(picture).encode(OURS, "csv").decode()
 
 
-def _projected(picture: Picture) -> Projected:
+def projected_of(picture: Picture) -> Projected:
+    """What is shown, turned as it is shown."""
     view = picture.state.view
     projected, rotation = project_recipe(picture.state.recipe, view.encode), view.light_rotation
     return projected if rotation == camera.IDENTITY else projected.turned(camera.matrix(rotation))
