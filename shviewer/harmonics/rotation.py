@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from shviewer.harmonics.basis import Array, check_bands, count_bands, degrees, orders
 from shviewer.harmonics.metrics import band_power
+from shviewer.progress import tell
 
 MAX_ROTATED_BANDS = 128
 """The most bands: those that are shown."""
@@ -58,8 +59,9 @@ def _about_z(columns: Array, angle: float) -> Array:
 
 def _quartered(columns: Array, *, back: bool) -> Array:
     """After a quarter turn about x, or back."""
-    turned = np.empty_like(columns)
-    for l in range(count_bands(columns)):
+    turned, n_bands = np.empty_like(columns), count_bands(columns)
+    for l in range(n_bands):
+        tell(share=l / n_bands)  # the matrices of 128 bands take most of a second to be made
         quarter = _quarter(l)
         turned[l * l : (l + 1) ** 2] = (quarter.T if back else quarter) @ columns[l * l : (l + 1) ** 2]
     return turned
