@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
+from glob import glob
 from pathlib import Path
 from typing import NamedTuple
 
@@ -52,6 +53,15 @@ def several(texts: Iterable[str], *, most: int | None = None, code: bool = False
     if most is not None and len(found) > most:
         said.append(f"the first {most} of {len(found)} files are opened")
     return Several(tuple(found[:most]), tuple(said))
+
+
+def matching(texts: Iterable[str]) -> list[str]:
+    """The texts; in place of patterns such as *.hdr, which not every shell replaces, what they match, if there is anything."""
+    found: list[str] = []
+    for text in texts:
+        pattern = any(sign in text for sign in "*?[") and not os.path.lexists(split_light(text)[0])
+        found += (sorted(glob(text), key=_natural) if pattern else []) or [text]
+    return found
 
 
 def _lights_in(folder: Path, bare: bool) -> Iterator[str]:

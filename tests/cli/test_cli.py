@@ -568,7 +568,9 @@ def test_a_reference_is_never_overwritten_by_the_picture(capsys: pytest.CaptureF
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--bands", "x"), "argument --bands: invalid int value: 'x'"),
+        (("--bands", "x"), "argument --bands: 'x' is not a whole number, such as 5; see shviewer --help"),
+        (("--size", "640", "3e2"), "argument --size: '3e2' is not a whole number"),
+        (("sweep", "a.gif", "--to", "2.5"), "argument --to: '2.5' is not a whole number"),
         (("--tolerance", "5"), "did you mean 5%?"),
         (("--samples", "1.5"), "'1.5' is not a whole number"),
         (("--window", "dering:3"), "dering has no width"),

@@ -5,12 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.coefficients.programs import OURS
 from shviewer.coefficients.writing import FORMATS
-from shviewer.lights.several import several
+from shviewer.lights.several import matching, several
 
 
 def test_a_folder_is_its_images_scenes_and_stamped_coefficients_in_the_order_of_their_numbers(tmp_path: Path) -> None:
@@ -40,6 +41,17 @@ def test_bare_lists_in_a_folder_are_lights_once_their_convention_is_named(tmp_pa
     np.savetxt(tmp_path / "bare.txt", np.ones((4, 3)))
     assert several([str(tmp_path)]).lights == ()
     assert several([str(tmp_path)], bare=True) == ((str(tmp_path / "bare.txt"),), ())
+
+
+def test_patterns_are_what_they_match_where_the_shell_left_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on Windows, or in quotation marks."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("sky-10.hdr", "sky-2.hdr", "b [1].exr", "c.exr"):
+        (tmp_path / name).touch()
+    assert matching(["green", "*.hdr", "?.exr"]) == ["green", "sky-2.hdr", "sky-10.hdr", "c.exr"]
+    assert matching(["b [1].exr", "*.nothing"]) == ["b [1].exr", "*.nothing"]
 
 
 def test_files_keep_their_order_and_come_once_whether_they_exist_or_not() -> None:

@@ -20,6 +20,7 @@ from shviewer.cli.options.values import (
     positive_count,
     quantity,
     tolerance,
+    whole,
     whole_or_word,
 )
 from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
@@ -102,7 +103,7 @@ def _values(row: Option) -> dict[str, Any]:
     if row.name in TEXTS:
         return {"metavar": row.metavar}
     readers: dict[type, Callable[[str], object]] = {
-        Whole: int,
+        Whole: whole,
         Share: tolerance,
         WholeOr: whole_or_word,
         Number: finite,
@@ -111,7 +112,7 @@ def _values(row: Option) -> dict[str, Any]:
     }
     reader = count if row.name in LARGE else readers.get(type(row.kind), str)
     if isinstance(row.kind, Pair):
-        return {"metavar": row.metavar, "nargs": 2, "type": int if row.kind.whole else finite}
+        return {"metavar": row.metavar, "nargs": 2, "type": whole if row.kind.whole else finite}
     return {"metavar": row.metavar, "type": reader}
 
 
@@ -134,7 +135,7 @@ def add_picture_options(parser: OneLineParser) -> None:
         help="project the light as it stands when it is turned, so that samples do not turn with it",
     )
     group.add_argument(
-        "--size", metavar=("W", "H"), nargs=2, type=int, help="pixels (default 1280 640, or those of the picture)"
+        "--size", metavar=("W", "H"), nargs=2, type=whole, help="pixels (default 1280 640, or those of the picture)"
     )
 
 

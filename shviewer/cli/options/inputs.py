@@ -31,9 +31,9 @@ def lights_of(options: argparse.Namespace) -> list[str]:
 
 def lights_within(options: argparse.Namespace) -> list[str]:
     """What is given as LIGHT, folders replaced by the lights that they hold. LightError if they hold none."""
-    from shviewer.lights.several import several
+    from shviewer.lights.several import matching, several
 
-    given = lights_of(options)
+    given = matching(lights_of(options))
     if not any(map(os.path.isdir, given)):
         return given
     found = several(given, code=True, bare=bool(options.input_convention))

@@ -15,7 +15,7 @@ from shviewer.cli.options.groups import (
     add_turn,
     add_view_options,
 )
-from shviewer.cli.options.values import finite, quantity, share
+from shviewer.cli.options.values import finite, quantity, share, whole
 from shviewer.version import __version__
 
 EXIT_CODES = """exit codes:
@@ -132,8 +132,8 @@ def sweep_parser() -> OneLineParser:
     parser.add_argument(
         "out", metavar="OUT", type=Path, help="OUT.webp: lossless; OUT.gif: one palette of 255 colours for all frames"
     )
-    parser.add_argument("--from", metavar="N", dest="first", type=int, help="bands of the first frame (default 1)")
-    parser.add_argument("--to", metavar="N", dest="last", type=int, help="bands of the last frame (default 16)")
+    parser.add_argument("--from", metavar="N", dest="first", type=whole, help="bands of the first frame (default 1)")
+    parser.add_argument("--to", metavar="N", dest="last", type=whole, help="bands of the last frame (default 16)")
     parser.add_argument(
         "--turntable", action="store_true", help="turn the camera once round instead, with --bands N bands"
     )
@@ -149,7 +149,7 @@ def sweep_parser() -> OneLineParser:
         help="jittered samples of --turn-light: fresh in each frame (default) or the same",
     )
     parser.add_argument(
-        "--frames", metavar="K", type=int, help="frames of --turntable and --turn-light, 2 to 720 (default 72)"
+        "--frames", metavar="K", type=whole, help="frames of --turntable and --turn-light, 2 to 720 (default 72)"
     )
     parser.add_argument(
         "--seconds",
@@ -245,7 +245,7 @@ def report_parser() -> OneLineParser:
         help="time for measuring (default 120), smallest first; what it does not reach is not measured",
     )
     parser.add_argument("--methods", metavar="M,M", help="only these ways to project, and the best way of each light")
-    parser.add_argument("--seed", metavar="S", type=int, default=0, help="seed of all random samples (default 0)")
+    parser.add_argument("--seed", metavar="S", type=whole, default=0, help="seed of all random samples (default 0)")
     parser.add_argument(
         "--against",
         metavar="OLD.json",

@@ -21,6 +21,13 @@ def finite(text: str) -> float:
     return value
 
 
+def whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number, such as 5") from None
+
+
 def count(text: str) -> int:
     value = finite(text)  # 1e6 is a count, too
     if value != int(value):
