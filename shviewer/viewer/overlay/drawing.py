@@ -5,7 +5,7 @@ Equal pieces make the same layer, which is remembered: what did not change is ne
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import ceil, floor
 
@@ -27,8 +27,11 @@ WHITE, ZEBRA = (244, 244, 246), (40, 40, 44)
 @lru_cache(maxsize=96)
 def layer_of(pieces: tuple[Piece, ...]) -> Layer | None:
     """The layer of some pieces, the first at the bottom; None of none."""
-    if not pieces:
-        return None
+    return draw(pieces) if pieces else None
+
+
+def draw(pieces: Sequence[Piece]) -> Layer:
+    """The same of pieces that will not come again."""
     boxes = [_reach(piece) for piece in pieces]
     left, top = floor(min(box.left for box in boxes)), floor(min(box.top for box in boxes))
     right, bottom = ceil(max(box.right for box in boxes)), ceil(max(box.bottom for box in boxes))

@@ -101,11 +101,6 @@ def _ends(text: str, kept: int) -> str:
     return f"{text[: (kept + 1) // 2].rstrip()}…{text[len(text) - kept // 2 :].lstrip()}"
 
 
-def font(size: float, weight: str = REGULAR) -> ImageFont.FreeTypeFont:
-    """The face for what Pillow draws by itself. size: pixels."""
-    return _opened(_ours(weight), float(size))
-
-
 def _runs(text: str, size: float, weight: str) -> list[_Run]:
     """The parts of a text by the face that draws them."""
     runs = []

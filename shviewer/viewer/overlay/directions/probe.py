@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import floor, log10
 
 import numpy as np
-from PIL import Image, ImageDraw
 
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.composing.panes import Box
+from shviewer.viewer.overlay.drawing import draw
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, Ink, font
-from shviewer.viewer.overlay.numerals import MINUS
+from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, MIN_TYPE, Ink, width_of
+from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.pieces import Fill, Piece, Text
+from shviewer.viewer.overlay.setting import ended
 from shviewer.viewer.picture import Picture
 from shviewer.words import theta_phi_degrees
 
@@ -90,46 +94,56 @@ def _dots(found: Probe, picture: Picture, composition: Composition, x: float, y:
 
 
 def _table(found: Probe, composition: Composition) -> np.ndarray:
-    """An image of the numbers on a dark ground; one column where the light is grey."""
-    size = max(round(composition.px(12)), MIN_TYPE)
-    face, line, pad = font(size), round(1.5 * size), round(0.8 * size)
+    """An image of the numbers on a dark ground, their points below each other; one column where the light is grey."""
+    size = max(float(round(composition.px(12))), float(MIN_TYPE))
     theta, phi = found.theta_phi_degrees
     direction = "   ".join(f"{axis} {value:z.3f}" for axis, value in zip("xyz", found.direction, strict=True))
-    heads = [text.replace("-", MINUS) for text in (f"theta {theta:.1f}°   phi {phi:z.1f}°", direction)]
-    rows = [
-        (name, _numbers(values), ink)
-        for name, values, ink in (
-            ("original", found.original, GREY),
-            ("reconstruction", found.reconstruction, GREY),
-            ("error", found.error, INK),
-            ("beside", found.beside, GREY),
-        )
-        if values is not None
-    ]
-    grey = all(len(set(numbers)) == 1 for _, numbers, _ in rows)
-    labels = max(face.getlength(name) for name, _, _ in rows) + size
-    column = max(face.getlength(number) for _, numbers, _ in rows for number in numbers) + size
-    width = round(max(max(map(face.getlength, heads)), labels + (1 if grey else 3) * column - size)) + 2 * pad
-    lines = len(heads) + len(rows) + (0 if grey else 1)
-    image = Image.new("RGBA", (width, lines * line + 2 * pad - line + size), GROUND)
-    draw = ImageDraw.Draw(image)
-    y = float(pad)
+    heads = [typeset(text) for text in (f"theta {theta:.1f}°   phi {phi:z.1f}°", direction)]
+    values = {
+        "original": found.original,
+        "reconstruction": found.reconstruction,
+        "error": found.error,
+        "beside": found.beside,
+    }
+    rows = {name: [_number(one) for one in three] for name, three in values.items() if three is not None}
+    grey = all(len(set(numbers)) == 1 for numbers in rows.values())
+    before, after = (
+        max(width_of(part, size) for numbers in rows.values() for part in (_parted(one)[side] for one in numbers))
+        for side in (0, 1)
+    )
+    pad, line = round(0.8 * size), round(1.5 * size)
+    labels = pad + max(width_of(name, size) for name in rows) + size
+    points = [round(labels + before + place * (before + after + size)) for place in range(1 if grey else 3)]
+    width = max(points[-1] + after, pad + max(width_of(text, size) for text in heads)) + pad
+    pieces: list[Piece] = []
+    y = round(pad + 0.76 * size)
     for text in heads:
-        draw.text((pad, y), text, FAINT, face)
+        pieces.append(Text("", pad, y, text, size, FAINT))
         y += line
     if not grey:
-        for place, letter in enumerate("RGB"):
-            draw.text((pad + labels + (place + 1) * column - size, y), letter, FAINT, face, anchor="ra")
+        pieces += [ended("", point, y, letter, size, FAINT) for point, letter in zip(points, "RGB", strict=True)]
         y += line
-    for name, numbers, ink in rows:
-        draw.text((pad, y), name, ink, face)
-        for place, number in enumerate(numbers[:1] if grey else numbers):
-            draw.text((pad + labels + (place + 1) * column - size, y), number, ink, face, anchor="ra")
+    for name, numbers in rows.items():
+        ink = INK if name == "error" else GREY
+        pieces.append(Text("", pad, y, name, size, ink))
+        for point, number in zip(points, numbers, strict=False):
+            pieces.append(Text("", round(point - width_of(_parted(number)[0], size)), y, number, size, ink))
         y += line
-    return np.asarray(image)
+    ground = Fill(Box(0, 0, round(width), round(y - line + 0.24 * size + pad)), GROUND)
+    return draw([ground, *pieces]).image
 
 
-def _numbers(values: Array) -> list[str]:
-    """Values as text, four digits each."""
-    texts = (f"{value:z.4g}" if value == 0 or 1e-3 <= abs(value) < 1e5 else f"{value:z.3e}" for value in values)
-    return [text.replace("-", MINUS) for text in texts]
+def _number(value: float) -> str:
+    """A value in four digits, with a power of ten where that is shorter."""
+    if value == 0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        return typeset(f"{value:.{max(0, 3 - floor(log10(abs(value))))}f}")
+    mantissa, exponent = f"{value:.3e}".split("e")
+    return typeset(f"{mantissa}e{int(exponent)}")
+
+
+def _parted(number: str) -> tuple[str, str]:
+    """What stands before the point, and the rest."""
+    whole = number.partition(".")[0]
+    return whole, number[len(whole) :]

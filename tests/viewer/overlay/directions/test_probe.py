@@ -8,7 +8,7 @@ from helpers import frame_of, picture_of
 
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.directions.marks import place_marks
-from shviewer.viewer.overlay.directions.probe import probe, probe_layers
+from shviewer.viewer.overlay.directions.probe import _number, probe, probe_layers
 
 
 def test_at_the_marks_the_probe_reads_the_figures() -> None:
@@ -112,3 +112,10 @@ def test_the_values_of_a_second_reconstruction_stand_below() -> None:
     assert not np.allclose(found.beside, found.reconstruction)
     taller, smaller = (probe_layers(one, picture, frame, pane.x, pane.y)[-1].image for one in (found, other))
     assert taller.shape[0] > smaller.shape[0]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.0, "0"), (-0.0763, "−0.07630"), (1000.0, "1000"), (12345.6, "12346"), (1.6e9, "1.600 × 10⁹")]
+)
+def test_a_value_has_four_digits_whatever_its_size(value: float, text: str) -> None:
+    assert _number(value) == text
