@@ -31,7 +31,7 @@ def largest_magnitude(
     magnitude: unit directions (k, 3) -> (k,), largest over the channels. The bound ends above what is found by about `share` of
     it, or by `negligible`.
     """
-    signed = [Waves(values, heights, less), Waves(-values, heights, None if less is None else -less)]
+    waves = Waves(values, heights, less)
     rows, columns = len(values), values.shape[2]
 
     def climbed(theta: float, phi: float) -> Found:
@@ -39,12 +39,12 @@ def largest_magnitude(
         found, places = climb(magnitude, start, np.pi / rows / 2, DISPLAY_ROUNDS)
         return Found(float(found[0]), places[0])
 
-    lows = [int(side.difference.argmin()) for side in signed]
-    lowest = min(lows[0], lows[1], key=lambda at: -abs(signed[0].difference.flat[at]))
-    row, _, column = np.unravel_index(lowest, values.shape)
+    ends = int(waves.difference.argmin()), int(waves.difference.argmax())
+    largest = max(ends, key=lambda at: abs(waves.difference.flat[at]))
+    row, _, column = np.unravel_index(largest, values.shape)
     best = climbed(float(row_angles(rows)[row]), float(column_azimuths(columns)[column]))
     tolerance = max(share * best.value, negligible)
-    sides = [side.lowest(-best.value, tolerance) for side in signed]
+    sides = [waves.lowest(-best.value, tolerance, sign=sign) for sign in (1, -1)]
     deepest = min(sides, key=lambda side: side.lowest)
     if -deepest.lowest > best.value + tolerance / 2:
         best = best.or_larger(climbed(deepest.theta, deepest.phi))

@@ -99,7 +99,7 @@ class Search:
         highest = float(bounds.max())
         boxes = [self._highest_cells(bounds)]
         if np.count_nonzero(bounds > self.enough) > BENT_CELLS:
-            bounds = np.minimum(bounds, self._bends(), out=bounds)
+            self._lower(bounds)
             highest = max(float(bounds.max()), float(boxes[0].bounds.max(initial=0)))
             boxes.append(self._highest_cells(bounds))
         open_ = bounds.reshape(-1)
@@ -122,26 +122,29 @@ class Search:
         self._evaluate(boxes.highest(MOST_BOXES)[0], 1)
         return boxes
 
-    def _ranges(self, bend: Array) -> Array:
+    def _ranges(self, bend: Array, cells: slice = slice(None)) -> Array:
         """Bounds of the error in each cell, (rows + 1, 3, columns), by its texels, its corners, and a bend beyond these."""
         waves = self.waves
-        low, high = self.raster.ranges(waves.rows)
-        above = high - waves.corners_low
-        np.maximum(above, waves.corners_high - low, out=above)
+        low, high = (texels[cells] for texels in self.raster.ranges(waves.rows))
+        above = high - waves.corners_low[cells]
+        np.maximum(above, waves.corners_high[cells] - low, out=above)
         above += bend
         return above
 
-    def _bends(self) -> Array:
-        """Closer bounds, which take longer: by how the reconstruction bends in each cell, and the raster in small cells."""
-        waves = self.waves
-        bends = waves.bends()
-        above = self._ranges(bends)
-        if max(self.per_cell) <= FEW_TEXELS:
-            corners = waves.corners(np.maximum, np.abs(waves.values - self.original))
-            corners += bends
-            corners += self.raster.bends(waves.rows)
-            np.minimum(above, corners, out=above)
-        return np.asarray(above.max(axis=1))
+    def _lower(self, bounds: Array) -> None:
+        """Lower the bounds of what is open, which takes longer: by how the reconstruction bends, and a raster in small cells."""
+        waves, few = self.waves, max(self.per_cell) <= FEW_TEXELS
+        if few:
+            errors = np.abs(waves.values - self.original)
+            bent = np.broadcast_to(self.raster.bends(waves.rows), waves.corners_low.shape)
+        for cells in waves.blocks(np.any(bounds > self.enough, axis=1)):
+            bends = waves.bends(cells)
+            above = self._ranges(bends, cells)
+            if few:
+                bends += waves.corners_in(cells, np.maximum, errors)
+                bends += bent[cells]
+                np.minimum(above, bends, out=above)
+            np.minimum(bounds[cells], above.max(axis=1), out=bounds[cells])
 
     def _refine(self, boxes: _Boxes) -> float:
         """Look into boxes until none can hold more than is found, or the effort is spent; a bound of what is left."""

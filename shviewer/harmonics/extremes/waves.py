@@ -14,6 +14,7 @@ A itself follows from the grid: M points about a circle see all of it but 1 - co
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -86,12 +87,22 @@ class Waves:
 
     def corners(self, better: np.ufunc, values: Array) -> Array:
         """The better of the corners of each cell, of any values on the points of the grid."""
-        half = self.columns // 2
-        by_row = np.empty((self.rows + 1, *values.shape[1:]))
-        better(values[:-1], values[1:], out=by_row[1:-1])
-        for edge in (0, -1):
-            better(values[edge], np.roll(values[edge], half, axis=-1), out=by_row[edge])
-        return self._paired(better, by_row)
+        found = np.empty((self.rows + 1, *values.shape[1:]))
+        for cells in self.blocks():
+            found[cells] = self.corners_in(cells, better, values)
+        return found
+
+    def corners_in(self, cells: slice, better: np.ufunc, values: Array) -> Array:
+        """The same in some rows of cells."""
+        rows = self._rows(values, cells.start - 1, cells.stop)
+        return self._paired(better, better(rows[:-1], rows[1:]))
+
+    def blocks(self, wanted: NDArray[np.bool_] | None = None) -> Iterator[slice]:
+        """The rows of cells in blocks that stay in the cache; with wanted, (rows + 1,), those blocks that hold such rows."""
+        for top in range(0, self.rows + 1, BLOCK_ROWS):
+            cells = slice(top, min(top + BLOCK_ROWS, self.rows + 1))
+            if wanted is None or wanted[cells].any():
+                yield cells
 
     @staticmethod
     def _paired(better: np.ufunc, by_row: Array) -> Array:
@@ -105,18 +116,18 @@ class Waves:
         """The number of points, times channels, beside which it may be lower by their values alone."""
         return int(np.count_nonzero(self.difference < (found - tolerance + self.slack)[:, None]))
 
-    def lowest(self, found: float, tolerance: float, effort: int = 1) -> Bounded:
+    def lowest(self, found: float, tolerance: float, effort: int = 1, sign: int = 1) -> Bounded:
         """A lower bound of all channels, not far below found - tolerance; found: a value that the function takes.
 
-        effort: how many times the usual number of cells are looked at, if need be.
+        effort: how many times the usual number of cells are looked at, if need be. sign: -1 for minus the function.
         """
         best = Bounded(found - tolerance, found, 0.0, 0.0)
         most = effort * min(self.values.size // SIEVED_SHARE, MOST_SIEVED)
-        cells = self._around(np.flatnonzero((self.difference < (best.bound + self.slack)[:, None]).reshape(-1)), most)
+        limit = (best.bound + self.slack)[:, None]
+        open_points = self.difference < limit if sign > 0 else self.difference > -limit
+        cells = self._around(np.flatnonzero(open_points.reshape(-1)), most)
         if cells is None:
-            low = self.corners_low - self.bends(below=True)
-            cells = np.flatnonzero(low.reshape(-1) < best.bound)
-            lows = low.reshape(-1)[cells]
+            cells, lows = self._below(best.bound, np.any(open_points, axis=(1, 2)), sign)
         else:
             lows = np.full(len(cells), -np.inf)
         if not len(cells):
@@ -124,14 +135,14 @@ class Waves:
         lows, cells, left = _lowest_first(lows, cells, most)
         row, channel, column = self._places(cells)
         lows = np.maximum(
-            lows, self._control(row, channel, column, SIEVE).min(axis=(1, 2)) - self._error(SIEVE)[channel]
+            lows, self._control(row, channel, column, SIEVE, sign).min(axis=(1, 2)) - self._error(SIEVE)[channel]
         )
         open_ = np.flatnonzero(lows < found - tolerance)
         lows, open_, dropped = _lowest_first(lows[open_], open_, effort * MOST_FINE)
         left = min(left, dropped)
         row, channel, column = row[open_], channel[open_], column[open_]
         error = self._error(FINE)[channel]
-        control = self._control(row, channel, column, FINE)
+        control = self._control(row, channel, column, FINE, sign)
         corner = np.stack([row - 0.5, column + 0.5], axis=1)  # in cells; theta = 0 and u = 0 are 0
         for halving in range(HALVINGS + 1):
             side = 0.5**halving
@@ -156,6 +167,20 @@ class Waves:
             control, error, lows = halved(control[open_]), np.repeat(error[open_], 4), np.repeat(lows, 4)
         return best._replace(bound=min(best.bound, left))
 
+    def _below(self, bound: float, rows: NDArray[np.bool_], sign: int) -> tuple[Indices, Array]:
+        """The cells beside some rows of points (rows,) that may be lower by their corners and bends, and how low."""
+        beside = np.append(rows, False)
+        beside[1:] |= rows
+        found, lows = [], []
+        for cells in self.blocks(beside):
+            low = sign * self.corners_in(cells, np.minimum if sign > 0 else np.maximum, self.difference)
+            low -= self.bends(cells, sign)
+            flat = low.reshape(-1)
+            found.append(np.flatnonzero(flat < bound))
+            lows.append(flat[found[-1]])
+            found[-1] += cells.start * self.values[0].size
+        return np.concatenate(found), np.concatenate(lows)
+
     def _around(self, points: Indices, most: int) -> Indices | None:
         """The cells with one of the points (k,) in a corner, as indices like those of `corners`; None if more than `most`."""
         if 4 * len(points) > most:
@@ -174,28 +199,34 @@ class Waves:
         above, column = np.divmod(flat, self.columns)
         return *np.divmod(above, self.values.shape[1]), column
 
-    def bends(self, *, below: bool = False) -> Array:
-        """How far it can pass the bilinear surface through the corners of each cell, or `below` it alone: like the corners.
+    def bends(self, cells: slice, sign: int = 0) -> Array:
+        """How far it can pass the bilinear surface through the corners of each cell, in rows of cells.
 
-        That is by an eighth of the second differences along both sides.
+        That is by an eighth of the second differences along both sides. sign: 1 for below it alone, -1 for above.
         """
-        found = np.empty((self.rows + 1, *self.values.shape[1:]))
-        for top in range(0, len(found), BLOCK_ROWS):
-            cells = slice(top, min(top + BLOCK_ROWS, len(found)))
-            rows, turned = _mirrored(np.arange(cells.start - 2, cells.stop + 1), self.rows)
-            values = self.values[rows]
-            values[turned] = np.roll(values[turned], self.columns // 2, axis=-1)
-            middle = values[1:-1]
-            down, across = values[2:] + values[:-2], np.empty_like(middle)
-            np.add(middle[..., 2:], middle[..., :-2], out=across[..., 1:-1])
-            across[..., 0], across[..., -1] = middle[..., 1] + middle[..., -1], middle[..., 0] + middle[..., -2]
-            bend = found[cells]
-            bend[:] = self._moved[:, None] / 4
-            for second in (down, across):
-                second -= 2 * middle
-                np.maximum(second, 0, out=second) if below else np.abs(second, out=second)
-                bend += self._paired(np.maximum, np.maximum(second[1:], second[:-1])) / 8
-        return np.asarray(np.minimum(found, self.slack[:, None], out=found))
+        values = self._rows(self.values, cells.start - 2, cells.stop + 1)
+        middle = values[1:-1]
+        seconds = np.empty((2, *middle.shape))
+        down, across = seconds
+        np.add(values[2:], values[:-2], out=down)
+        np.add(middle[..., 2:], middle[..., :-2], out=across[..., 1:-1])
+        across[..., 0], across[..., -1] = middle[..., 1] + middle[..., -1], middle[..., 0] + middle[..., -2]
+        seconds -= 2 * middle
+        np.maximum(np.multiply(seconds, sign, out=seconds), 0, out=seconds) if sign else np.abs(seconds, out=seconds)
+        down, across = self._paired(np.maximum, np.maximum(seconds[:, 1:], seconds[:, :-1]))
+        down += across
+        down /= 8
+        down += self._moved[:, None] / 4
+        return np.asarray(np.minimum(down, self.slack[:, None], out=down))
+
+    def _rows(self, values: Array, first: int, last: int) -> Array:
+        """Rows from `first` to before `last` of values like ours; they may lie beyond a pole."""
+        if first >= 0 and last <= self.rows:
+            return values[first:last]
+        rows, turned = _mirrored(np.arange(first, last), self.rows)
+        taken = values[rows]
+        taken[turned] = np.roll(taken[turned], self.columns // 2, axis=-1)
+        return taken
 
     def curvature(self, row: Indices, column: Indices) -> Array:
         """The largest |second derivative| along theta and along phi in cells (k,), per radian squared: (k, 2, channels)."""
@@ -219,7 +250,7 @@ class Waves:
         """How far the polynomial through a stencil may be off, (channels,)."""
         return np.asarray(stencil(size)[1] * self.moved(size))
 
-    def _control(self, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
+    def _control(self, row: Indices, channel: Indices, column: Indices, size: int, sign: int) -> Array:
         """Bernstein coefficients (k, size, size) of the polynomials through the size x size points about cells (k,)."""
         points = self._points(self.values, row, channel, column, size)
         found = np.asarray(points.reshape(-1, size**2) @ stencil(size)[2]).reshape(-1, size, size)
@@ -227,7 +258,7 @@ class Waves:
             corners, share = self._points(self.less, row, channel, column, 2), np.linspace(0, 1, size)
             by_row = corners[:, :1] + np.diff(corners, axis=1) * share[:, None]
             found -= by_row[..., :1] + np.diff(by_row, axis=2) * share
-        return found
+        return sign * found
 
     def _points(self, values: Array, row: Indices, channel: Indices, column: Indices, size: int) -> Array:
         """The size x size points of values like ours about cells (k,), (k, size, size)."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.bands import band_heights
-from shviewer.harmonics.extremes.zonal_table import Table, around_edge, beside, perpendicular
+from shviewer.harmonics.extremes.zonal_table import Table, Tables, around_edge, beside, perpendicular
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.zonal import Constant, Profile, orient
@@ -167,40 +168,32 @@ class ZonalSum:
 
         Boxes whose ranges alone stay below `enough` are not looked at again.
         """
-        middles = directions_from_angles(theta, phi)
-        windows, ends = [], []
-        for table, axis, radiance in zip(self.tables, self.axes, self.radiance, strict=True):
-            window = table.window(half * np.sqrt(2)).take(table.bins(_angle(middles, axis)), axis=1)
-            windows.append(window)
-            ends.append(np.sort(np.stack([-window[0], window[1]])[..., None] * radiance, axis=0))
-        low, high = np.sum(ends, axis=0)
+        windows = self._stacked.windows(half * np.sqrt(2), self._angles(directions_from_angles(theta, phi)))
+        one, other = (end[..., None] * self.radiance[:, None] for end in (-windows[0], windows[1]))
+        ends = np.stack([np.minimum(one, other), np.maximum(one, other)])
+        low, high = ends.sum(axis=1)
         bounds = (np.maximum(high, -low) if magnitude else high).max(axis=1)
-        crossed = ~np.isfinite([window[3] for window in windows]).T
+        crossed = ~np.isfinite(windows[3])
         open_ = np.flatnonzero(bounds > enough)
-        theta, low, high = theta[open_], low[open_], high[open_]
+        theta, low, high, edge = theta[open_], low[open_], high[open_], crossed[:, open_]
         corners = directions_from_angles(
             theta[:, None] + half * np.array([-1, -1, 1, 1]), phi[open_, None] + half * np.array([-1, 1, -1, 1])
         )
-        smooth, bend, slope = np.zeros((len(theta), 4, 3)), np.zeros((len(theta), 3)), np.zeros((len(theta), 3))
-        low_there, high_there = np.zeros((2, len(theta), 3))
-        for lobe, (table, axis, radiance) in enumerate(zip(self.tables, self.axes, self.radiance, strict=True)):
-            edge = crossed[open_, lobe, None]
-            low_there += edge * ends[lobe][0, open_]
-            high_there += edge * ends[lobe][1, open_]
-            bend += np.where(edge, 0, windows[lobe][3, open_, None]) * np.abs(radiance)
-            slope += np.where(edge, 0, windows[lobe][2, open_, None]) * np.abs(radiance)
-            smooth += np.where(edge, 0, table.at(_angle(corners, axis)))[..., None] * radiance
+        low_there, high_there = np.where(edge[..., None], ends[:, :, open_], 0).sum(axis=1)
+        slope, bend = (np.where(edge, 0, part[:, open_]).T @ np.abs(self.radiance) for part in windows[2:])
+        values = self._stacked.at(self._angles(corners.reshape(-1, 3))).reshape(*edge.shape, 4)
+        smooth = np.tensordot(np.where(edge[..., None], 0, values), self.radiance, axes=(0, 0))
         sine = np.minimum(1, np.abs(np.sin(theta)) + half)[:, None]
-        room = half**2 / 2 * (bend + sine * (sine * bend + slope)) + bend * self.tables[0].width ** 2 / 8
+        room = half**2 / 2 * (bend + sine * (sine * bend + slope)) + bend * self._stacked.width**2 / 8
         high = np.minimum(high, smooth.max(axis=1) + room + high_there)
         if magnitude:
             high = np.maximum(high, -np.maximum(low, smooth.min(axis=1) - room + low_there))
         bounds[open_] = np.minimum(bounds[open_], high.max(axis=1))
-        return bounds, crossed
+        return bounds, crossed.T
 
     def _seen(self, middles: Array, crossed: NDArray[np.bool_], magnitude: bool) -> tuple[Array, Array]:
         """Directions in boxes, their middles and next to the edges that cross them, and the values there."""
-        points, fixed = [middles], [(-1, slice(0, 0), 0.0)]
+        points, fixed = [middles], []
         for lobe, (table, axis) in enumerate(zip(self.tables, self.axes, strict=True)):
             near = middles[crossed[:, lobe]]
             across = near - (near @ axis)[:, None] * axis
@@ -211,14 +204,19 @@ class ZonalSum:
                 points.append(np.cos(angle) * axis + np.sin(angle) * across)
                 fixed.append((lobe, slice(start, start + len(across)), value))
         directions = np.concatenate(points)
-        total = np.zeros((len(directions), 3))
-        for lobe, (table, axis, radiance) in enumerate(zip(self.tables, self.axes, self.radiance, strict=True)):
-            values = table.at(_angle(directions, axis))
-            for other, which, value in fixed:
-                if other == lobe:
-                    values[which] = value
-            total += values[:, None] * radiance
+        values = self._stacked.at(self._angles(directions))
+        for lobe, which, value in fixed:
+            values[lobe, which] = value
+        total = values.T @ self.radiance
         return directions, (np.abs(total) if magnitude else total).max(axis=1)
+
+    @cached_property
+    def _stacked(self) -> Tables:
+        return Tables(self.tables)
+
+    def _angles(self, directions: Array) -> Array:
+        """The angles of unit directions (k, 3) from each axis, (lobes, k)."""
+        return np.asarray(np.arccos(np.clip(self.axes @ directions.T, -1, 1)))
 
 
 def _crossings(one: Array, two: Array, near: Array, far: Array) -> list[Array]:
@@ -233,7 +231,3 @@ def _crossings(one: Array, two: Array, near: Array, far: Array) -> list[Array]:
             if height > 0:
                 found.append(a * one + b * two + np.array([[1], [-1]]) * np.sqrt(height) * across)
     return found
-
-
-def _angle(directions: Array, axis: Array) -> Array:
-    return np.asarray(np.arccos(np.clip(directions @ axis, -1, 1)))

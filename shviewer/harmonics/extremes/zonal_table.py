@@ -7,6 +7,7 @@ for w times d''; and d' / tan is no larger than the largest |d''| between there 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -71,25 +72,38 @@ class Table:
                 bend[at] = np.inf
         return cls(width, total, np.stack([-low, high, slope, bend]), edge, sides)
 
-    def window(self, radius: float) -> Array:
-        """`ranges` over all bins within `radius` of each."""
+
+class Tables:
+    """Several tables with as many bins as one array, (tables, ...)."""
+
+    def __init__(self, tables: Sequence[Table]) -> None:
+        self.width, self.count = tables[0].width, len(tables)
+        self.ends, self.ranges = (
+            np.stack([table.ends for table in tables]),
+            np.stack([table.ranges for table in tables]),
+        )
+
+    def windows(self, radius: float, angles: Array) -> Array:
+        """`ranges` over all bins within `radius` of those of angles (tables, k): (4, tables, k)."""
         reach = int(np.ceil(radius / self.width))
-        padded = np.pad(self.ranges, ((0, 0), (reach, reach)), mode="edge")
+        bins = self.ranges.shape[2]
+        padded = self.ranges.take(np.clip(np.arange(-reach, bins + reach), 0, bins - 1), axis=2)
         span, wanted = 1, 2 * reach + 1
         while span < wanted:
             step = min(span, wanted - span)
-            padded = np.maximum(padded[:, :-step], padded[:, step:])
+            padded = np.maximum(padded[..., :-step], padded[..., step:])
             span += step
-        return padded
+        return np.asarray(np.take_along_axis(padded.swapaxes(0, 1), self._bins(angles)[None], axis=2))
 
-    def bins(self, angle: Array) -> Indices:
-        return np.asarray(np.minimum((angle / self.width).astype(np.int64), self.ranges.shape[1] - 1))
+    def at(self, angles: Array) -> Array:
+        """Values of each table at its angles (tables, k): (tables, k)."""
+        bins = self._bins(angles)
+        first = bins + np.arange(self.count)[:, None] * self.ends.shape[1]
+        start = self.ends.take(first)
+        return np.asarray(start + (self.ends.take(first + 1) - start) * (angles / self.width - bins))
 
-    def at(self, angle: Array) -> Array:
-        place = angle / self.width
-        bin_ = self.bins(angle)
-        start = self.ends[bin_]
-        return np.asarray(start + (self.ends[bin_ + 1] - start) * (place - bin_))
+    def _bins(self, angles: Array) -> Indices:
+        return np.asarray(np.minimum((angles / self.width).astype(np.int64), self.ranges.shape[2] - 1))
 
 
 def perpendicular(axis: Array) -> Array:
