@@ -132,7 +132,7 @@ class Search:
         return above
 
     def _lower(self, bounds: Array) -> None:
-        """Lower the bounds of what is open, which takes longer: by how the reconstruction bends, and a raster in small cells."""
+        """Lower the bounds of what is open, with more work: by how the reconstruction bends, and a raster in small cells."""
         waves, few = self.waves, max(self.per_cell) <= FEW_TEXELS
         if few:
             errors = np.abs(waves.values - self.original)
