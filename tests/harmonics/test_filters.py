@@ -17,6 +17,14 @@ from shviewer.lights.find import find_light
 REFERENCE = hard_cases()
 
 
+def test_windows_are_those_of_the_definitions() -> None:
+    degree = np.arange(8)
+    assert_allclose(window("hann", 8, 8), np.cos(np.pi * degree / 16) ** 2, rtol=0, atol=1e-15)
+    x = np.pi * degree[1:] / 5
+    assert_allclose(window("lanczos", 8, 5)[1:], np.where(degree[1:] < 5, np.sin(x) / x, 0), rtol=0, atol=1e-15)
+    assert_allclose(window("gauss", 8, 4), np.exp(-((np.pi * degree / 4) ** 2) / 2), rtol=0, atol=1e-15)
+
+
 @pytest.mark.parametrize("name", ["hann", "lanczos", "gauss"])
 def test_a_window_leaves_the_mean_and_never_grows(name: str) -> None:
     factors = window(name, 16, 16)

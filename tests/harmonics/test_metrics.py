@@ -305,3 +305,12 @@ def test_a_channel_that_is_all_but_black_has_figures_beside_a_white_one(factor):
 def test_a_reconstruction_whose_squares_are_0_has_no_negative_energy():
     shown = np.full((4, 3), -1e-200)
     assert ErrorGrid(GREEN.radiance, GREEN.landmarks(), 16).compare(shown).negative_energy == 0
+
+
+def test_errors_by_band_count_hold_what_is_left_out_and_what_is_added() -> None:
+    """c(l, 0) = 2^-l for ever, of which half is shown: 4^-n is left out and a quarter of the rest added."""
+    n = np.arange(1, 9)
+    exact = np.zeros((64, 3))
+    exact[n * (n - 1)] = (0.5 ** (n - 1))[:, None]
+    errors = errors_by_band_count(np.eye(3) * 4 / 3, exact, exact / 2)
+    np.testing.assert_allclose(errors, np.sqrt(0.25 + 0.75 * 0.25**n), rtol=1e-12)

@@ -63,6 +63,16 @@ def test_every_equal_area_cell_holds_one_jittered_sample(side):
     assert cells == [(i, j) for i in range(side) for j in range(side)]  # the north first
 
 
+def test_jitter_is_uniform_and_independent_inside_a_cell():
+    down, around = (position % 1 for position in cell_coordinates(jittered(10_000, seed=1).directions, 100))
+    six_sigma = 6 / np.sqrt(12 * 10_000)
+    for jitter in (down, around):
+        assert jitter.mean() == pytest.approx(0.5, abs=six_sigma)
+        assert jitter.var() == pytest.approx(1 / 12, abs=0.005)
+    assert abs(np.corrcoef(down, around)[0, 1]) < 0.06  # six sigma
+    assert abs(np.corrcoef(down[1:], down[:-1])[0, 1]) < 0.06
+
+
 @pytest.mark.parametrize("sampler", [jittered, uniform_random])
 def test_a_seed_repeats_its_samples_and_another_does_not(sampler):
     first, again, other = (sampler(400, seed).directions for seed in (5, 5, 6))
