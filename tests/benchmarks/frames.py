@@ -1,4 +1,4 @@
-"""What a frame costs: python tests/benchmarks/frames.py [OLD]
+"""What a frame costs: [xvfb-run -a -s "-screen 0 3840x2160x24"] python tests/benchmarks/frames.py [OLD | window]
 
 CPU time of all threads, which on software OpenGL is the cost of the shaders. 1280 x 640, Green's light. The base, measured in
 the same run, shows a constant light with one band on the right. The reconstruction is summed per pixel, or drawn from its
@@ -6,6 +6,10 @@ map (goal: at most 25 cpu-ms whatever n is), with a third sphere for the error, 
 far the map is from the sum (goal: under half a step of white up to 32 bands), and the CPU work of events outside the draw:
 a band key (goal: under 2 ms up to 16 bands) with its overlay, a turn of the light, and the values under the mouse. Last a
 step of a light that turns and is projected anew (Q), with all figures, over a fresh projection of 32 bands by the same way.
+
+With a display, or with `window` alone, the longest that a window looks at no event, in every mode: it is entered, turned, and
+saved. *Own* is the processor time of the window's thread; *drawn* is that of all threads: OpenGL in software draws in threads of
+its own. Goal: under 50 ms each, whatever a frame takes as a whole.
 
 With a commit OLD, frames of it and of this checkout instead, in turns: their medians, and the ratio of the least ones (goal for
 the lines over negative light: at most 1.15 at 5 bands, and 1.10 from 9 on).
@@ -18,11 +22,14 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from dataclasses import replace
 from functools import partial
 from itertools import product
 from pathlib import Path
 from statistics import median
+
+os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"  # as the command sets them for itself
 
 import numpy as np
 from commits import ROOT, lay_out
@@ -205,8 +212,99 @@ def between_commits(old: str, rounds: int = 9) -> None:
             print(f"{what:<28}{median(before):8.1f} cpu-ms{median(after):8.1f} cpu-ms{min(after) / min(before):8.3f}")
 
 
+MODES: dict[str, dict[str, object]] = {
+    "5 bands": {},
+    "32 bands": {"n_bands": 32},
+    "128 bands": {"n_bands": 128},
+    "128 bands, signed error": {"n_bands": 128, "error": "signed"},
+    "32 bands, the whole sphere, relative error": {"n_bands": 32, "error": "relative", "whole_sphere": True},
+    "32 bands beside 32 without a window": {"n_bands": 32, "window": "hann", "beside": "no-window"},
+    "irradiance": {"n_bands": 3, "quantity": "irradiance"},
+    "as an engine stores it": {"n_bands": 3, "quantity": "irradiance", "encode": "zh3-hallucinated"},
+    "surfaces, 5 bands": {"n_bands": 5, "lobe_view": True},
+    "surfaces, 32 bands, error": {"n_bands": 32, "lobe_view": True, "error": "signed"},
+    "surfaces, 128 bands, error": {"n_bands": 128, "lobe_view": True, "error": "signed"},
+    "time against error": {"sheet": "plane"},
+    "bands against roughness": {"by_roughness": True},
+    "help": {"help_visible": True},
+    "a photograph, 32 bands": {"light": "venice_sunset", "n_bands": 32},
+    "a photograph without its sun, error": {
+        "light": "venice_sunset",
+        "n_bands": 9,
+        "split_sun": True,
+        "error": "signed",
+    },
+    "a sweep": {"n_bands": 32, "sweep_to": 40},
+    "a light that turns": {"n_bands": 9, "turning": "fresh", "method": "jittered"},
+}
+"""What changes in a state of Green's light with 5 bands."""
+
+SIZES_OF_WINDOWS = (1280, 640), (3840, 2160)
+TURNS, PLAYED_SECONDS, MOST_SECONDS = 5, 3.0, 60.0
+
+
+def windows() -> None:
+    """Print the longest time without a look at events, in every mode of windows of both sizes, in milliseconds."""
+    import glfw
+
+    from shviewer.errors import GraphicsError
+    from shviewer.viewer.desktop.window import Window, canvas_of, open_window
+    from shviewer.viewer.state import changed
+
+    def passes(shown: Window, seconds: float = 0.0) -> list[tuple[float, float]]:
+        """What a window does until it is at rest, and at least so long: own and drawn milliseconds of each pass."""
+        found, start = [], time.perf_counter()
+        while time.perf_counter() < start + MOST_SECONDS:
+            own, drawn = time.thread_time(), time.process_time()
+            drawing = shown.pass_on()
+            if shown.session.tick(time.perf_counter()) or shown.canvas.pending or shown.canvas.news:
+                shown.due()
+                drawing = True
+            found.append((1000 * (time.thread_time() - own), 1000 * (time.process_time() - drawn)))
+            if not drawing and not shown.session.working and time.perf_counter() >= start + seconds:
+                break
+            glfw.wait_events_timeout(0.0 if drawing else 0.005)
+        return found
+
+    def worst(found: list[tuple[float, float]]) -> str:
+        own, drawn = (max(each) for each in zip(*found, strict=True))
+        return f"{own:.0f} / {drawn:.0f}"
+
+    for size in SIZES_OF_WINDOWS:
+        try:
+            with open_window(size) as handle:
+                width, height = glfw.get_framebuffer_size(handle)
+                print(f"\na window of {width} x {height}: longest pass, own / drawn, ms\n")
+                print("| mode | entered | turned | saved with P |\n|---|---:|---:|---:|")
+                shown = Window(handle, canvas_of(handle), prepare(state_of("green", "venice_sunset")), False)
+                passes(shown)
+                plain = shown.session.state
+                for name, changes in MODES.items():
+                    plays = "sweep_to" in changes or "turning" in changes
+                    shown.change(changed(plain, **changes))
+                    entered = passes(shown, PLAYED_SECONDS if plays else 0.0)
+                    shown.change(changed(shown.session.state, sweep_to=None, turning=""))
+                    passes(shown)
+                    turned = []
+                    for _ in range(TURNS):
+                        shown.change(rotate_light(shown.session.placed, 0.1, 0.03))
+                        turned += passes(shown)
+                    shown.press("P")
+                    print(f"| {name} | {worst(entered)} | {worst(turned)} | {worst(passes(shown))} |", flush=True)
+                    shown.change(plain)
+                    passes(shown)
+                shown.canvas.release()
+        except GraphicsError as error:
+            print(f"a window of {size[0]} x {size[1]}: not measured ({error})")
+
+
 def main() -> None:
     print(machine())
+    if sys.argv[1:] == ["window"]:
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)  # for what P writes
+            windows()
+        return
     if len(sys.argv) > 1:
         between_commits(sys.argv[1])
         return
@@ -218,6 +316,9 @@ def main() -> None:
         map_differences(renderer)
     event_costs()
     step_costs()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        windows()
 
 
 if __name__ == "__main__":

@@ -45,6 +45,8 @@ class Frames:
         self._ready = False
         """Whether the frame that was begun is that of the state, with all figures."""
         self._seconds = 0.0
+        self._framed = False
+        """Whether the last pass went to a frame, and not to a picture that is saved."""
         glfw.set_framebuffer_size_callback(handle, lambda *_: self.redraw())
         glfw.set_window_refresh_callback(handle, lambda *_: self.redraw())
         self._entitle()
@@ -52,19 +54,26 @@ class Frames:
     def loop(self) -> None:
         """Draw what is due, then sleep until something happens or what plays takes its next step."""
         while not glfw.window_should_close(self.handle):
-            start, session, canvas = perf_counter(), self.session, self.canvas
-            if self.frames_due or canvas.drawing:
-                self.frame(PASS_SECONDS)
-                if session.working or canvas.pending:  # they leave it half of the time
-                    sleep(min(perf_counter() - start, LEAVE_SECONDS))
-            session.saving.go_on(PASS_SECONDS)
-            if self.frames_due or canvas.drawing or session.saving.drawing:
+            if self.pass_on():
                 glfw.poll_events()
             else:
-                most = STATUS_SECONDS if canvas.pending else IDLE_SECONDS
-                glfw.wait_events_timeout(session.wait(perf_counter(), most))
-            if session.tick(perf_counter()) or canvas.pending or canvas.news:
+                most = STATUS_SECONDS if self.canvas.pending else IDLE_SECONDS
+                glfw.wait_events_timeout(self.session.wait(perf_counter(), most))
+            if self.session.tick(perf_counter()) or self.canvas.pending or self.canvas.news:
                 self.due()
+
+    def pass_on(self) -> bool:
+        """Draw for about PASS_SECONDS, a frame and a picture that is saved by turns; return whether there is more to draw."""
+        start, session, canvas = perf_counter(), self.session, self.canvas
+        due, saving = bool(self.frames_due) or canvas.drawing, session.saving.drawing
+        self._framed = due and not (saving and self._framed)
+        if self._framed:
+            self.frame(PASS_SECONDS)
+            if session.working or canvas.pending:  # they leave it half of the time
+                sleep(min(perf_counter() - start, LEAVE_SECONDS))
+        elif saving:
+            session.saving.go_on(PASS_SECONDS)
+        return bool(self.frames_due) or canvas.drawing or session.saving.drawing
 
     def frame(self, seconds: float | None = None) -> None:
         """Draw the present state for about so long, or on with what was begun; None: all of it."""
