@@ -31,9 +31,7 @@ class Subject:
 
 def subject(recipe: Recipe) -> Subject:
     """The subject of a recipe: the quantity of its light that the recipe names."""
-    light = recipe.light
-    if isinstance(light, str):
-        light = MEMORY.named(_name(recipe)) or read_again(recipe)
+    light = read_once(recipe)
     found = Subject(light, light)
     if recipe.split_sun:
         split = _split(light, recipe.suns)
@@ -47,6 +45,11 @@ def subject(recipe: Recipe) -> Subject:
 def load_light(recipe: Recipe) -> Light:
     """The light that is projected."""
     return subject(recipe).light
+
+
+def read_once(recipe: Recipe) -> Light:
+    """The light that the recipe names, read if it was not yet. LightError if it cannot be."""
+    return recipe.light if not isinstance(recipe.light, str) else MEMORY.named(_name(recipe)) or read_again(recipe)
 
 
 def read_again(recipe: Recipe) -> Light:

@@ -8,7 +8,7 @@ a band key (goal: under 2 ms up to 16 bands) with its overlay, a turn of the lig
 step of a light that turns and is projected anew (Q), with all figures, over a fresh projection of 32 bands by the same way.
 
 With a display, or with `window` alone, the longest that a window looks at no event, in every mode: it is entered, turned, and
-saved. *Own* is the processor time of the window's thread; *drawn* is that of all threads: OpenGL in software draws in threads of
+saved. *Own* is the processor time of the window's thread; *drawn* is that of all threads: OpenGL in software draws in some of
 its own. Goal: under 50 ms each, whatever a frame takes as a whole.
 
 With a commit OLD, frames of it and of this checkout instead, in turns: their medians, and the ratio of the least ones (goal for

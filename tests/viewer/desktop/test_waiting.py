@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Generator, Iterator
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +13,10 @@ import numpy as np
 import pytest
 from viewer.desktop.desktop import output_of
 
+from shviewer.analysis import subjects
+from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
+from shviewer.lights.light import Light
 from shviewer.progress import Stopped, listening, tell
 from shviewer.viewer.actions import Command
 from shviewer.viewer.desktop.behind import saving as savings
@@ -198,6 +203,40 @@ def test_panes_come_with_their_picture(gate: Gate) -> None:
     assert session.prepare()
     assert session.view == session.state.view
     assert session.view.n_spheres == 3
+
+
+def test_keys_pressed_while_a_file_is_read_do_not_read_it_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever held an arrow key never saw the file: each key began anew with it."""
+    path, begun, go = tmp_path / "slow.toml", threading.Semaphore(0), threading.Event()
+    path.write_text('[[lobe]]\nprofile = "constant"\nradiance = 1\n')
+    read: list[str] = []
+
+    def find(text: str, reading: Any) -> Light:
+        if text == str(path):
+            read.append(text)
+            begun.release()
+            while not go.wait(0.001):
+                tell(share=0.5)
+        return find_light(text, reading)
+
+    monkeypatch.setattr(subjects, "find_light", find)
+    session = Session(state_of("green", str(path)))
+    for opened in (1, 2):
+        session.press("Right")
+        assert not session.prepare(patience=NOW)
+        assert begun.acquire(timeout=60)
+        for key in ("Up", "D", "Up"):
+            session.press(key)
+            assert not session.prepare(patience=NOW)
+            time.sleep(0.02)
+        assert len(read) == opened
+        if opened == 1:
+            session.press("Left")  # another light: nobody needs the file
+            assert session.prepare(patience=60.0)
+            assert session.picture.light.name == "green"
+    go.set()
+    assert session.prepare()
+    assert (session.picture.light.name, len(read)) == ("slow", 2)
 
 
 def test_a_task_ends_at_its_next_step_and_the_next_one_begins_then() -> None:

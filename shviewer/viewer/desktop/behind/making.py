@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from threading import Event
 
-from shviewer.analysis.subjects import read_again
+from shviewer.analysis.subjects import read_again, read_once
 from shviewer.viewer.animation.animation import ranged, wants_range
 from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.overlay.foot import Work
@@ -26,6 +26,8 @@ class Making:
         self._task: Task[Made] | None = None
         self._ended: Task[Made] | None = None
         """The task before it, which may still be at its last step."""
+        self._read: object = None
+        """What it reads for that."""
         self._wish: object = None
         """What the task makes: the still part of a state, and how it is read."""
         self._taken: Made | None = None
@@ -60,8 +62,9 @@ class Making:
         """Begin with the pictures of a state, unless they are at work already. reading: set once its light was read again."""
         wish = still(state), wants_range(state), reading
         if self._task is None or wish != self._wish:
-            self.end()
-            self._wish, self._taken = wish, None
+            read = state.recipe.light, state.recipe.reading, reading
+            self.end(gently=read == self._read)
+            self._wish, self._read, self._taken = wish, read, None
             self._task = Task(lambda: _pictures_of(state, by_map, reading), self._ended, self._wake)
 
     def wait(self, patience: float | None) -> bool:
@@ -81,21 +84,23 @@ class Making:
         assert task is not None
         return task.result()
 
-    def end(self) -> None:
-        """Want the pictures no more."""
+    def end(self, *, gently: bool = False) -> None:
+        """Want the pictures no more. gently: but what is read for them."""
         if self._task is not None:
-            self._task.stop()
+            self._task.stop(gently=gently)
             self._ended, self._task = self._task, None
 
 
-def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[Made]:
+def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[Made | None]:
     """The pictures of a state as `stages` has them, with everything ready that their text needs; each with `by_map`.
 
-    What plays is given the range of its error first.
+    First nothing, when its light has been read. What plays is given the range of its error.
     """
     if reading is not None and not reading.is_set():
         read_again(state.recipe)
         reading.set()  # a later wish need not read it once more
+    read_once(state.recipe)
+    yield None
     for picture in stages(ranged(state), by_map=by_map):
         foresee(picture)
         yield picture, by_map

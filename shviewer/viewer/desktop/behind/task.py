@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from threading import Event, Thread
 from time import perf_counter
 from typing import Generic, TypeVar
@@ -25,16 +26,24 @@ class Task(Generic[T]):
     """One computation, of results each better than the one before. It begins when the task before it has ended."""
 
     def __init__(
-        self, make: Callable[[], Iterable[T]], after: Task[T] | None = None, done: Callable[[], None] | None = None
+        self,
+        make: Callable[[], Iterable[T | None]],
+        after: Task[T] | None = None,
+        done: Callable[[], None] | None = None,
     ) -> None:
-        """make: gives the results, at least one. done: called from the thread at every result, and at the end in any case."""
+        """make: gives the results, at least one, and None where a step is over without one.
+
+        done: called from the thread at every step, and at the end in any case.
+        """
         self.started = perf_counter()
         self._before = after
         self._status, self._words = "", ""
         self._share: float | None = None
         self._begun = (self.started, 0.0)
         """When it began with that, and the share that was done by then."""
-        self._stopped = False
+        self._stopped = self._gently = False
+        self._steps = 0
+        """How many are over."""
         self._over = Event()
         """Set before `done` is called, which must find the task finished."""
         self.latest: T | None = None
@@ -69,7 +78,7 @@ class Task(Generic[T]):
     def work(self) -> Work:
         """What it is doing and how far it is; how long it will take as soon as a part of it is done."""
         if (ahead := self._ahead) is not None:
-            return Work(self.status, seconds=round(ahead.seconds, 1))
+            return replace(ahead.work, words=self.status)
         share, (begun, before) = self._share, self._begun
         if share is None:
             return Work(self._words, seconds=round(self.seconds, 1))
@@ -85,9 +94,14 @@ class Task(Generic[T]):
         """Wait for the end, at most so many seconds (None: as long as it takes); return whether it has come."""
         return self._over.wait(None if seconds is None else max(seconds, 0.0))
 
-    def stop(self) -> None:
-        """Want the result no more: the thread ends at its next step."""
-        self._stopped = True
+    def stop(self, *, gently: bool = False) -> None:
+        """Want the result no more: the thread ends soon, as does what it waits for.
+
+        gently: after the first step, for who comes after it needs that, too.
+        """
+        self._stopped, self._gently = True, gently
+        if not gently and (before := self._before) is not None:
+            before.stop()
 
     def result(self) -> T:
         """What was made last. Raises what the computation raised, or Stopped."""
@@ -96,7 +110,9 @@ class Task(Generic[T]):
             raise self._error
         return self.latest  # type: ignore[return-value]  # without an error, it was made
 
-    def _run(self, make: Callable[[], Iterable[T]], before: Thread | None, done: Callable[[], None] | None) -> None:
+    def _run(
+        self, make: Callable[[], Iterable[T | None]], before: Thread | None, done: Callable[[], None] | None
+    ) -> None:
         if before is not None:
             before.join()
         self._before = None
@@ -104,7 +120,8 @@ class Task(Generic[T]):
             with listening(self._hear):
                 self._hear("", None)
                 for result in make():
-                    self.latest = result
+                    self.latest = result if result is not None else self.latest
+                    self._steps += 1
                     if done is not None:
                         done()
         except BaseException as error:
@@ -114,7 +131,7 @@ class Task(Generic[T]):
             done()
 
     def _hear(self, what: str, share: float | None) -> None:
-        if self._stopped:
+        if self._stopped and not (self._gently and self._steps == 0):
             raise Stopped
         if what and what != self._words:
             self._words, self._begun = what, (perf_counter(), share or 0.0)
