@@ -10,6 +10,7 @@ import pytest
 
 from shviewer.errors import UsageError
 from shviewer.progress import tell
+from shviewer.viewer.desktop.behind.saving import Written
 from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.desktop.messages import notes_of
 from shviewer.viewer.desktop.session import Session
@@ -41,7 +42,7 @@ def test_what_is_done_goes_after_four_seconds_and_what_is_wrong_at_the_next_key(
 
 def test_each_thing_that_is_said_has_its_kind(tmp_path: Path) -> None:
     session = Session(state_of("green"))
-    session.saving.write("writing", lambda: tmp_path / "a.png")
+    session.saving.write("writing", lambda: Written(tmp_path / "a.png"))
     assert kind_of(session.state.view.message) == DONE
     session.keep(UsageError("too many"))
     assert kind_of(session.state.view.message) == ERROR

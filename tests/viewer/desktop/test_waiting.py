@@ -139,7 +139,7 @@ def test_saving_waits_for_the_picture_that_was_asked_for(gate: Gate, monkeypatch
     monkeypatch.setattr(savings, "render_in_parts", drawn_at_once)
     monkeypatch.setattr(savings, "metadata", lambda picture, *rest: picture.light.name)
     monkeypatch.setattr(savings, "write_png", lambda path, pixels, text, exclusive: saved.append((path, text)))
-    monkeypatch.setattr(savings, "write_numbered", lambda stem, write: write(stem) or "it")
+    monkeypatch.setattr(savings, "write_numbered", lambda stem, write, folder: write(stem) or Path("it"))
 
     opengl = SimpleNamespace(version="", ready=lambda *picture: True, held=SimpleNamespace(pinned=None))
     session = waiting(gate)
