@@ -30,15 +30,7 @@ def run(options: argparse.Namespace) -> int:
         print(completion(options.print_completion), end="")
         return 0
     if options.list_factors:
-        from shviewer.analysis.recipe import Recipe
-        from shviewer.harmonics.quantities.kernels import kernel_of
-        from shviewer.limits import MAX_DIRECT_BANDS
-
-        n_bands = MAX_DIRECT_BANDS if options.n_bands is None else options.n_bands
-        Recipe(n_bands=n_bands, quantity=options.list_factors).check()
-        print("l,factor")
-        for l, factor in enumerate(kernel_of(options.list_factors).factors(n_bands).tolist()):
-            print(f"{l},{factor + 0.0!r}")
+        print_factors(options.list_factors, options.n_bands)
         return 0
     if options.list_lights:
         from shviewer.lights.find import built_in_lights, find_light
@@ -73,6 +65,22 @@ def run(options: argparse.Namespace) -> int:
         out = write_numbered(stem, lambda out: save_picture(picture, composition, out, exclusive=True), first=0)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0
+
+
+def print_factors(quantity: str, n_bands: int | None) -> None:
+    """Print as CSV what a quantity multiplies each band of the radiance by. UsageError for one that there is not."""
+    from shviewer.analysis.recipe import Recipe
+    from shviewer.harmonics.quantities.kernels import kernel_of
+    from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
+    from shviewer.limits import MAX_DIRECT_BANDS
+
+    Recipe(quantity=quantity).check()
+    n_bands = MAX_DIRECT_BANDS if n_bands is None else n_bands
+    if not 1 <= n_bands <= MAX_SEPARABLE_BANDS:
+        raise UsageError(f"{n_bands} bands: --list-factors knows those of 1 to {MAX_SEPARABLE_BANDS}")
+    print("l,factor")
+    for l, factor in enumerate(kernel_of(quantity).factors(n_bands).tolist()):
+        print(f"{l},{factor + 0.0!r}")
 
 
 def _opened(options: argparse.Namespace) -> tuple[State, list[str]]:

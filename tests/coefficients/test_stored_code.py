@@ -16,6 +16,7 @@ import pytest
 from coefficients.test_source_code import SCREEN
 from harmonics.independent import random_directions, random_rotation
 from helpers import unavailable
+from places import kernels
 
 import shviewer
 from shviewer.analysis.projected import Projected, project_recipe
@@ -249,12 +250,14 @@ def test_python_has_them_too() -> None:
 
 
 def test_factors_of_a_kernel_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["--list-factors", "glossy:0.3", "--bands", "33"]) == 0
-    head, *rows = capsys.readouterr().out.splitlines()
-    assert (head, len(rows)) == ("l,factor", 33)
-    values = [float(row.split(",")[1]) for row in rows]
-    assert (values[1], values[2]) == pytest.approx((0.960318064348, 0.891745193595), abs=1e-12)
-    assert values[32] == pytest.approx(9.84891539519e-3, abs=1e-13)
-    for wrong in (["glossy:2"], ["shiny"], ["irradiance", "--bands", "129"]):
+    for roughness, wanted in kernels()["A"]["factors"].items():
+        assert main(["--list-factors", f"glossy:{roughness}", "--bands", str(len(wanted["f"]))]) == 0
+        head, *rows = capsys.readouterr().out.splitlines()
+        values = [row.split(",") for row in rows]
+        assert (head, [int(l) for l, _ in values]) == ("l,factor", list(range(len(wanted["f"]))))
+        np.testing.assert_allclose([float(f) for _, f in values], np.array(wanted["f"], float), rtol=0, atol=1e-13)
+    assert main(["--list-factors", "glossy:0.1", "--bands", "512"]) == 0
+    assert float(capsys.readouterr().out.split(",")[-1]) == pytest.approx(1.5e-4, rel=0.05)
+    for wrong in (["glossy:2"], ["shiny"], ["irradiance", "--bands", "513"]):
         assert main(["--list-factors", *wrong]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
