@@ -19,11 +19,13 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.progress import Stopped, listening, tell
 from shviewer.viewer.actions import Command
+from shviewer.viewer.desktop.behind import making
 from shviewer.viewer.desktop.behind import saving as savings
 from shviewer.viewer.desktop.behind import task as tasks
 from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.state import changed, state_of
+from shviewer.viewer.picture import Picture
+from shviewer.viewer.state import State, changed, state_of
 
 NOW = 0.0
 """Seconds of patience: none at all."""
@@ -237,6 +239,41 @@ def test_keys_pressed_while_a_file_is_read_do_not_read_it_anew(tmp_path: Path, m
     go.set()
     assert session.prepare()
     assert (session.picture.light.name, len(read)) == ("slow", 2)
+
+
+def test_bands_that_change_while_a_light_is_projected_do_not_project_it_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor is a picture made that nobody waits for, when several were wished for meanwhile."""
+    begun, go, projected, made = threading.Event(), threading.Event(), 0, []
+    evaluate = making.stages
+
+    def radiance(directions: np.ndarray) -> np.ndarray:
+        nonlocal projected
+        if not go.is_set():
+            projected += 1
+            begun.set()
+            while not go.wait(0.001):
+                tell(share=0.5)
+        return 2 + directions[:, 2]
+
+    def stages(state: State, *, by_map: bool) -> Iterator[Picture]:
+        for picture in evaluate(state, by_map=by_map):
+            made.append(state.recipe.n_bands)
+            yield picture
+
+    monkeypatch.setattr(making, "stages", stages)
+    session = Session(state_of("green", FunctionLight(radiance, "slow")))
+    session.press("Right")
+    assert not session.prepare(patience=NOW)
+    assert begun.wait(60)
+    for _ in range(3):
+        session.press("Up")
+        assert not session.prepare(patience=NOW)
+        time.sleep(0.02)
+    assert projected == 1
+    go.set()
+    assert session.prepare()
+    assert session.picture.state.recipe.n_bands == 8
+    assert set(made) == {5, 8}
 
 
 def test_a_task_ends_at_its_next_step_and_the_next_one_begins_then() -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from threading import Event
+from typing import Any
 
+from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import read_again, read_once
 from shviewer.viewer.animation.animation import ranged, wants_range
 from shviewer.viewer.desktop.behind.task import Task
@@ -12,6 +15,11 @@ from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, stages, still
 from shviewer.viewer.state import State
+
+SHOWN: dict[str, Any] = {
+    name: getattr(Recipe, name) for name in ("n_bands", "muted", "window", "window_width", "tolerance")
+}
+"""What is shown of a projection, in which a key held down changes one: it is projected once for all of them."""
 
 Made = tuple[Picture, bool]
 """A picture, and whether it was made by map."""
@@ -26,8 +34,8 @@ class Making:
         self._task: Task[Made] | None = None
         self._ended: Task[Made] | None = None
         """The task before it, which may still be at its last step."""
-        self._read: object = None
-        """What it reads for that."""
+        self._steps: tuple[object, ...] = ()
+        """What its first steps depend on: what it reads, and what it projects."""
         self._wish: object = None
         """What the task makes: the still part of a state, and how it is read."""
         self._taken: Made | None = None
@@ -63,8 +71,9 @@ class Making:
         wish = still(state), wants_range(state), reading
         if self._task is None or wish != self._wish:
             read = state.recipe.light, state.recipe.reading, reading
-            self.end(gently=read == self._read)
-            self._wish, self._read, self._taken = wish, read, None
+            steps = read, (read, replace(state.recipe, **SHOWN))
+            self.end(sum(one == other for one, other in zip(steps, self._steps, strict=False)))
+            self._wish, self._steps, self._taken = wish, steps, None
             self._task = Task(lambda: _pictures_of(state, by_map, reading), self._ended, self._wake)
 
     def wait(self, patience: float | None) -> bool:
@@ -84,10 +93,10 @@ class Making:
         assert task is not None
         return task.result()
 
-    def end(self, *, gently: bool = False) -> None:
-        """Want the pictures no more. gently: but what is read for them."""
+    def end(self, needed: int = 0) -> None:
+        """Want the pictures no more. needed: but so many of the first steps that they took."""
         if self._task is not None:
-            self._task.stop(gently=gently)
+            self._task.stop(needed)
             self._ended, self._task = self._task, None
 
 

@@ -41,9 +41,9 @@ class Task(Generic[T]):
         self._share: float | None = None
         self._begun = (self.started, 0.0)
         """When it began with that, and the share that was done by then."""
-        self._stopped = self._gently = False
-        self._steps = 0
-        """How many are over."""
+        self._stopped = False
+        self._steps = self._needed = 0
+        """How many are over, and how many have to be before it may stop."""
         self._over = Event()
         """Set before `done` is called, which must find the task finished."""
         self.latest: T | None = None
@@ -94,13 +94,15 @@ class Task(Generic[T]):
         """Wait for the end, at most so many seconds (None: as long as it takes); return whether it has come."""
         return self._over.wait(None if seconds is None else max(seconds, 0.0))
 
-    def stop(self, *, gently: bool = False) -> None:
+    def stop(self, needed: int = 0) -> None:
         """Want the result no more: the thread ends soon, as does what it waits for.
 
-        gently: after the first step, for who comes after it needs that, too.
+        needed: how many of its first steps who comes after it needs, too. If it has begun, it does not stop before.
         """
-        self._stopped, self._gently = True, gently
-        if not gently and (before := self._before) is not None:
+        before = self._before
+        self._needed = needed if before is None else 0
+        self._stopped = True
+        if before is not None and not needed:
             before.stop()
 
     def result(self) -> T:
@@ -131,7 +133,7 @@ class Task(Generic[T]):
             done()
 
     def _hear(self, what: str, share: float | None) -> None:
-        if self._stopped and not (self._gently and self._steps == 0):
+        if self._stopped and self._steps >= self._needed:
             raise Stopped
         if what and what != self._words:
             self._words, self._begun = what, (perf_counter(), share or 0.0)
