@@ -128,7 +128,7 @@ def test_Ctrl_E_writes_the_numbers_that_are_shown_turned_as_they_are(
     session.press("Ctrl+E")
     session.saving.finish()
     floats, said = ENCODINGS[name].floats, session.state.view.message
-    assert said == f"saved shviewer-green-001.json in {tmp_path}, {floats} numbers a channel, {name}"
+    assert said == f"saved shviewer-green-001.json ({floats} numbers a channel, {name}) in {tmp_path}"
     written = json.loads((tmp_path / "shviewer-green-001.json").read_text())
     normals = np.concatenate([np.eye(3), np.full((1, 3), 3**-0.5)])
     found = Stored(name, np.array(written["coefficients"])).irradiance(normals)
@@ -146,7 +146,10 @@ def test_Ctrl_E_writes_the_bands_that_are_shown_where_a_window_leaves_no_formula
     session = Session(changed(encoding("zh3"), window="hann"))
     session.press("Ctrl+E")
     session.saving.finish()
-    assert session.state.view.message.endswith("3 bands: no numbers of zh3 have a window or muted bands")
+    said = session.state.view.message
+    assert said.startswith(
+        "saved shviewer-green-001.json (3 bands, as zh3 has no numbers with a window or muted bands) in "
+    )
     written = json.loads((tmp_path / "shviewer-green-001.json").read_text())
     np.testing.assert_array_equal(written["coefficients"], session.picture.coefficients)
     assert (written["through"], "encoding" in written) == ("zh3", False)

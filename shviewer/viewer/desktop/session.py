@@ -256,7 +256,7 @@ class Session(Showing):
 
     def _written(self, written: Written) -> None:
         path, what = written
-        self.say(f"saved {path.name} in {path.parent.absolute()}{f', {what}' if what else ''}", DONE)
+        self.say(f"saved {path.name}{f' ({what})' if what else ''} in {path.parent.absolute()}", DONE)
         self.log(f"saved {path}")
 
     def _failed(self, error: ShviewerError) -> None:

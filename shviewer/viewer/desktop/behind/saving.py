@@ -148,7 +148,7 @@ def save_coefficients(picture: Picture) -> Written:
     projected = projected_of(picture)
     data, what = projected.encode(OURS, "json"), projected.extent if projected.encoding else ""
     if projected.encoding and projected.stored is None:
-        what += f": no numbers of {projected.encoding} have a window or muted bands"
+        what += f", as {projected.encoding} has no numbers with a window or muted bands"
     write = partial(write_atomically, data=data, exclusive=True)
     return Written(write_numbered(_stem(picture), write, suffix=".json", folder=_folder()), what)
 
