@@ -1,4 +1,4 @@
-"""A light as it is often projected by mistake: without solid angles, clamped at 1, or encoded for a display."""
+"""A light as it is often projected by mistake: without solid angles, clamped at 1, encoded for a display, or half of it."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ the means of so small areas do as well as the texels."""
 BLOCK_ROWS = 64
 """Rows of an image that are spoiled at a time."""
 
-CLAMPED, ENCODED = "clamped at 1", "encoded for a display"
-SPOILED = ((), (CLAMPED,), (ENCODED,), (CLAMPED, ENCODED))
+CLAMPED, ENCODED, UPPER = "clamped at 1", "encoded for a display", "black below the horizon"
+SPOILED = ((), (CLAMPED,), (ENCODED,), (CLAMPED, ENCODED), (UPPER,))
 """What is done to the values, in words."""
 
 MISTAKES = 2 * len(SPOILED) - 1
@@ -63,7 +63,10 @@ def _spoiled(pixels: NDArray[np.float32], layout: Layout, how: tuple[str, ...]) 
     for start in range(0, len(taken), BLOCK_ROWS):
         block = pixels[start * step : (start + BLOCK_ROWS) * step]
         for one in how:
-            block = np.minimum(block, 1) if one == CLAMPED else srgb_from_linear(np.maximum(block, 0))
+            if one == UPPER:
+                block = block * layout.upper()[start * step : (start + BLOCK_ROWS) * step, :, None]
+            else:
+                block = np.minimum(block, 1) if one == CLAMPED else srgb_from_linear(np.maximum(block, 0))
         taken[start : start + BLOCK_ROWS] = block.reshape(-1, step, width // step, step, 3).mean(axis=(1, 3))
     return taken, LatLongLayout(*taken.shape[:2]) if step > 1 else layout
 
