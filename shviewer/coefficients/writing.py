@@ -130,10 +130,8 @@ def _glsl(table: _Table) -> bytes:
     if table.encoding is not None:
         function = function_name(name, str(table.stamp["encoding"]))
         return glsl_decoder(name, function, comments, rows, table.encoding.formula).encode()
-    function, factors = (
-        function_name(name, str(table.stamp["quantity"])),
-        convention.basis_factors(count_bands(table.numbers)),
-    )
+    function = function_name(name, str(table.stamp["quantity"]))
+    factors = convention.basis_factors(count_bands(table.numbers))
     return glsl_source(name, function, comments, rows, factors, convention.shift, convention.pole.text).encode()
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from coefficients.peer_cases import spoiled
+from numpy.typing import NDArray
 
 from shviewer.analysis.compared_files import compared_with
 from shviewer.analysis.comparison import agrees, as_the_file_holds, caption, verdict, verdict_of
@@ -46,6 +47,17 @@ def venice() -> Light:
 
 def given(coefficients: Array, name: str = "theirs.txt") -> CoefficientLight:
     return CoefficientLight(coefficients, name)
+
+
+def of_venice(convention: str, n_bands: int = 3) -> NDArray[np.generic]:
+    """The numbers of the light in a convention."""
+    return np.asarray(parse_convention(convention).from_ours(venice().coefficients(n_bands)))
+
+
+def told(file: Path, convention: str = "") -> tuple[str, str]:
+    """What is said of a file, read as it is or in a convention that is named, and the verdict on it."""
+    recipe, said = compared_with(Recipe(venice(), reading=Reading(convention=convention)), str(file))
+    return said, verdict(venice(), recipe.compare)
 
 
 def compared(file: CoefficientLight, **changes: object) -> Picture:
@@ -99,7 +111,7 @@ def test_samples_answer_for_both_quantities() -> None:
 
 def test_irradiance_is_compared_with_irradiance(tmp_path: Path) -> None:
     path = tmp_path / "probe.json"
-    path.write_text(json.dumps(np.asarray(CONVENTIONS["unity"].from_ours(venice().coefficients(3))).tolist()))
+    path.write_text(json.dumps(of_venice("unity").tolist()))
     file = CoefficientLight.read(path, Reading(convention="unity"))
     picture = compared(file)
     assert (picture.state.recipe.quantity, picture.state.recipe.n_bands) == ("irradiance", 3)
@@ -131,7 +143,7 @@ def test_the_usual_mistakes_are_named_in_one_line(names: tuple[str, ...], words:
 def test_another_programs_file_is_recognised_by_its_numbers(tmp_path: Path) -> None:
     for name in ("filament", "three", "unity"):
         path = tmp_path / f"{name}.json"
-        path.write_text(json.dumps(np.asarray(CONVENTIONS[name].from_ours(venice().coefficients(3))).tolist()))
+        path.write_text(json.dumps(of_venice(name).tolist()))
         file = CoefficientLight.read(path, Reading(convention="shviewer"))
         for quantity in ("radiance", "irradiance"):
             assert verdict_of(Recipe(venice(), quantity=quantity, compare=file)).endswith(
@@ -186,7 +198,7 @@ def test_the_command_compares_and_says_what_is_wrong(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, renderer: Renderer
 ) -> None:
     monkeypatch.setattr("shviewer.viewer.screenshot.headless_renderer", lambda: nullcontext(renderer))
-    numbers = np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
+    numbers = of_venice("three")
     (tmp_path / "theirs.json").write_text(json.dumps(numbers.tolist()))
     command = ["screenshot", str(tmp_path / "out.png"), "venice_sunset", "--compare", str(tmp_path / "theirs.json")]
     assert main([*command, "--convention", "three", "--size", "320", "160"]) == 0
@@ -239,7 +251,7 @@ def test_factors_channels_and_the_order_of_the_list_are_usual_mistakes(
 
 @pytest.mark.parametrize("named", ["shviewer", "filament", "unity", "unreal", "three,z-up"])
 def test_mistakes_are_found_together_whichever_convention_was_named(named: str, tmp_path: Path) -> None:
-    numbers = np.sqrt(4 * np.pi) * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
+    numbers = np.sqrt(4 * np.pi) * of_venice("three")
     (tmp_path / "theirs.json").write_text(json.dumps(numbers[:, ::-1].tolist()))
     said = verdict(venice(), CoefficientLight.read(tmp_path / "theirs.json", Reading(convention=named)))
     explained = said.partition("its numbers are ")[2]
@@ -262,46 +274,42 @@ def test_where_nothing_explains_it_the_band_is_named() -> None:
     "text", [name for name, one in CONVENTIONS.items() if name not in ("spharpy", "arcore-phase", "arkit-phase")]
 )
 def test_a_convention_that_nobody_names_is_found(text: str, tmp_path: Path) -> None:
-    numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
-    file = tmp_path / "bare.npy"
-    np.save(file, numbers)
-    recipe, said = compared_with(Recipe(venice()), str(file))
+    np.save(tmp_path / "bare.npy", of_venice(text))
+    said, agreement = told(tmp_path / "bare.npy")
     same = {"webxr-no-phase": "three", "arcore-no-phase": "three", "arkit-no-phase": "three"}
     named = "shviewer, in axes +x+z-y (y-up), fits, as webxr-phase would: --convention shviewer,y-up"
     found = named if text == "webxr-phase" else f"{same.get(text, text)} fits"
     found += ", or shviewer of the map turned by half a turn, which is the same" if text == "sphericart" else ""
     assert said == f"bare.npy does not name its convention: {found}"
-    assert verdict(venice(), recipe.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
+    assert agreement.endswith("agrees with the light's own to 0.0001 % over its 3 bands")
 
 
 @pytest.mark.parametrize(
     "text", ["shviewer,m-swapped,4pi", "shviewer,y-up,4pi", "shviewer,y-up-left,sn3d", "filament,z-up", "three,+z-x-y"]
 )
 def test_a_bent_convention_is_found_too(text: str, tmp_path: Path) -> None:
-    numbers = np.asarray(parse_convention(text).from_ours(venice().coefficients(3)))
-    (tmp_path / "bare.json").write_text(json.dumps(numbers.tolist()))
-    recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.json"))
+    (tmp_path / "bare.json").write_text(json.dumps(of_venice(text).tolist()))
+    said, agreement = told(tmp_path / "bare.json")
     assert ", fits: --convention " in said
     if text.startswith("shviewer"):  # the simplest of several that fit as well
         assert parse_convention(said.split()[-1]) == parse_convention(text)
-    assert "agrees" in verdict(venice(), recipe.compare)
+    assert agrees(agreement)
 
 
 def test_finder_and_comparison_are_one(tmp_path: Path) -> None:
     """What the finder takes agrees; a list that is off by a constant is said to be so, in a plain sentence."""
-    numbers = 2 * np.asarray(CONVENTIONS["three"].from_ours(venice().coefficients(3)))
+    numbers = 2 * of_venice("three")
     (tmp_path / "bare.txt").write_text(" ".join(map(str, numbers.reshape(-1))))
-    recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.txt"))
+    said, agreement = told(tmp_path / "bare.txt")
     assert said == "bare.txt does not name its convention: three, times 2, fits: --convention three,times=2"
-    assert verdict(venice(), recipe.compare).endswith("agrees with the light's own to 0.0001 % over its 3 bands")
+    assert agreement.endswith("agrees with the light's own to 0.0001 % over its 3 bands")
 
 
 def test_where_no_convention_fits_the_nearest_is_named_and_where_it_fails(tmp_path: Path) -> None:
-    (tmp_path / "bare.npy").write_bytes(b"")
     np.save(tmp_path / "bare.npy", np.random.default_rng(3).normal(size=(9, 3)))
-    recipe, said = compared_with(Recipe(venice()), str(tmp_path / "bare.npy"))
+    said, agreement = told(tmp_path / "bare.npy")
     assert re.search(r"convention: no usual one fits; read as \S+, which is \d+ % off$", said)
-    assert "which no usual mistake explains" in verdict(venice(), recipe.compare)
+    assert "which no usual mistake explains" in agreement
 
 
 def hints(said: str) -> list[str]:
@@ -326,23 +334,20 @@ PASTED = (
 def test_every_hint_that_is_printed_can_be_pasted_and_gives_what_it_says(
     text: str, n_bands: int, tmp_path: Path
 ) -> None:
-    convention = parse_convention(text)
     try:
-        numbers = np.asarray(convention.from_ours(venice().coefficients(n_bands)))
+        numbers = of_venice(text, n_bands)
     except ValueError:
         pytest.skip("a program with fewer bands")
     file = tmp_path / "bare.npy"
     np.save(file, numbers)
-    recipe, found = compared_with(Recipe(venice()), str(file))
-    assert "agrees" in verdict(venice(), recipe.compare)
+    found, agreement = told(file)
+    assert agrees(agreement)
     named = [*hints(found), "shviewer", "three", "filament", "unity,z-up", "ambix"]
     for start in named:
         with suppress(LightError):  # a convention that cannot hold it
-            reading = Reading(convention=start)
-            said = verdict(venice(), compared_with(Recipe(venice(), reading=reading), str(file))[0].compare)
+            said = told(file, start)[1]
             for hint in hints(said):
-                pasted = compared_with(Recipe(venice(), reading=Reading(convention=hint)), str(file))[0]
-                assert agrees(verdict(venice(), pasted.compare)), (start, hint)
+                assert agrees(told(file, hint)[1]), (start, hint)
             assert agrees(said) or hints(said), start
 
 
@@ -353,35 +358,27 @@ def test_a_hint_on_a_stamped_file_can_be_pasted_too(tmp_path: Path, capsys: pyte
     rows = json.loads(file.read_text())
     rows["coefficients"] = (np.array(rows["coefficients"]) * 3).tolist()
     file.write_text(json.dumps(rows))
-    (hint,) = hints(verdict(venice(), compared_with(Recipe(venice()), str(file))[0].compare))
+    (hint,) = hints(told(file)[1])
     assert hint == "three,times=3"
-    recipe, said = compared_with(Recipe(venice(), reading=Reading(convention=hint)), str(file))
+    said, agreement = told(file, hint)
     assert said == "stamped.json: says that its convention is three; read as three,times=3"
-    assert agrees(verdict(venice(), recipe.compare))
+    assert agrees(agreement)
 
 
 @pytest.mark.parametrize("n_bands", [3, 4, 5])
 def test_what_is_irradiance_is_measured_as_irradiance(n_bands: int, tmp_path: Path) -> None:
     """From 4 bands on the radiance of band 3 cannot be had from it; read as radiance it is named."""
-    np.save(
-        tmp_path / "e.npy",
-        np.asarray(parse_convention("shviewer,irradiance").from_ours(venice().coefficients(n_bands))),
-    )
-    recipe = compared_with(Recipe(venice(), reading=Reading(convention="shviewer")), str(tmp_path / "e.npy"))[0]
-    said = verdict(venice(), recipe.compare)
-    assert said.endswith(
+    np.save(tmp_path / "e.npy", of_venice("shviewer,irradiance", n_bands))
+    assert told(tmp_path / "e.npy", "shviewer")[1].endswith(
         "not at all if its numbers are multiplied by A(l), as irradiance: --convention shviewer,irradiance"
     )
-    recipe = compared_with(
-        Recipe(venice(), reading=Reading(convention="shviewer,irradiance")), str(tmp_path / "e.npy")
-    )[0]
-    assert agrees(verdict(venice(), recipe.compare))
+    assert agrees(told(tmp_path / "e.npy", "shviewer,irradiance")[1])
 
 
 def test_three_lines_that_are_row_by_row_after_all(tmp_path: Path) -> None:
     rows = venice().coefficients(3).reshape(3, 9)
     (tmp_path / "lines.txt").write_text("\n".join(" ".join(map(repr, row)) for row in rows.tolist()))
-    said = compared_with(Recipe(venice()), str(tmp_path / "lines.txt"))[1]
+    said = told(tmp_path / "lines.txt")[0]
     assert said.endswith("shviewer, listed row by row, fits: --convention shviewer,interleaved")
 
 
@@ -402,8 +399,7 @@ def test_a_list_alone_is_refused_and_told_how_to_find_out(tmp_path: Path) -> Non
 def test_what_a_glossy_surface_reflects_is_compared_as_that(tmp_path: Path) -> None:
     file = tmp_path / "glossy.json"
     assert main(["project", "venice_sunset", "--bands", "4", "--for", "glossy:0.4", "-o", str(file)]) == 0
-    recipe = compared_with(Recipe(venice()), str(file))[0]
-    assert verdict(venice(), recipe.compare) == "glossy.json agrees with the light's own to 0.0001 % over its 4 bands"
+    assert told(file)[1] == "glossy.json agrees with the light's own to 0.0001 % over its 4 bands"
 
 
 @pytest.mark.parametrize("light", [(), ("green",)])
