@@ -148,15 +148,12 @@ class CubeLayout:
     ) -> Array:
         """Radiance (k, 3) where some of the four texels are on the next face or nowhere."""
         weights = np.stack([(1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down])
-        taps = np.empty((4, len(face), 3))
-        absent = np.zeros((4, len(face)), dtype=bool)
-        for i in range(4):
-            at_column, at_row = left + i % 2, top + i // 2
-            absent[i] = ((at_column < 0) | (at_column >= self.face)) & ((at_row < 0) | (at_row >= self.face))
-            taps[i] = pixels[self.texels(face, at_row, at_column)]
+        at_column, at_row = (np.stack(four) for four in ((left, left + 1) * 2, (top, top, top + 1, top + 1)))
+        absent = ((at_column < 0) | (at_column >= self.face)) & ((at_row < 0) | (at_row >= self.face))
+        taps = pixels[self.texels(np.tile(face, 4), at_row.ravel(), at_column.ravel())].reshape(4, -1, 3)
         weights = weights + (weights * absent).sum(axis=0) / 3
         weights[absent] = 0.0
-        return np.asarray(np.einsum("ik,ikc->kc", weights, taps))
+        return np.asarray(np.einsum("ik,ikc->kc", weights, taps, dtype=np.float64))
 
     def texels(self, face: Indices, rows: Indices, columns: Indices) -> tuple[Indices, Indices]:
         """Row and column in the image of places on a face, (k,) each; beyond its border follows the next face."""

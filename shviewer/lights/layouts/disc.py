@@ -127,7 +127,8 @@ class DiscLayout(Disc):
         down, right = row - top, column - left
         result = between_texels(pixels, top.astype(np.int64), left.astype(np.int64), down, right)
         rim = np.flatnonzero(radius >= 1 - 3 / self.side)  # a texel's diagonal is 2.83 / side
-        result[rim] = self._across_the_rim(pixels, top[rim], left[rim], down[rim], right[rim])
+        if len(rim):
+            result[rim] = self._across_the_rim(pixels, top[rim], left[rim], down[rim], right[rim])
         return result
 
     def raster(self, pixels: NDArray[np.float32], height: int, width: int) -> NDArray[np.float32]:
