@@ -1,10 +1,10 @@
 """What opening a large map costs: [xvfb-run -a] python tests/benchmarks/opening.py [WIDTH ...]
 
 Whole processes on files that this script makes: a sky of 1/f luminance with noise and a sun, as .exr (half floats, ZIP, and
-float32, PIZ) and .hdr; and such a light as an angular map and a mirror ball. Of each: processor time, the same over the floor,
-and the peak memory of all processes. The floor is a Python that reads the file with OpenImageIO and sums it once. *First
-picture* is what the window shows first, its figures pending, without OpenGL; *screenshot* is the whole picture, drawn, with all
-figures; *opened* is both in the way of a window, which lets a child decode.
+float32, PIZ) and .hdr; and such a light as a cube, an angular map and a mirror ball. Of each: processor time, the same over
+the floor, and the peak memory of all processes. The floor is a Python that reads the file with OpenImageIO and sums it
+once. *First picture* is what the window shows first, its figures pending, without OpenGL; *screenshot* is the whole
+picture, drawn, with all figures; *opened* is both in the way of a window, which lets a child decode.
 
 With a display also the window: while a map is dropped and opened, the camera turns in every frame, twice for each map, since
 OpenGL compiles a shader for the first. Goal: no frame waits longer than 50 ms for the light. The times of frames are those of
@@ -88,10 +88,11 @@ def write_maps(folder: Path, width: int) -> list[tuple[Path, str]]:
 
 
 def write_balls(folder: Path) -> list[tuple[Path, str]]:
-    """A sky as an angular map and as a mirror ball of 1024 texels a side, and as a lat-long map of as many texels."""
+    """A sky as an angular map and a mirror ball of 1024 texels a side, and as a cube and a lat-long map of as many texels."""
+    shapes = {"lat-long": (724, 1448), "cube": (1672, 1254), "angular": (1024, 1024), "mirror-ball": (1024, 1024)}
     files = []
-    for layout, shape in (("angular", (1024, 1024)), ("mirror-ball", (1024, 1024)), ("lat-long", (724, 1448))):
-        pixels = sky(2048)[: shape[0], : shape[1]].astype(np.float16)
+    for layout, shape in shapes.items():
+        pixels = sky(max(2048, 2 * shape[0]))[: shape[0], : shape[1]].astype(np.float16)
         files.append((folder / f"1024-{layout}.exr", layout))
         write_exr(files[-1][0], pixels, OpenEXR.ZIP_COMPRESSION)
     return files

@@ -99,8 +99,8 @@ class Glossy:
 def glossy_factors(roughness: float, n_bands: int) -> Array:
     """f(l) of a roughness, (n_bands,), absolute error 1e-13; below that, they are noise."""
     check_bands(n_bands)
-    step = 128  # rules for few counts of nodes, which are kept
-    return _factors(roughness, -(-n_bands // step) * step)[:n_bands]
+    step = 128  # rules for few counts of nodes, which are kept; two more, which `Kernel.beyond` asks for
+    return _factors(roughness, -(-(n_bands - 2) // step) * step + 2)[:n_bands]
 
 
 @lru_cache(maxsize=256)
