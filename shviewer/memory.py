@@ -1,5 +1,7 @@
 """The memory that this process may still take: what the machine has left, within every limit that is set on the process.
 
+And what becomes of memory that it has freed.
+
 Sources
     Linux    proc(5): MemAvailable, statm; getrlimit(2); the kernel's admin-guide/cgroup-v2 and cgroup-v1/memory: the limit
              of every level above counts, and pages of files that nobody uses (inactive_file) are given back first
@@ -19,6 +21,24 @@ from typing import Any
 
 _CGROUP_2 = ("memory.max", "memory.current", "inactive_file")
 _CGROUP_1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+
+
+LARGEST_KEPT = 2**25
+"""Bytes up to which a block is kept where it was freed."""
+
+_TRIM, _MMAP = -1, -3  # of mallopt(3)
+
+
+def keep_freed() -> None:
+    """Let glibc keep blocks that are freed, twice LARGEST_KEPT together at the end of the heap, for those that come next.
+
+    It does so by itself from the first time on that so large a block was freed. Until then every array of more than 128 KiB
+    takes fresh pages, and to fetch them costs several times what it takes to fill them.
+    """
+    with suppress(Exception):  # another system, or another C library
+        mallopt = ctypes.CDLL(None).mallopt
+        mallopt(_MMAP, LARGEST_KEPT)
+        mallopt(_TRIM, 2 * LARGEST_KEPT)
 
 
 def available_bytes() -> int | None:

@@ -6,6 +6,7 @@ import ctypes
 import io
 import json
 import os
+import platform
 import re
 import struct
 import subprocess
@@ -434,3 +435,24 @@ def test_a_file_is_let_go_before_its_pixels_take_memory(monkeypatch: pytest.Monk
     monkeypatch.setattr(owner, name, pixels)
     assert read_radiance_image(Path("a.exr"), Reading(isolated=isolated)).pixels.shape == (16, 32, 3)
     assert held == [False]
+
+
+FRESH_PAGES = """
+import resource
+import numpy as np
+from shviewer.memory import keep_freed
+keep_freed()
+pages = []
+for _ in range(3):
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    np.ones(2**18)
+    pages.append(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+print(*pages)
+"""
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="another C library")
+def test_an_array_takes_the_pages_of_one_that_was_freed() -> None:
+    first, *later = map(int, subprocess.check_output([sys.executable, "-c", FRESH_PAGES], text=True).split())
+    assert first > 400
+    assert max(later) < first / 10

@@ -32,6 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         _check_first(arguments)
         mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
         options = PARSERS[mode]().parse_intermixed_args(rest)
+        import_module("shviewer.memory").keep_freed()
         with within_memory():
             code: int = import_module(f"shviewer.cli.{mode}").run(options)
         if sys.stdout is not None:
