@@ -162,15 +162,14 @@ class EnvironmentLight(RadianceLight):
         return channel_products(self.pixels, self.layout.solid_angles())
 
     def irradiance_up(self) -> Array:
-        """As in Light: Y(1, 0), which is z, times the texels of the upper half, by the layout's exact integrals."""
-        height, width = self.pixels.shape[:2]
-        if self.layout.solid_angles().shape[1] == 1:  # rows of constant theta: the integral of cos(theta) over each
-            sines = np.sin(np.minimum(np.linspace(0, np.pi, height + 1), np.pi / 2))
-            upper = self.pixels[: (height + 1) // 2]
-            sums = np.array([np.ones(width) @ row.astype(np.float64) for row in upper])
-            return np.asarray(np.diff(sines**2)[: len(upper)] * (np.pi / width) @ sums)
-        above = self.layout.upper()[..., None]
-        return np.asarray(self.layout.project(self.pixels * above, 2)[2] * np.sqrt(4 * np.pi / 3))
+        """As in Light: the texels times the integrals of z over them."""
+        rises, total = np.broadcast_to(self.layout.rises(), self.pixels.shape[:2]), np.zeros(3)
+        rows = max(1, BLOCK_TEXELS // self.pixels.shape[1])
+        for top in range(0, len(self.pixels), rows):
+            some = rises[top : top + rows]
+            if some.any():
+                total += some.ravel() @ self.pixels[top : top + rows].reshape(-1, 3).astype(np.float64)
+        return total
 
     def landmarks(self) -> Array:
         """The centre of the brightest texel, (1, 3)."""

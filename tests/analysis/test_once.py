@@ -76,7 +76,7 @@ def test_what_is_told_of_an_image_in_another_layout_takes_one_projection_and_no_
         patch.setattr(DiscLayout, "raster", None)
         patch.setattr("shviewer.lights.environment.FEW_DIRECTIONS", 0)  # the image is small
         found = told()
-    assert asked == [128, 2]  # and the irradiance of a surface that faces up
+    assert asked == [128]
     monkeypatch.setattr("shviewer.lights.environment.FEW_DIRECTIONS", np.inf)  # a raster for every direction
     assert "--split-sun" in found[1]
     assert told() == found

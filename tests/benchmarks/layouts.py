@@ -22,7 +22,8 @@ from measure import cpu_milliseconds, machine
 from opening import process
 
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import VERTICAL_CROSS, CubeLayout
+from shviewer.lights.layouts.arrangements import VERTICAL_CROSS
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout

@@ -31,7 +31,8 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import HORIZONTAL_CROSS, VERTICAL_STRIP, CubeLayout
+from shviewer.lights.layouts.arrangements import HORIZONTAL_CROSS, VERTICAL_STRIP
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.light import Light

@@ -27,7 +27,8 @@ from lights.images.ldr_files import (
 from lights.images.other_files import dds_file, npy_file, pfm_file, psd_file, tiff_file
 from numpy.typing import NDArray
 
-from shviewer.lights.layouts.cube import HORIZONTAL_CROSS, PACK, VERTICAL_CROSS, Arrangement, CubeLayout
+from shviewer.lights.layouts.arrangements import HORIZONTAL_CROSS, PACK, VERTICAL_CROSS, Arrangement
+from shviewer.lights.layouts.cube import CubeLayout
 
 GREY = ((128 / 255 + 0.055) / 1.055) ** 2.4
 """The linear value of the sRGB code 128."""

@@ -18,7 +18,8 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import MAX_TEXTURE_SIDE, EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import HORIZONTAL_CROSS, OPENEXR, CubeLayout
+from shviewer.lights.layouts.arrangements import HORIZONTAL_CROSS, OPENEXR
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.reading import Reading
@@ -48,6 +49,12 @@ def test_the_norm_weighs_each_texel_by_its_solid_angle(height, width):
 @pytest.mark.parametrize("height", [1, 4, 5, 9])
 def test_the_irradiance_up_of_a_constant_image_is_pi_also_where_a_row_lies_across_the_equator(height):
     light = replace(random_light(height, 8), pixels=np.ones((height, 8, 3), np.float32))
+    assert_allclose(light.irradiance_up(), np.pi, rtol=1e-12)
+
+
+@pytest.mark.parametrize("layout", [MirrorBallLayout(3), AngularLayout(15), CubeLayout(OPENEXR, 5)])
+def test_the_irradiance_up_of_a_constant_image_of_an_odd_side_is_pi_in_any_layout(layout):
+    light = EnvironmentLight(np.ones((*layout.solid_angles().shape, 3), np.float32), layout)
     assert_allclose(light.irradiance_up(), np.pi, rtol=1e-12)
 
 

@@ -10,7 +10,7 @@ from shviewer.benchmark.hard_cases.evaluation import towards
 from shviewer.benchmark.hard_cases.outcome import Case, largest
 from shviewer.harmonics.basis import Array
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.layouts import cube
+from shviewer.lights.layouts import arrangements
 from shviewer.lights.layouts.angular import AngularLayout
 from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
@@ -21,11 +21,11 @@ FACE_FLUX = 4 / sqrt(2) * atan(1 / sqrt(2))
 """The integral of x over the directions of a cube's face +x: that of (1 + u^2 + v^2)^-2 over the square."""
 
 MIDDLES = {
-    cube.VERTICAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
-    cube.HORIZONTAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
-    cube.OPENEXR: ((0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
-    cube.VERTICAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (0, 0, -1), (-1, 0, 0)),
-    cube.HORIZONTAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (-1, 0, 0), (0, 0, -1)),
+    arrangements.VERTICAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
+    arrangements.HORIZONTAL_STRIP: ((0, -1, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
+    arrangements.OPENEXR: ((0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0)),
+    arrangements.VERTICAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (0, 0, -1), (-1, 0, 0)),
+    arrangements.HORIZONTAL_CROSS: ((0, 0, 1), (0, 1, 0), (1, 0, 0), (0, -1, 0), (-1, 0, 0), (0, 0, -1)),
 }
 """Where the faces look, row by row."""
 
@@ -121,7 +121,7 @@ def between() -> float:
             up, low = (pixels[r, column] * (2 / 3) + pixels[r, (column + 1) % 12] / 3 for r in (row, row + 1))
             found = read.sample(direction(row + 0.25, column + 1 / 3, place, 0.0 if on_poles else 0.5))[0]
             worst = max(worst, largest(found - (0.75 * up + 0.25 * low)))
-    layout, face = CubeLayout(cube.VERTICAL_STRIP, 4), random.random((24, 4, 3)).astype(np.float32)
+    layout, face = CubeLayout(arrangements.VERTICAL_STRIP, 4), random.random((24, 4, 3)).astype(np.float32)
     u, v = (2 * (1 + 1 / 3 + 0.5) / 4 - 1, 2 * (2 + 0.25 + 0.5) / 4 - 1)
     # right is -y, down is -z; the front is the fifth face
     forward = np.array([[1.0, -u, -v]]) / sqrt(1 + u * u + v * v)

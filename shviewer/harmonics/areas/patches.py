@@ -75,6 +75,11 @@ def four_quadrants(quadrant: Array, n_texels: int) -> Array:
     return whole
 
 
+def above_the_middle(n_texels: int) -> Array:
+    """The share of each row of n_texels that lies above the middle of the image, (n_texels, 1): half of a middle one."""
+    return np.asarray(np.clip(n_texels / 2 - np.arange(n_texels), 0.0, 1.0)[:, None])
+
+
 def quadrant_weights(
     image: NDArray[np.floating], n_points: int, spans: NDArray[np.int64] | None = None
 ) -> tuple[Array, Array]:

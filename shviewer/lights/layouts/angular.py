@@ -9,6 +9,7 @@ entire functions of X and Y: one patch for all texels that the rim does not cut.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,12 +18,13 @@ from numpy.typing import NDArray
 from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_shares
 from shviewer.harmonics.areas.patches import project_mirrored, quadrant_weights
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.quadrature import gauss_unit
 from shviewer.lights.layouts.disc import DiscLayout
 
-DENSITY_POINTS = 24
-"""Chebyshev points a side that make the density exact to rounding in a quadrant."""
+DENSITY_POINTS = 28
+"""Chebyshev points a side that make density and height times density exact to rounding in a quadrant."""
 
-AREA_POINTS = 12
+AREA_POINTS = 14
 """Gauss's points a side of a texel, exact for such a polynomial."""
 
 
@@ -43,18 +45,24 @@ class AngularLayout(DiscLayout):
         from_rim = np.pi * depth**2 / (1 + radius)
         return np.stack([-np.cos(from_rim), x * np.sin(from_rim) / radius, y * np.sin(from_rim) / radius])
 
-    def opening(self, depth: Array) -> Array:
-        return np.asarray(2 * np.sin(np.pi / 2 * depth**2 / (1 + np.sqrt(1 - depth**2))) ** 2)
+    def from_behind(self, depth: Array) -> Array:
+        return np.asarray(np.pi * depth**2 / (1 + np.sqrt(1 - depth**2)))
 
     def whole_solid_angles(self) -> Array:
-        """As in DiscLayout: the density is a polynomial to rounding, so its integrals over texels are a matrix product."""
+        return self._integrals(lambda x, y: self.density(np.hypot(x, y)))
+
+    def whole_rises(self) -> Array:
+        return self._integrals(lambda x, y: np.pi**3 * y * np.sinc(np.hypot(x, y)) ** 2)
+
+    def _integrals(self, function: Callable[[Array, Array], Array]) -> Array:
+        """Those of a function of X and Y over the texels of a quadrant: a matrix product, as it is a polynomial to rounding."""
         low, size = self.edges[:-1], np.diff(self.edges)
-        nodes, weights = np.polynomial.legendre.leggauss(AREA_POINTS)
-        places = low + size * (1 + nodes[:, None]) / 2
+        nodes, weights = gauss_unit(AREA_POINTS)
+        places = low + size * nodes[:, None]
         shares = chebyshev_shares(2 * places.ravel() - 1, DENSITY_POINTS).reshape(DENSITY_POINTS, *places.shape)
-        by_texel = np.einsum("ngt,g,t->nt", shares, weights / 2, size)
+        by_texel = np.einsum("ngt,g,t->nt", shares, weights, size)
         points = (1 + chebyshev_points(DENSITY_POINTS)) / 2
-        return np.asarray(by_texel.T @ self.density(np.hypot(points, points[:, None])) @ by_texel)
+        return np.asarray(by_texel.T @ function(points, points[:, None]) @ by_texel)
 
     def density(self, radius: Array) -> Array:
         return np.asarray(np.pi**2 * np.sinc(radius))

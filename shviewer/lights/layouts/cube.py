@@ -1,19 +1,5 @@
 """Six square faces of a cube, each 90 degrees wide seen from the centre. An Arrangement says where they lie in the image.
 
-Every face is drawn as seen from inside, not mirrored. In the world of basis.py, x forward, y left and z up:
-
-    arrangement        image   faces, left to right or top to bottom
-    vertical strip     1 x 6   right -y, left +y, up +z, down -z, front +x, back -x: the OpenGL and Direct3D order
-    horizontal strip   6 x 1   the same. Both are left-handed there: their +X is our right, their +Y up, their +Z front;
-                               the lower edge of their up face and the upper edge of their down face touch the front
-    packs              3 x 2   the order of the strips, row by row, as ffmpeg writes it; or in three rows of two
-    OpenEXR            1 x 6   the `envmap` attribute, +X -X +Y -Y +Z -Z of a right-handed space with X left, Y up and Z
-                               forward: left, right, up, down, front, back; up and down are turned so that the image's
-                               right is left in the world, and the lower edge of up touches the back
-    vertical cross     3 x 4   up; left, front, right; down; back: the back hangs below down, turned by 180 degrees
-                               (as HDRShop writes it and the published probes have it)
-    horizontal cross   4 x 3   up over front, down under it; left, front, right, back in the middle row
-
 OpenEXR puts the centres of a face's border texels on the cube's edges; here, as everywhere, texels are areas that tile a face.
 """
 
@@ -25,54 +11,20 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.areas.patches import four_quadrants, project_mirrored, quadrant_edges, quadrant_weights
+from shviewer.harmonics.areas.patches import (
+    above_the_middle,
+    four_quadrants,
+    project_mirrored,
+    quadrant_edges,
+    quadrant_weights,
+)
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.lights.layouts.arrangements import Arrangement, Face
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import raster_of
 from shviewer.lights.layouts.texels import integrate_texels
 
 _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}
-
-
-@dataclass(frozen=True)
-class Face:
-    """A face in the cell `row`, `column`. centre, right, down: the axes, as "+x", of its middle, its columns and its rows."""
-
-    row: int
-    column: int
-    centre: str
-    right: str
-    down: str
-
-
-@dataclass(frozen=True)
-class Arrangement:
-    """Where the faces of a cube stand in an image, in cells of one face each."""
-
-    name: str
-    rows: int
-    columns: int
-    faces: tuple[Face, ...]
-
-    def face_size(self, height: int, width: int) -> int:
-        """The side of a face, in texels; 0 if the image does not consist of whole faces in this arrangement."""
-        size = height // self.rows
-        return size if size * self.rows == height and size * self.columns == width else 0
-
-
-_LEFT, _FRONT, _RIGHT, _BACK = ("+y", "+x", "-z"), ("+x", "-y", "-z"), ("-y", "-x", "-z"), ("-x", "+y", "-z")
-_UP, _DOWN = ("+z", "-y", "+x"), ("-z", "-y", "-x")
-_STRIP = _RIGHT, _LEFT, _UP, _DOWN, _FRONT, _BACK
-_OPENEXR = _LEFT, _RIGHT, ("+z", "+y", "-x"), ("-z", "+y", "+x"), _FRONT, _BACK
-_CROSS = Face(0, 1, *_UP), Face(1, 0, *_LEFT), Face(1, 1, *_FRONT), Face(1, 2, *_RIGHT), Face(2, 1, *_DOWN)
-
-VERTICAL_STRIP = Arrangement("vertical strip", 6, 1, tuple(Face(i, 0, *axes) for i, axes in enumerate(_STRIP)))
-HORIZONTAL_STRIP = Arrangement("horizontal strip", 1, 6, tuple(Face(0, i, *axes) for i, axes in enumerate(_STRIP)))
-OPENEXR = Arrangement("OpenEXR order", 6, 1, tuple(Face(i, 0, *axes) for i, axes in enumerate(_OPENEXR)))
-VERTICAL_CROSS = Arrangement("vertical cross", 4, 3, (*_CROSS, Face(3, 1, "-x", "-y", "+z")))
-PACK = Arrangement("pack of 3 x 2", 2, 3, tuple(Face(i // 3, i % 3, *axes) for i, axes in enumerate(_STRIP)))
-TALL_PACK = Arrangement("pack of 2 x 3", 3, 2, tuple(Face(i // 2, i % 2, *axes) for i, axes in enumerate(_STRIP)))
-HORIZONTAL_CROSS = Arrangement("horizontal cross", 3, 4, (*_CROSS, Face(1, 3, *_BACK)))
 
 
 @dataclass(frozen=True)
@@ -103,18 +55,27 @@ class CubeLayout:
         shown = self.faces_by_cell[rows // self.face, columns // self.face] >= 0
         return np.where(shown, self._face_solid_angles[rows % self.face, columns % self.face], 0.0)
 
-    def upper(self) -> NDArray[np.bool_]:
-        above = np.zeros((self.arrangement.rows * self.face, self.arrangement.columns * self.face), dtype=np.bool_)
-        first = 2 * np.arange(self.face) + 1 < self.face  # the half with the smaller index
-        halves = {"+z": True, "-z": False}
+    def rises(self) -> Array:
+        """As in Layout: in closed form on the upper face, and on the upper half of a side.
+
+        With u and v from the middle of a face, v upwards on a side, z times the density is (1 + u^2 + v^2)^-2 and v times that.
+        """
+        edges = quadrant_edges(self.face)
+        u, v = edges, edges[:, None]
+        along, across = (a / np.sqrt(1 + a**2) * np.arctan(b / np.sqrt(1 + a**2)) / 2 for a, b in ((u, v), (v, u)))
+        up, side = (
+            four_quadrants(np.diff(np.diff(corner, axis=0), axis=1), self.face)
+            for corner in (along + across, np.arctan(u / np.sqrt(1 + v**2)) / (-2 * np.sqrt(1 + v**2)))
+        )
+        side *= above_the_middle(self.face)
+        upright = {"-z": side, "+z": side[::-1]}
+        rises = np.zeros((self.arrangement.rows * self.face, self.arrangement.columns * self.face))
         for face in self.arrangement.faces:
-            if face.centre in halves:
-                above[self._cell(face)] = halves[face.centre]
-            elif face.down in halves:
-                above[self._cell(face)] = (first[::-1] if halves[face.down] else first)[:, None]
-            else:
-                above[self._cell(face)] = first[::-1] if halves[face.right] else first
-        return above
+            if face.centre == "+z":
+                rises[self._cell(face)] = up
+            elif face.centre != "-z":
+                rises[self._cell(face)] = upright[face.down] if face.down in upright else upright[face.right].T
+        return rises
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         face, u, v = self._on_faces(directions)

@@ -11,18 +11,19 @@ mirror ball shows left and right exchanged, like any mirror: turn it over first.
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shviewer.harmonics.areas.patches import four_quadrants, quadrant_edges
+from shviewer.harmonics.areas.patches import above_the_middle, four_quadrants, quadrant_edges
 from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import RASTER_BLOCK
-from shviewer.lights.layouts.rim import Disc, cut_areas, project_rim
+from shviewer.lights.layouts.rim import Disc, cut_areas, cut_rises, project_rim
 from shviewer.lights.layouts.texels import FAR, integrate_texels
 
 ON_THE_RIM = 1e-14
@@ -56,9 +57,6 @@ class DiscLayout(Disc):
     @abstractmethod
     def theta(self, radius: Array) -> Array:
         """The angle of a radius, radians: the inverse of `radius`."""
-
-    def upper(self) -> NDArray[np.bool_]:
-        return (2 * np.arange(self.side) + 1 < self.side)[:, None]
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         down, right, _ = self._places(directions)
@@ -106,15 +104,25 @@ class DiscLayout(Disc):
     @cached_property
     def quadrant_solid_angles(self) -> Array:
         """Steradians of the texels of the lower right quadrant, (half, half); the middle ones of an odd number count half."""
-        quadrant = self.whole_solid_angles()
+        return self._with_cut(self.whole_solid_angles(), cut_areas)
+
+    def rises(self) -> Array:
+        return four_quadrants(self._with_cut(self.whole_rises(), cut_rises), self.side) * above_the_middle(self.side)
+
+    def _with_cut(self, quadrant: Array, cut: Callable[[Disc, Indices, Indices], Array]) -> Array:
+        """The integrals over whole texels, and those over texels that the rim cuts."""
         quadrant[np.arange(self.half) >= self.whole[:, None]] = 0.0
-        cut = self.from_column(self.whole)
-        quadrant[cut] = cut_areas(self, *cut)
+        at_rim = self.from_column(self.whole)
+        quadrant[at_rim] = cut(self, *at_rim)
         return quadrant
 
     @abstractmethod
     def whole_solid_angles(self) -> Array:
         """The same for texels wholly inside the disc; anything for others."""
+
+    @abstractmethod
+    def whole_rises(self) -> Array:
+        """The integrals of the distance from the horizon over the texels of a quadrant; of those wholly inside."""
 
     def sample(self, pixels: NDArray[np.float32], directions: Array) -> NDArray[np.float32]:
         """As in Layout. Texels whose centres are outside the disc do not count: beyond the rim comes the opposite side."""

@@ -41,8 +41,9 @@ class LatLongLayout:
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
         return np.asarray(self.solid_angles()[rows, 0])
 
-    def upper(self) -> NDArray[np.bool_]:
-        return (2 * np.arange(self.height) + 1 < self.height)[:, None]
+    def rises(self) -> Array:
+        sines = np.sin(np.minimum(np.linspace(0, np.pi, self.height + 1), np.pi / 2))
+        return np.asarray(np.diff(sines**2)[:, None] * (np.pi / self.width))
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         theta, phi = angles_from_directions(directions)

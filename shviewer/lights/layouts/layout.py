@@ -43,8 +43,8 @@ class Layout(Protocol):
     def solid_angles_at(self, rows: Indices, columns: Indices) -> Array:
         """Steradians of the texels (k,) alone: (k,)."""
 
-    def upper(self) -> NDArray[np.bool_]:
-        """Whether the centres of texels lie above the horizon: (height, width), or (height, 1) where a row's are alike."""
+    def rises(self) -> Array:
+        """The integral of z over the part of each texel that lies above the horizon, exact: of the shape of `solid_angles`."""
 
     def nearest(self, directions: Array) -> tuple[Indices, Indices]:
         """Row and column, (k,) each, of the texel in whose area each unit direction (k, 3) lies."""

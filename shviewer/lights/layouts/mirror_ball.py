@@ -44,12 +44,20 @@ class MirrorBallLayout(DiscLayout):
     def on_line(self, y: Array, x: Array, depth: Array) -> Array:
         return np.stack([2 * depth**2 - 1, 2 * x * depth, 2 * y * depth])
 
-    def opening(self, depth: Array) -> Array:
-        return np.asarray(2 * depth**2)
+    def from_behind(self, depth: Array) -> Array:
+        return np.asarray(2 * np.arcsin(depth))
 
     def whole_solid_angles(self) -> Array:
         size = np.diff(self.edges)
         return np.asarray(4 * size * size[:, None])
+
+    def whole_rises(self) -> Array:
+        """As in DiscLayout, 8 Y sqrt(1 - X^2 - Y^2) in closed form, along Y and then X."""
+        rho = np.sqrt(np.maximum(1 - self.edges**2, 0.0))[:, None]
+        x = np.minimum(self.edges, rho)
+        turn = np.arctan2(x, np.sqrt((rho - x) * (rho + x)))
+        corner = x * (5 * rho**2 - 2 * x**2) * np.sqrt((rho - x) * (rho + x)) / 8 + 3 / 8 * rho**4 * turn
+        return np.asarray(-8 / 3 * np.diff(np.diff(corner, axis=0), axis=1))
 
     def density(self, radius: Array) -> Array:
         return np.full_like(radius, 4.0)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from shviewer.errors import LightError
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import (
+from shviewer.lights.layouts.arrangements import (
     HORIZONTAL_CROSS,
     HORIZONTAL_STRIP,
     OPENEXR,
@@ -22,8 +22,8 @@ from shviewer.lights.layouts.cube import (
     TALL_PACK,
     VERTICAL_CROSS,
     VERTICAL_STRIP,
-    CubeLayout,
 )
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout

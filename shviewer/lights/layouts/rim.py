@@ -13,6 +13,7 @@ A quadrant has X and Y from 0 to 1, in world directions +y and +z; the others ar
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ from shviewer.harmonics.areas.chebyshev import (
 )
 from shviewer.harmonics.areas.cycling import cycled
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.quadrature import gauss_unit
 
 GROUPS = 4
 """Groups of neighbouring lines, over equal angles, that share their points: directions are smooth across lines, too."""
@@ -60,8 +62,8 @@ class Disc(ABC):
         """Directions (3, ...) on lines of the quadrant."""
 
     @abstractmethod
-    def opening(self, depth: Array) -> Array:
-        """1 + cos(theta) at a depth: 0 on the rim, without cancellation."""
+    def from_behind(self, depth: Array) -> Array:
+        """pi - theta, the angle from straight back, at a depth: 0 on the rim, without cancellation."""
 
 
 def quadrants(pixels: NDArray[np.float32]) -> list[NDArray[np.float32]]:
@@ -176,15 +178,37 @@ def cut_areas(disc: Disc, rows: Indices, columns: Indices) -> Array:
         return np.full(len(rows), np.pi)
     area = np.zeros(len(rows))
     for lines, places in ((rows, columns), (columns, rows)):
-        area += _swept(disc, lines, places) - _swept(disc, lines + 1, places)
+        for first, sign in ((lines, 1), (lines + 1, -1)):
+            area += sign * _swept(disc, first, places, lambda behind, y, x: 2 * np.sin(behind / 2) ** 2)
     return area
 
 
-def _swept(disc: Disc, lines: Indices, places: Indices) -> Array:
-    """The integral of (1 + cos theta) y dX / (X^2 + y^2) along one texel's edge, (k,), on the line y = edges[lines]."""
+def cut_rises(disc: Disc, rows: Indices, columns: Indices) -> Array:
+    """The integral (k,) of the height over the same parts, which is sin(theta) sin(phi).
+
+    That of F(theta) sin(phi) d(phi) along the boundary, with F' = sin(theta)^2 and F(pi) = 0.
+    """
+    if len(disc.edges) == 2:
+        return np.full(len(rows), np.pi / 2)
+    rise = np.zeros(len(rows))
+    for lines, places, upright in ((rows, columns, False), (columns, rows, True)):
+
+        def height(behind: Array, y: Array, x: Array, upright: bool = upright) -> Array:
+            return (behind - np.sin(2 * behind) / 2) / 2 * (x if upright else y) / np.hypot(x, y)
+
+        rise += _swept(disc, lines, places, height) - _swept(disc, lines + 1, places, height)
+    return rise
+
+
+def _swept(disc: Disc, lines: Indices, places: Indices, value: Callable[[Array, Array, Array], Array]) -> Array:
+    """The integral of value * y dX / (X^2 + y^2) along one texel's edge, (k,), on the line y = edges[lines].
+
+    value: of the angle from straight back, y and X.
+    """
     y = disc.edges[lines, None]
     rho = np.sqrt((1 - y) * (1 + y))
     start, stop = (_parameter(disc.edges[at, None], rho) for at in (places + 1, places))
-    node, weight = np.polynomial.legendre.leggauss(AREA_POINTS)
-    depth = rho * np.sin(start + (stop - start) * (1 + node) / 2)
-    return np.asarray((disc.opening(depth) * depth / (1 - depth**2)) @ weight * ((stop - start) * y)[:, 0] / 2)
+    nodes, weights = gauss_unit(AREA_POINTS)
+    x, depth = _place(rho, start + (stop - start) * nodes)
+    found = value(disc.from_behind(depth), y, x) * depth / (1 - depth**2)
+    return np.asarray(found @ weights * ((stop - start) * y)[:, 0])

@@ -15,7 +15,7 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.scattered import project_values
 from shviewer.lights.layouts import mirror_ball
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import (
+from shviewer.lights.layouts.arrangements import (
     HORIZONTAL_CROSS,
     HORIZONTAL_STRIP,
     OPENEXR,
@@ -23,8 +23,8 @@ from shviewer.lights.layouts.cube import (
     TALL_PACK,
     VERTICAL_CROSS,
     VERTICAL_STRIP,
-    CubeLayout,
 )
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.layouts.recognise import recognise
@@ -253,14 +253,39 @@ def test_centres_are_those_of_the_definition_and_lie_in_their_texels(layout):
     assert_array_equal(found, (rows[shows], columns[shows]))
 
 
-@named([*EVERY, CubeLayout(PACK, 6), CubeLayout(TALL_PACK, 5)])
-def test_the_upper_texels_are_those_whose_centres_are_above_the_horizon(layout):
-    rows, columns = (a.ravel() for a in np.indices(shape(layout)))
-    shown = solid_angles(layout).ravel() > 0
-    height = layout.centres(rows, columns)[:, 2]
-    decided = shown & (np.abs(height) > 1e-12)
-    upper = np.broadcast_to(layout.upper(), shape(layout)).ravel()
-    assert_array_equal(upper[decided], height[decided] > 0)
+# --- how high they are
+
+RISING = [*EVERY, CubeLayout(PACK, 6), CubeLayout(TALL_PACK, 5)]
+
+
+@named([*RISING, *all_layouts(64), AngularLayout(511), MirrorBallLayout(1001)])
+def test_the_rises_add_up_to_the_upper_half(layout):
+    rises = layout.rises()
+    assert rises.shape == layout.solid_angles().shape
+    assert (rises >= -1e-15).all()
+    total = rises.sum() * (layout.width if isinstance(layout, LatLongLayout) else 1)
+    assert_allclose(total, np.pi, rtol=1e-13, atol=0)
+
+
+@named(EVERY)
+def test_the_rise_of_a_texel_is_the_integral_of_its_height_above_the_horizon(layout):
+    rises = np.broadcast_to(layout.rises(), shape(layout))
+    random = np.random.default_rng(3)
+    for _ in range(6):
+        row, column = (int(random.integers(count)) for count in shape(layout))
+        directions, areas = cells(layout, row, column, 40)
+        assert_allclose(rises[row, column], np.maximum(directions[:, 2], 0) @ areas, rtol=0.01, atol=2e-3)
+
+
+@named(all_layouts(48))
+def test_rises_are_the_exact_integrals_of_the_second_band(layout):
+    """With an even number of texels a side, the horizon lies between them."""
+    pixels = np.random.default_rng(4).random((*shape(layout), 3)).astype(np.float32)
+    rows, columns = (index.ravel() for index in np.indices(shape(layout)))
+    above = (layout.centres(rows, columns)[:, 2] > 0).reshape(shape(layout))
+    expected = layout.project(pixels * above[..., None], 2)[2] * np.sqrt(4 * np.pi / 3)
+    found = np.einsum("rc,rck->k", np.broadcast_to(layout.rises(), shape(layout)), pixels.astype(np.float64))
+    assert_allclose(found, expected, rtol=1e-12, atol=0)
 
 
 # --- how large they are

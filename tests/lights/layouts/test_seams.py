@@ -7,14 +7,8 @@ import pytest
 from PIL import Image, ImageDraw
 
 from shviewer.lights.find import find_light
-from shviewer.lights.layouts.cube import (
-    HORIZONTAL_CROSS,
-    PACK,
-    TALL_PACK,
-    VERTICAL_CROSS,
-    Arrangement,
-    CubeLayout,
-)
+from shviewer.lights.layouts.arrangements import HORIZONTAL_CROSS, PACK, TALL_PACK, VERTICAL_CROSS, Arrangement
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.recognise import recognise
 

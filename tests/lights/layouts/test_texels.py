@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import OPENEXR, VERTICAL_CROSS, CubeLayout
+from shviewer.lights.layouts.arrangements import OPENEXR, VERTICAL_CROSS
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout

@@ -10,7 +10,8 @@ import pytest
 from shviewer.errors import LightError
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.layouts.angular import AngularLayout
-from shviewer.lights.layouts.cube import VERTICAL_CROSS, CubeLayout
+from shviewer.lights.layouts.arrangements import VERTICAL_CROSS
+from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout

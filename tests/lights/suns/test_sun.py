@@ -18,7 +18,13 @@ from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.images.radiance_files import read_radiance_image
-from shviewer.lights.layouts import cube
+from shviewer.lights.layouts.arrangements import (
+    HORIZONTAL_CROSS,
+    HORIZONTAL_STRIP,
+    OPENEXR,
+    VERTICAL_CROSS,
+    VERTICAL_STRIP,
+)
 from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.light import Light
@@ -31,7 +37,7 @@ from shviewer.lights.suns.sun import Sun
 from shviewer.resources import resource_folder
 
 HEIGHT, WIDTH = 128, 256
-ARRANGEMENTS = [cube.VERTICAL_STRIP, cube.HORIZONTAL_STRIP, cube.OPENEXR, cube.VERTICAL_CROSS, cube.HORIZONTAL_CROSS]
+ARRANGEMENTS = [VERTICAL_STRIP, HORIZONTAL_STRIP, OPENEXR, VERTICAL_CROSS, HORIZONTAL_CROSS]
 WHITE = np.ones(3)
 NOON = normalise(np.array([0.5, 0.3, 0.7]))
 SIZE_OF_SUN = np.radians(0.265)
