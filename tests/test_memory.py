@@ -279,7 +279,7 @@ def test_running_out_of_memory_anywhere_is_one_line(
 
     right = project_mode.project_recipe
     monkeypatch.setattr(
-        project_mode, "project_recipe", lambda one: none_left() if one.light == "cosine" else right(one)
+        project_mode, "project_recipe", lambda one, *more: none_left() if one.light == "cosine" else right(one, *more)
     )
     assert main(["project", "cosine", "-o", str(tmp_path / "a.json")]) == LightError.exit_code
     assert capsys.readouterr().err == "shviewer: not enough memory for it; close something or make it smaller\n"
