@@ -37,6 +37,9 @@ PICTURES = Lazily(
         "function": lambda: picture_of(
             FunctionLight(lambda d: 1 + d[:, 2], LONG), n_bands=40, muted=frozenset({1, 3, 5, 7, 9}), error="absolute"
         ),
+        "times": lambda: picture_of(
+            "sun-sky", n_bands=5, sheet="plane", method="jittered", samples=2_500, split_sun=True
+        ),
         "sampled": lambda: picture_of("sun-sky", n_bands=32, method="jittered", samples=20_000, window="hann"),
     }
 )

@@ -17,12 +17,12 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, GROUND, INK, MEDIUM, RULE, Ink, width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Point, Text
 from shviewer.viewer.overlay.plots.log_axis import Axis, padded_axis
 from shviewer.viewer.overlay.setting import ended, sentence
 from shviewer.viewer.picture import Picture
-from shviewer.words import grouped_number, percent, round_percent, short_count
+from shviewer.words import grouped_number, round_percent, short_count
 
 LOOKS: dict[str, tuple[str, Ink]] = {
     "best": ("diamond", INK),
@@ -31,11 +31,11 @@ LOOKS: dict[str, tuple[str, Ink]] = {
 }
 """Shape and colour of each method: either alone tells them apart, to any kind of colour vision."""
 
-LABELS, MARK, APART = 56.0, 4.5, 14.0
+LABELS, MARK, APART = 68.0, 4.5, 14.0
 """Room for the labels of the axis at its left, half a mark, and what is free beside the points; pixels of the design."""
 
-SHORTEST = 1e-4
-"""The least time, in milliseconds: a log axis has no place for the 0 that a coarse clock may measure."""
+SHORTEST, LEAST = 1e-4, 1e-5
+"""The least time, in milliseconds, and the least error: a log axis has no place for 0, nor for what is only rounding."""
 
 MORE = "M changes the method, S the samples"
 
@@ -67,7 +67,7 @@ def measured(picture: Picture) -> tuple[Measurement, ...]:
 def plane_of(picture: Picture, at: Composition) -> Plane | None:
     """The plane of a picture in the place of the curve; None where there is none, or nothing was measured."""
     box, known = at.numbers.curve, {found.sampling: found for found in measured(picture)}
-    least = picture.figures.floor  # a smaller error is rounding, and has no place on a log axis
+    least = max(picture.figures.floor, LEAST)
     errors = {key: max(float(found.errors[picture.state.recipe.n_bands - 1]), least) for key, found in known.items()}
     times = {key: max(found.milliseconds, SHORTEST) for key, found in known.items()}
     keys = [key for key in known if math.isfinite(errors[key])]
@@ -101,8 +101,8 @@ def plane_legend(plane: Plane, picture: Picture, line: Line, at: Composition) ->
     size, n_bands = at.px(12.0), picture.state.recipe.n_bands
     said = [MORE] if len(plane.places) == 1 else [""]
     if plane.present in plane.places:
-        found, error = plane.known[plane.present], _percent(plane.errors[plane.present], picture)
-        name = found.words if plane.present == BEST else f"{found.words} {short_count(found.samples)}"
+        found, error = plane.known[plane.present], share(plane.errors[plane.present], floor=picture.figures.floor)
+        name = _words(found) if plane.present == BEST else f"{_words(found)} {short_count(found.samples)}"
         time = f"{name}: {grouped_number(found.milliseconds)} ms"
         full = f"{time} for {picture.projection.n_bands} bands, {error} in {n_bands}"
         said = [*(f"{full}; {MORE}" for _ in said if said[0]), full, f"{time}, {error}"]
@@ -111,7 +111,7 @@ def plane_legend(plane: Plane, picture: Picture, line: Line, at: Composition) ->
         pieces: list[Piece] = []
         x = line.left
         for method in names if len(names) > 1 else []:
-            words = plane.known[next(key for key in plane.known if key[0] == method)].words.partition("; ")[0]
+            words = _words(next(found for found in plane.known.values() if found.method == method))
             shape, ink = LOOKS[method]
             pieces.append(_mark(shape, x + at.px(MARK), line.baseline - 0.36 * size, at.px(MARK), ink))
             name = "best" if method == "best" else words
@@ -127,20 +127,21 @@ def _axes(plane: Plane, at: Composition) -> Iterator[Piece]:
     area, size, line = plane.area, at.px(11.0 if at.compact else 12.0), max(1, round(at.scale))
     end, baseline = area.left - at.px(8), area.bottom + at.px(13 if at.compact else 17)
     level = round(plane.error.at(plane.floor))
-    floor = ended("plane_floor", end, level + 0.36 * size, percent(plane.floor), size, INK, MEDIUM)
+    floor = ended("plane_floor", end, level + 0.36 * size, share(plane.floor), size, INK, MEDIUM)
+    axis = ended("plane_milliseconds", end, baseline, "ms", size, FAINT)
     for number, value in enumerate(plane.error.ticks(1.6 * size)):
         y = round(plane.error.at(value))
         yield Fill(Box(area.left, y, area.right, y + line), RULE)
         label = ended(f"plane_share_{number}", end, y + 0.36 * size, round_percent(value), size, FAINT)
-        if not label.box.overlaps(floor.box):
+        if not (label.box.overlaps(floor.box) or label.box.overlaps(axis.box)):
             yield label
     for number, value in enumerate(plane.milliseconds.ticks(4 * size)):
         x, text = round(plane.milliseconds.at(value)), typeset(f"{value:,g}".replace(",", " "))
         yield Fill(Box(x, area.top, x + line, area.bottom), RULE)
-        left = round(min(x - width_of(text, size) / 2, area.right - width_of(text, size)))
+        wide = width_of(text, size)
+        left = round(min(max(x - wide / 2, area.left), area.right - wide))
         yield Text(f"plane_time_{number}", left, baseline, text, size, GREY)
-    yield ended("plane_milliseconds", end, baseline, "ms", size, FAINT)
-    yield floor
+    yield from (axis, floor)
     dash = at.px(4)
     for number in range(int((area.right - area.left) / (2 * dash))):
         start = area.left + 2 * number * dash
@@ -186,5 +187,6 @@ def _mark(shape: str, x: float, y: float, reach: float, ink: Ink) -> Piece:
     return Curve(corners, 0.0, ink, around.grown(1, 1), closed=True)
 
 
-def _percent(share: float, picture: Picture) -> str:
-    return percent(share, floor=picture.figures.floor * (1 + 1e-9))
+def _words(found: Measurement) -> str:
+    """The method, without what it may miss."""
+    return found.words.partition("; ")[0]
