@@ -64,7 +64,7 @@ def _spoiled(pixels: NDArray[np.float32], layout: Layout, how: tuple[str, ...]) 
         block = pixels[start * step : (start + BLOCK_ROWS) * step]
         for one in how:
             if one == UPPER:
-                block = block * layout.upper()[start * step : (start + BLOCK_ROWS) * step, :, None]
+                block = block * (layout.rises()[start * step : (start + BLOCK_ROWS) * step, :, None] > 0)
             else:
                 block = np.minimum(block, 1) if one == CLAMPED else srgb_from_linear(np.maximum(block, 0))
         taken[start : start + BLOCK_ROWS] = block.reshape(-1, step, width // step, step, 3).mean(axis=(1, 3))
