@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict
 from functools import partial
 
@@ -32,6 +33,7 @@ def run(options: argparse.Namespace) -> int:
     reading = reading_from(options)
     exit_code = 0
     objects: list[dict[str, object]] = []
+    told: list[Information] = []
     lights = lights_within(options)
     described = in_order(partial(describe, reading=reading), lights, options.jobs)
     for number, text in enumerate(lights):
@@ -44,11 +46,14 @@ def run(options: argparse.Namespace) -> int:
         else:
             refused, code = found.refused, LightError.exit_code
             objects.append(asdict(found))
+            told.append(found)
             if not options.json:
                 print(("\n" if number else "") + as_text(found), flush=True)
         if refused is not None:
             print(f"shviewer: {refused}", file=sys.stderr)
             exit_code = exit_code or code
+    if len(told) > 1 and not options.json:
+        print(f"\n{together(told)}")
     if options.json:
         print(json.dumps(objects, indent=2, allow_nan=False))
     return exit_code
@@ -88,6 +93,20 @@ def as_text(information: Information) -> str:
     rows += _suns(information)
     lines = [one_line(f"{information.light}: {information.description}")]
     return "\n".join(lines + [f"  {label:<18}{one_line(text)}" for label, text in rows])
+
+
+def together(lights: Sequence[Information]) -> str:
+    """How many bands shade how many of several lights, for each tolerance."""
+    lines = [f"all {len(lights)} lights: bands that shade them, irradiance"]
+    for each in zip(*(light.bands_needed for light in lights), strict=True):
+        counts = [need.irradiance for need in each]
+        known = sorted(count for count in counts if count is not None)
+        serve = [f"{n} serve {sum(count <= n for count in known)}" for n in dict.fromkeys(known)]
+        if known and len(known) == len(lights):
+            serve[-1] = f"{known[-1]} serve all"
+        words = ", ".join(serve) or f"none up to {each[0].searched}"
+        lines.append(f"  {f'within {100 * each[0].tolerance:g} %':<18}{words}")
+    return "\n".join(lines)
 
 
 def _bands(what: str, counts: tuple[BandsNeeded, ...]) -> list[tuple[str, str]]:

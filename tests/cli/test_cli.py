@@ -410,7 +410,7 @@ def test_info_describes_every_light_it_can_read_and_exits_with_the_first_failure
     done = run("info", "white.exr", "broken.toml", "gren", "green")
     assert done.returncode == 3
     blocks = done.stdout.split("\n\n")
-    assert [block.split(":")[0] for block in blocks] == ["white", "green"]
+    assert [block.split(":")[0] for block in blocks] == ["white", "green", "all 2 lights"]
     errors = done.stderr.splitlines()
     assert len(errors) == 2
     assert "broken.toml" in errors[0]
@@ -731,7 +731,7 @@ def test_info_and_project_take_the_lights_of_a_folder(
     for name in ("a", "b"):
         (tmp_path / "probes" / f"{name}.toml").write_text('[[lobe]]\nprofile = "constant"\nradiance = [1, 2, 3]\n')
     assert main(["info", "probes", "--jobs", "1"]) == 0
-    assert [line[0] for line in capsys.readouterr().out.splitlines() if line[:1].strip()] == ["a", "b"]
+    assert [line[0] for line in capsys.readouterr().out.splitlines() if line[1:2] == ":"] == ["a", "b"]
     assert main(["project", "probes", "-o", "out", "--jobs", "1"]) == 0
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["a.json", "b.json"]
     assert main(["project", "out", "-o", "out", "--jobs", "1"]) == 1, "its own inputs are never replaced"
@@ -767,3 +767,17 @@ def test_one_that_changes_something_or_waits_for_a_key_is_not(words: str) -> Non
     state_from(options, all_lights=False)
     for given, _ in IDLE[:5]:
         state_from(view_parser().parse_intermixed_args(["green", *given.split()]), all_lights=True)
+
+
+def test_of_several_lights_it_is_said_how_many_bands_shade_them_all(capsys: pytest.CaptureFixture[str]) -> None:
+    """As the table of the guide has it: 3, 5 and 3 within 5 %."""
+    assert main(["info", "green", "sun-sky", "venice_sunset"]) == 0
+    told = capsys.readouterr().out.splitlines()
+    start = told.index("all 3 lights: bands that shade them, irradiance")
+    assert [line.split(None, 3)[-1].strip() for line in told[start + 1 :]] == [
+        "3 serve all",
+        "3 serve 2, 5 serve all",
+        "5 serve 2, 15 serve all",
+    ]
+    assert main(["info", "green"]) == 0
+    assert "serve all" not in capsys.readouterr().out

@@ -105,6 +105,7 @@ def test_a_light_that_kills_its_process_fails_alone(folder: Path) -> None:
         "green",
         "hemisphere",
         "constant",
+        "all 3 lights",
     ]
 
 
