@@ -26,7 +26,7 @@ from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
 from shviewer.viewer.message import DONE, ERROR, WARNING, Passing
 from shviewer.viewer.overlay.foot import Work
-from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.state import State, changed
 
 PATIENCE = 0.05
@@ -243,10 +243,15 @@ class Session(Showing):
 
     def save(self, renderer: Renderer, composition: Composition) -> None:
         """Save the picture, as soon as it is there, under the next free name in the current folder."""
-        self.when_ready(lambda: self._save(renderer, composition))
+        asked = still(self.state)
+        self.when_ready(lambda: self._save(asked, renderer, composition))
 
-    def _save(self, renderer: Renderer, composition: Composition) -> bool:
-        """Have the picture drawn and saved; False while its map is on its way to OpenGL."""
+    def _save(self, asked: State, renderer: Renderer, composition: Composition) -> bool:
+        """Have the picture drawn and saved, if it is the one asked for; False while its map is on its way to OpenGL."""
+        if still(self.state) != asked:
+            if not self.state.view.message:
+                self.say("not saved: there was another wish before the picture was there", WARNING)
+            return True
         state = changed(self.state, message="")
         return self.saving.picture(renderer, prepare(state) if self.by_map else self.picture.seen(state), composition)
 

@@ -24,6 +24,7 @@ from shviewer.viewer.desktop.behind import saving as savings
 from shviewer.viewer.desktop.behind import task as tasks
 from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.message import WARNING, kind_of
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State, changed, state_of
 
@@ -151,6 +152,23 @@ def test_saving_waits_for_the_picture_that_was_asked_for(gate: Gate, monkeypatch
     assert session.prepare()
     assert saved == [("shviewer-slow", "slow")]
     assert session.state.view.message.startswith("saved it")
+
+
+def test_a_picture_that_was_left_before_it_was_there_is_not_saved_as_another(
+    gate: Gate, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """P, then Left: what was saved was the light before."""
+    monkeypatch.setattr(savings, "render_in_parts", drawn_at_once)
+    opengl = SimpleNamespace(version="", ready=lambda *picture: True, held=SimpleNamespace(pinned=None))
+    session = waiting(gate)
+    session.save(opengl, None)  # type: ignore[arg-type]
+    session.press("Left")
+    session.prepare(patience=NOW)
+    gate.open.set()
+    assert session.prepare()
+    assert session.picture.light.name == "green"
+    assert session.state.view.message.startswith("not saved")
+    assert kind_of(session.state.view.message) == WARNING
 
 
 def test_a_sweep_waits_for_its_pictures(gate: Gate) -> None:
