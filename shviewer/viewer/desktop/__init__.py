@@ -1,1 +1,1 @@
-"""The window: events in, frames out."""
+"""The window: events in, frames out; behind/, what goes on meanwhile."""

@@ -14,6 +14,7 @@ import pytest
 from viewer.desktop.desktop import output_of
 
 from shviewer.analysis import subjects
+from shviewer.errors import ShaderError
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
@@ -169,6 +170,19 @@ def test_a_picture_that_was_left_before_it_was_there_is_not_saved_as_another(
     assert session.picture.light.name == "green"
     assert session.state.view.message.startswith("not saved")
     assert kind_of(session.state.view.message) == WARNING
+
+
+def test_a_picture_that_opengl_cannot_draw_is_said_and_ends_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*picture: object) -> Generator[float, None, None]:
+        yield 0.5
+        raise ShaderError("no shaders here")
+
+    monkeypatch.setattr(savings, "render_in_parts", refused)
+    opengl = SimpleNamespace(version="", ready=lambda *picture: True, held=SimpleNamespace(pinned=None))
+    session = Session(state_of("green"))
+    session.save(opengl, None)  # type: ignore[arg-type]
+    session.saving.go_on(60.0)
+    assert (session.state.view.message, session.saving.drawing, opengl.held.pinned) == ("no shaders here", False, None)
 
 
 def test_a_sweep_waits_for_its_pictures(gate: Gate) -> None:

@@ -77,8 +77,13 @@ class Saving(Errands):
         """Draw what is to be drawn for about so long; None: all of it."""
         end = None if seconds is None else perf_counter() + seconds
         while self._drawing and (end is None or perf_counter() < end):
-            first = self._drawing[0]
-            if (raw := first.go_on()) is not None:
+            first, raw = self._drawing[0], None
+            try:
+                raw = first.go_on()
+            except ShviewerError as error:  # OpenGL that cannot draw it
+                self._over()
+                self._failed(error)
+            if raw is not None:
                 self._over()
                 self.write("saving the picture", save_picture, first.picture, first.composition, first.opengl, raw)
 
