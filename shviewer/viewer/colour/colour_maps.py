@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from shviewer.harmonics.basis import Array
+from shviewer.lights.images.display.colour import linear_from_srgb
 from shviewer.resources import resource_folder
 
 DIVERGING, SEQUENTIAL = "berlin", "inferno"
@@ -30,6 +31,5 @@ def table(name: str) -> NDArray[np.uint8]:
 
 
 def linear(srgb: NDArray[np.uint8]) -> Array:
-    """Linear RGB of sRGB bytes: the inverse of the sRGB curve, IEC 61966-2-1."""
-    value = srgb / 255.0
-    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    """Linear RGB of sRGB bytes."""
+    return linear_from_srgb(srgb / 255.0)

@@ -8,7 +8,9 @@ from time import perf_counter
 from typing import NamedTuple
 
 import moderngl
+import numpy as np
 
+from shviewer.lights.images.display.colour import srgb_from_linear
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Pane, Pixels, Sphere
 from shviewer.viewer.drawn import Surfaces
@@ -199,11 +201,5 @@ class _Work(NamedTuple):
     divisible: bool
 
 
-def _encode(colour: tuple[float, float, float]) -> tuple[float, float, float]:
-    """sRGB of a linear colour, as in shaders/display.glsl."""
-    red, green, blue = (12.92 * c if c < 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055 for c in colour)
-    return red, green, blue
-
-
-_GROUND = (*_encode(BACKGROUND), 1.0)
+_GROUND = (*srgb_from_linear(np.array(BACKGROUND)).tolist(), 1.0)
 """The background as it is written into a framebuffer."""
