@@ -26,6 +26,9 @@ BLOCK_ROWS = 64
 NARROW = 1024
 """The fewest columns for float32, whose rounding averages out over them; with fewer, float64 is as fast and is used."""
 
+FOLDED_VALUES, FEWEST_ROWS = 600_000, 24
+"""In float64 a block of folded rows has so many values, to stay in the cache, but not fewer rows."""
+
 LARGEST_PRODUCT = 1_000_000
 """Multiplications in one product: up to so many, OpenBLAS reads operands in place, at up to twice the speed."""
 
@@ -133,6 +136,8 @@ class _Pass:
         # m even or odd, and k of what _fold writes: cos(k (pi - t)) = (-1)^k cos(k t), sin(k (pi - t)) = -(-1)^k sin(k t)
         parts = ((0, even), (1, odd), (0, odd), (1, even)) if mirrored else ((0, every), (1, every))
         height = min(BLOCK_ROWS, stop - start)
+        if mirrored and self.precision is np.float64:
+            height = min(height, max(FEWEST_ROWS, FOLDED_VALUES // (4 * width)))
         step = _step(split if mirrored else n_bands, height, width)
         folded = np.empty((len(parts), height, width), self.precision)
         product = np.empty((2, step, n_bands), self.precision)
