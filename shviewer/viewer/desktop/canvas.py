@@ -53,6 +53,8 @@ class Canvas:
         self.overlay: Overlay | None = None
         self.again = False
         """Whether the last frame asks for another one."""
+        self.composition: Composition | None = None
+        """The layout of the picture that was last shown."""
         self._overlay_key: object = None
         self._evaluation = Evaluation()
         self._wake = wake
@@ -99,10 +101,12 @@ class Canvas:
         work: Work | None = None,
         pointer: Point | None = None,
         pace: float | None = None,
+        framed: Callable[[View], Composition | None] | None = None,
     ) -> bool:
         """Upload what has changed, and draw its text, with what is being done meanwhile in place of the message.
 
-        pointer: where the mouse is, for the values of the band under it. pace: as in `draw_overlay`.
+        pointer: where the mouse is, for the values of the band under it. pace: as in `draw_overlay`. framed: the layout of
+        another view, for the last picture, which may have more or other panes.
 
         Return False while a large map or a surface is on its way: the last picture stays, seen from where the camera is now.
         GraphicsError for a map that this OpenGL cannot hold.
@@ -118,6 +122,8 @@ class Canvas:
             return False
         else:
             self._shown = self.renderer.picture = picture = self._shown.seen(picture.state)
+            composition = (framed and framed(picture.state.view)) or composition
+        self.composition = composition
         hovered = self.band_at(pointer)
         work = work or self._pending
         key = work, hovered, pace, _overlay_key(picture, composition)

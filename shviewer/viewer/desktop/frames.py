@@ -107,7 +107,7 @@ class Frames:
             return False  # its map will be there before the sum were drawn
         composition = self.composition() or composition  # a state that was refused has left another one
         try:
-            uploaded = canvas.show(session.picture, composition, session.work, self.mouse.at, session.pace)
+            uploaded = canvas.show(session.picture, composition, session.work, self.mouse.at, session.pace, self.framed)
         except ShviewerError as error:  # a map that this OpenGL cannot hold
             if self.shown is None:
                 raise
@@ -119,6 +119,7 @@ class Frames:
                 self.due()
         elif canvas.renderer.carrier is None:
             self.due()
+        composition = canvas.composition or composition  # of the picture that stays, while the new one is on its way
         self._ready, self._begun = ready and uploaded, composition
         self._entitle()
         pointing = self.hovering and not self.mouse.dragged and self._ready  # a probe asks the light

@@ -12,6 +12,7 @@ from viewer.gl.side import EglSide
 
 from shviewer.errors import GraphicsError
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.viewer.composing.composition import Composition, frame_for
 from shviewer.viewer.desktop.canvas import UPLOADING, Canvas
 from shviewer.viewer.gl import carrier, textures
 from shviewer.viewer.gl.carrier import Carrier
@@ -20,6 +21,7 @@ from shviewer.viewer.gl.textures import ArrayTexture
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.screenshot import read_rgb
 from shviewer.viewer.state import changed
+from shviewer.viewer.view import View
 
 OUT_OF_MEMORY = 0x505
 LARGE = np.random.default_rng(7).random((50, 9, 3), dtype=np.float32)
@@ -68,9 +70,9 @@ def arrived(texture: ArrayTexture, array: np.ndarray, halves: bool = False) -> n
     return np.frombuffer(shown.read(alignment=1), dtype).reshape(array.shape)
 
 
-def sky(seed: int) -> Picture:
+def sky(seed: int, **view: object) -> Picture:
     pixels = np.random.default_rng(seed).random((24, 48, 3), dtype=np.float32)
-    return picture_of(light=EnvironmentLight(pixels, name=f"sky {seed}"))
+    return picture_of(light=EnvironmentLight(pixels, name=f"sky {seed}"), **view)
 
 
 def test_every_texel_arrives_as_it_is(renderer: Renderer, thread: Thread) -> None:
@@ -108,6 +110,38 @@ def test_frames_go_on_while_opengl_takes_the_memory_of_a_map(renderer: Renderer,
         assert canvas.pending
     assert canvas._shown is turned
     assert not canvas.pending
+    renderer.rest.use()
+    canvas.renderer.release()
+
+
+@pytest.mark.parametrize("before", [{"error": "signed"}, {"whole_sphere": True}, {}], ids=str)
+@pytest.mark.parametrize("after", [{}, {"error": "signed"}], ids=str)
+def test_a_picture_that_stays_keeps_its_panes(
+    renderer: Renderer, thread: Thread, before: dict[str, object], after: dict[str, object]
+) -> None:
+    """The window closed where the error was taken away with a map on its way: its marks had no pane."""
+
+    def framed(view: View) -> Composition:
+        return frame_for(view, 320, 160)
+
+    def show(picture: Picture) -> bool:
+        return canvas.show(picture, framed(picture.state.view), framed=framed)
+
+    canvas, first, second = Canvas(renderer.context, thread), sky(1, **before), sky(2, **after)
+    while not show(first):
+        assert canvas.pending
+    thread.open.clear()
+    thread.asked.clear()
+    assert not show(second)
+    assert thread.asked.wait(60)
+    assert canvas.composition is not None
+    assert len(canvas.composition.panes) == len(framed(first.state.view).panes)
+    assert canvas.layers(canvas.composition)
+    read_rgb(canvas.renderer, canvas.composition)
+    thread.open.set()
+    while not show(second):
+        assert canvas.pending
+    assert canvas.composition == framed(second.state.view)
     renderer.rest.use()
     canvas.renderer.release()
 
