@@ -42,7 +42,7 @@ vec3 visible(Exposed light) {
 }
 
 // IEC 61966-2-1 (sRGB), from linear in [0, 1].
-vec3 encode(vec3 linear_colour) {
+vec3 srgb_from_linear(vec3 linear_colour) {
     vec3 power = 1.055 * pow(linear_colour, vec3(1.0 / 2.4)) - 0.055;
     return mix(12.92 * linear_colour, power, step(0.0031308, linear_colour));
 }

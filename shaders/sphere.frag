@@ -111,5 +111,5 @@ void main() {
 #endif
     vec3 shown = with_lines(visible(light), light, to_edge, beyond);
 #endif
-    colour = vec4(encode(mix(BACKGROUND, shown, clamp(to_edge + 0.5, 0.0, 1.0))), 1.0);
+    colour = vec4(srgb_from_linear(mix(BACKGROUND, shown, clamp(to_edge + 0.5, 0.0, 1.0))), 1.0);
 }

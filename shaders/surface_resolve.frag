@@ -40,5 +40,5 @@ void main() {
     float samples = float(oversampling * oversampling);
     vec3 sum = tones.x * POSITIVE_INK + glosses.x * (1.0 - POSITIVE_INK)
              + tones.y * NEGATIVE_INK + glosses.y * (1.0 - NEGATIVE_INK);
-    colour = vec4(encode((sum + (samples - covered) * behind) / samples), 1.0);
+    colour = vec4(srgb_from_linear((sum + (samples - covered) * behind) / samples), 1.0);
 }
