@@ -59,12 +59,13 @@ def _spoiled(pixels: NDArray[np.float32], layout: Layout, how: tuple[str, ...]) 
     step = max(1, height // ENOUGH_ROWS) if isinstance(layout, LatLongLayout) else 1
     if height % step or width % step:
         step = 1
+    above = layout.rises()[..., None] > 0
     taken = np.empty((height // step, width // step, 3), dtype=np.float32)
     for start in range(0, len(taken), BLOCK_ROWS):
         block = pixels[start * step : (start + BLOCK_ROWS) * step]
         for one in how:
             if one == UPPER:
-                block = block * (layout.rises()[start * step : (start + BLOCK_ROWS) * step, :, None] > 0)
+                block = block * above[start * step : (start + BLOCK_ROWS) * step]
             else:
                 block = np.minimum(block, 1) if one == CLAMPED else srgb_from_linear(np.maximum(block, 0))
         taken[start : start + BLOCK_ROWS] = block.reshape(-1, step, width // step, step, 3).mean(axis=(1, 3))
