@@ -56,7 +56,7 @@ TEXEL_BYTES = 26
 """What a texel takes as it is drawn: 12 as it was read, 12 at most as a texture, and a little while it is projected."""
 
 SPLIT_BYTES = 28
-"""What a texel takes on top of that where a sun is taken out: another image, its mean and one sun, or its texture."""
+"""What a texel takes on top of that where a sun is taken out: its mean, and another image with its texture to draw the rest."""
 
 RASTER_BYTES = 24
 """What a texel of the raster takes that stands for an image of another layout: raster and texture."""

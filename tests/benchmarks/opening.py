@@ -1,4 +1,4 @@
-"""What opening a large map costs: [xvfb-run -a] python tests/benchmarks/opening.py [WIDTH ...]
+"""What opening a large map costs: [xvfb-run -a] python tests/benchmarks/opening.py [WIDTH ...], or 0 for the layouts alone
 
 Whole processes on files that this script makes: a sky of 1/f luminance with noise and a sun, as .exr (half floats, ZIP, and
 float32, PIZ) and .hdr; and such a light as a cube, an angular map and a mirror ball. Of each: processor time, the same over
@@ -234,7 +234,7 @@ def ten_in_turn(path: Path) -> None:
 
 
 def main() -> None:
-    widths = [int(text) for text in sys.argv[1:]] or [2048, 4096, 8192]
+    widths = [width for width in map(int, sys.argv[1:] or ["2048", "4096", "8192"]) if width]
     print(machine())
     print("\nProcessor seconds / over the floor / peak MiB of all processes:\n")
     print(
@@ -244,6 +244,8 @@ def main() -> None:
         files = [file for width in widths for file in write_maps(Path(folder), width)]
         for path, layout in (*files, *write_balls(Path(folder))):
             processes(path, layout)
+        if not widths:
+            return
         print()
         halves = [path for path, _ in files if path.suffix == ".exr"]
         window(halves)
