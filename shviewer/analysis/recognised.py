@@ -58,7 +58,9 @@ def recognise(listed: Listed, exact: Array, others: Others = lambda: iter(())) -
         return Recognised(nearest.file, said or nothing, fits)
     base, changes, slips = found.explanation.convention.name, found.changes, all_of(found.slips)
     turned = replace(CONVENTIONS[base], name="", program="") == replace(OURS, name="", program="", phase=False)
-    also = ", or shviewer of the map turned by half a turn, which is the same" if turned and not changes else ""
+    also = (
+        ", which is shviewer,no-phase, or shviewer of the map turned by half a turn" if turned and not changes else ""
+    )
     called = f"{', '.join([base, *changes])}," if changes else base
     fits = found.error <= FITS
     if fits:

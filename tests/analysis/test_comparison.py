@@ -279,7 +279,9 @@ def test_a_convention_that_nobody_names_is_found(text: str, tmp_path: Path) -> N
     same = {"webxr-no-phase": "three", "arcore-no-phase": "three", "arkit-no-phase": "three"}
     named = "shviewer, in axes +x+z-y (y-up), fits, as webxr-phase would: --convention shviewer,y-up"
     found = named if text == "webxr-phase" else f"{same.get(text, text)} fits"
-    found += ", or shviewer of the map turned by half a turn, which is the same" if text == "sphericart" else ""
+    found += (
+        ", which is shviewer,no-phase, or shviewer of the map turned by half a turn" if text == "sphericart" else ""
+    )
     assert said == f"bare.npy does not name its convention: {found}"
     assert agreement.endswith("agrees with the light's own to 0.0001 % over its 3 bands")
 

@@ -243,3 +243,15 @@ def test_a_program_with_fewer_bands_than_the_list_is_no_explanation() -> None:
     six = explain(Listed(numbers[:36]), asymmetric(12))
     assert six is not None
     assert convention_text(six.convention) == "directxmath"
+
+
+def test_a_factor_within_the_noise_is_none() -> None:
+    exact = asymmetric(3)
+    noise = np.random.default_rng(2).normal(size=exact.shape)
+    noisy = 1.03 * exact + 0.09 * noise * np.linalg.norm(exact) / np.linalg.norm(noise)
+    found = explain(Listed(noisy), exact)
+    assert found is not None
+    assert found.convention.factor == 1
+    quiet = explain(Listed(1.03 * exact + 0.01 * (noisy - 1.03 * exact)), exact)
+    assert quiet is not None
+    assert quiet.convention.factor == pytest.approx(1.03, abs=2e-3)

@@ -30,7 +30,7 @@ from shviewer.harmonics.filters import irradiance_factors
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 
 NO_FACTOR = 0.02
-"""A constant that differs from 1 by no more is no mistake: it is said beside the agreement."""
+"""A constant that differs from 1 by no more, or by no more than half of what is off, is no mistake: noise has one, too."""
 
 CONSTANTS = {
     "multiplied by pi": np.pi,
@@ -125,7 +125,7 @@ def _in_our_terms(convention: Convention) -> str:
 
 def constant_of(found: float, good: float) -> float:
     """A factor of numbers that are off by `good`: 1, one of CONSTANTS, or any, to seven digits."""
-    if abs(found - 1) <= NO_FACTOR:
+    if abs(found - 1) <= max(NO_FACTOR, good / 2):
         return 1.0
     near = [value for value in CONSTANTS.values() if abs(found / value - 1) <= good]
     return float(f"{near[0]:.10g}" if near else f"{found:.7g}")
@@ -134,7 +134,7 @@ def constant_of(found: float, good: float) -> float:
 def constant_costs(found: Array, good: float) -> Array:
     """What such factors cost, of the same shape."""
     named = np.any([np.abs(found / value - 1) <= good for value in CONSTANTS.values()], axis=0)
-    return np.where(np.abs(found - 1) <= NO_FACTOR, 0.0, np.where(named, NAMED_FACTOR, ANY_FACTOR))
+    return np.where(np.abs(found - 1) <= max(NO_FACTOR, good / 2), 0.0, np.where(named, NAMED_FACTOR, ANY_FACTOR))
 
 
 def _row_factors(scale: str, n_bands: int) -> Array:
