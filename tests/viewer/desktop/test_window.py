@@ -14,6 +14,7 @@ import pytest
 from viewer.desktop.desktop import PATIENCE, Viewer, output_of, screenshot
 
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS
+from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.desktop.window import Window
 from shviewer.viewer.gl.textures import BAND_BYTES
@@ -149,12 +150,14 @@ def test_b_shows_time_against_error_of_what_was_measured_until_escape(start: Sta
     clear, described = viewer.saved_picture()
     assert json.loads(described)["samples"] == 40_000
     rows, columns = np.nonzero((three != clear).any(axis=2))
-    assert 400 < columns.min() < columns.max() < 880  # between the spheres, above the hairline
-    assert 100 < rows.min() < rows.max() < 522
+    place = compose(three.shape[1], three.shape[0]).numbers.curve
+    assert place is not None
+    assert place.left <= columns.min()  # in place of the curve, and of its legend
+    assert compose(three.shape[1], three.shape[0]).hairline.bottom <= rows.min()
     orange = [(np.abs(picture.astype(int) - (240, 164, 66)).max(axis=2) < 8).sum() for picture in (clear, two, three)]
     assert orange[0] == 0
     assert min(orange[1:]) > 50  # a disc or two, which may cover each other, and the one in the legend
-    assert (two != three)[230:522, 400:880].any()  # another measurement
+    assert (two != three)[round(place.top) : round(place.bottom), round(place.left) :].any()  # another measurement
     viewer.xdotool("key", "Escape")
     assert viewer.process.wait(PATIENCE) == 0
 
