@@ -203,6 +203,8 @@ def _origin(stamp: Stamp) -> list[tuple[str, str]]:
         for key, words in FIGURES.items()
         if _is_number(stamp.get(key))
     ]
+    if len(figures) > 1 and str(stamp.get("quantity", "")).endswith("-over-pi"):
+        figures[-1] += ", not divided by pi"
     use = [("to be typed", str(stamp["use"]))] if stamp.get("use") else []
     return [*use, ("origin", ", ".join(parts)), *([("figures there", ", ".join(figures))] if figures else [])]
 

@@ -469,3 +469,14 @@ def test_notes_of_a_batch_name_their_light_once(tmp_path: Path, capsys: Capture)
     assert [line.count("studio") for line in told if "has no sun" in line] == [0, 1]
     assert project("green", *options, "-o", tmp_path / "a.json") == 0
     assert "shviewer: bands within 5 %: radiance 15, irradiance 3" in capsys.readouterr().err.splitlines()
+
+
+@pytest.mark.parametrize(("convention", "ends"), [("unity", ", not divided by pi"), ("gltf", ")"), ("shviewer", ")")])
+def test_info_says_in_which_unit_the_minimum_of_a_file_is(
+    convention: str, ends: str, tmp_path: Path, capsys: Capture
+) -> None:
+    """Numbers over pi stand beside the minimum of the irradiance itself: the numbers evaluate to it over pi."""
+    assert project("studio", "--bands", 3, "--convention", convention, "-o", tmp_path / "a.json") == 0
+    assert main(["info", str(tmp_path / "a.json")]) == 0
+    (line,) = (line for line in capsys.readouterr().out.splitlines() if "figures there" in line)
+    assert line.endswith(ends)
