@@ -27,7 +27,7 @@ from shviewer.viewer.keys import press
 from shviewer.viewer.message import DONE, ERROR, WARNING, Passing
 from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture, prepare, still
-from shviewer.viewer.state import State, changed
+from shviewer.viewer.state import State, changed, released
 
 PATIENCE = 0.05
 """The longest that a window waits for a task, in seconds."""
@@ -248,7 +248,8 @@ class Session(Showing):
 
     def _save(self, asked: State, renderer: Renderer, composition: Composition) -> bool:
         """Have the picture drawn and saved, if it is the one asked for; False while its map is on its way to OpenGL."""
-        if still(self.state) != asked:
+        ranged = not asked.view.range_held  # what plays may have been given its range since
+        if still(changed(self.state, **released(self.state.view)) if ranged else self.state) != asked:
             if not self.state.view.message:
                 self.say("not saved: there was another wish before the picture was there", WARNING)
             return True

@@ -8,6 +8,7 @@ from shviewer.viewer.actions import SWEEP_BANDS, step_sweep
 from shviewer.viewer.animation.animation import band_sweep
 from shviewer.viewer.animation.turning import light_turn, step_turn
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.desktop import session as sessions
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.stamp import metadata
@@ -34,6 +35,10 @@ class Played:
     def beat(self) -> State:
         self.now += 1.0
         self.session.tick(self.now)
+        self.session.prepare()
+        return self.shown
+
+    def shown_soon(self) -> State:
         self.session.prepare()
         return self.shown
 
@@ -109,6 +114,18 @@ def test_a_picture_saved_while_it_plays_is_its_state_again() -> None:
     read = state_of_stamp(metadata(picture, compose(320, 160), "4.5"))
     assert (read.recipe, read.view) == (picture.state.recipe, picture.state.view)
     assert changed(read, n_bands=9).view.error_range is None
+
+
+def test_a_picture_that_was_asked_for_before_its_range_was_found_is_saved(monkeypatch: pytest.MonkeyPatch) -> None:
+    window, saved = Played(), list[State]()
+    monkeypatch.setattr(
+        window.session.saving, "picture", lambda renderer, picture, at: saved.append(picture.state) or True
+    )
+    monkeypatch.setattr(sessions, "PATIENCE", 0.0)
+    window.session.press("Space")
+    window.session.save(None, compose(320, 160))  # type: ignore[arg-type]
+    assert window.shown_soon() == saved[0]
+    assert saved[0].view.range_held
 
 
 def test_steps_keep_a_range_only_while_it_is_held() -> None:
