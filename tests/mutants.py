@@ -200,7 +200,12 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ("luminance of Rec. 601", "[0.2126, 0.7152, 0.0722]", "[0.299, 0.587, 0.114]"),
     ),
     "harmonics/extremes/climbing.py": (("one round of search", "DISPLAY_ROUNDS = 3", "DISPLAY_ROUNDS = 1"),),
-    "harmonics/extremes/waves.py": (("bends of a tenth of the height", "self.moved(2) / 4", "self.moved(2) / 40"),),
+    "harmonics/extremes/both_sides.py": (("the lowest error alone", "for sign in (1, -1)", "for sign in (1, 1)"),),
+    "harmonics/extremes/waves.py": (
+        ("bends of a tenth of the height", "self.moved(2) / 4", "self.moved(2) / 40"),
+        ("cells above an open row left out", "beside[1:] |= rows", "pass"),
+        ("bends above taken for those below", "np.multiply(seconds, sign, out=seconds)", "seconds"),
+    ),
     "harmonics/filters.py": (
         (
             "Hann over half a period",

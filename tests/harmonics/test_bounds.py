@@ -18,6 +18,7 @@ from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.deringing import dering
 from shviewer.harmonics.extremes import raster_error, waves, zonal_sum
 from shviewer.harmonics.extremes.bands import band_heights
+from shviewer.harmonics.extremes.both_sides import largest_magnitude
 from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.extremes.waves import Waves
@@ -372,6 +373,58 @@ def test_a_valley_between_the_points_of_a_grid_is_bounded_though_another_is_lowe
     assert true < 1.015 * lowest  # so that the grid alone is taken in
     found = Waves(values, band_heights(coefficients)).lowest(lowest, 1e-4 * abs(lowest))
     assert 1.005 * true < found.bound <= true  # two rows a band
+
+
+def rough_waves(seed: int, less: bool, sign: float = 1) -> Waves:
+    """A sum of seven bands, with and without a raster to compare with."""
+    rng = np.random.default_rng(seed)
+    coefficients, rows = rng.normal(size=(49, 3)), 36
+    values = Synthesis(coefficients).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows)
+    other = rng.random(values.shape) if less else None
+    return Waves(sign * values, band_heights(coefficients), None if other is None else sign * other)
+
+
+@pytest.mark.parametrize("less", [False, True])
+@pytest.mark.parametrize("share", [0.0, 0.03])
+def test_the_lowest_of_minus_a_function_is_that_of_its_negative(less: bool, share: float) -> None:
+    """Also where a share of the points is lower than what is found, so that cells are sorted by how it bends."""
+    for seed in range(4):
+        grid, negative = (rough_waves(seed, less, sign) for sign in (1, -1))
+        found = float(np.quantile(negative.difference, share))
+        assert grid.lowest(found, 1e-3, sign=-1) == negative.lowest(found, 1e-3)
+
+
+def test_rows_that_are_left_out_of_a_search_hold_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    for seed in range(8):
+        grid = rough_waves(seed, less=False)
+        open_ = float(np.quantile(grid.values, 0.01))
+        rows = np.any(grid.values < (open_ + grid.slack)[:, None], axis=(1, 2))
+        found = []
+        for size in (1, 1000):  # with the second, all rows are looked at
+            monkeypatch.setattr(waves, "BLOCK_ROWS", size)
+            found.append(grid._below(open_, rows, 1))
+        np.testing.assert_array_equal(found[0], found[1])
+        assert not rows.all()
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_largest_magnitude_is_bounded_on_both_sides(sign: int) -> None:
+    """The tip of the narrower of two lobes of opposite signs is between the points of the grid, where it is larger."""
+    n_bands, rows = 24, 48
+    tips = directions_from_angles(
+        np.pi * np.array([20.5, 31.0]) / rows, column_azimuths(2 * rows)[[10, 60]] - [0, np.pi / (2 * rows)]
+    )
+    l = np.repeat(np.arange(n_bands), 2 * np.arange(n_bands) + 1)
+    zonal = evaluate_basis(tips, n_bands) * np.exp(-l / 8)
+    coefficients = np.repeat(sign * (zonal[0] - 1.02 * zonal[1])[:, None], 3, axis=1)
+    synthesis = Synthesis(coefficients)
+    values = synthesis.on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows)
+    found = largest_magnitude(
+        values, None, band_heights(coefficients), lambda d: np.abs(synthesis.in_directions(d)).max(axis=1), 1e-3, 0
+    )
+    true = float(np.abs(synthesis.in_directions(tips)).max())
+    assert float(np.abs(values).max()) < true / 1.005
+    assert true / 1.001 <= found.value <= found.bound <= 1.005 * true
 
 
 def hard_scenes() -> list[tuple[int, Array]]:

@@ -36,11 +36,14 @@ def test_the_sums_are_the_plain_products_over_the_rows(height, width, n_bands):
 
 
 @pytest.mark.parametrize("n_bands", [5, FOLD_BANDS])
-def test_blocks_do_not_show(monkeypatch, n_bands):
+@pytest.mark.parametrize(
+    "blocks", [{"BLOCK_ROWS": 5, "MAX_STEP": 4}, {"FOLD_VALUES": 70}, {"FOLDED_VALUES": 1, "FEWEST_ROWS": 3}]
+)
+def test_blocks_do_not_show(monkeypatch, n_bands, blocks):
     image = np.random.default_rng(13).random((23, 10, 3))
     whole = project_image(image, n_bands)
-    monkeypatch.setattr(row_transform, "BLOCK_ROWS", 5)
-    monkeypatch.setattr(row_transform, "MAX_STEP", 4)
+    for name, size in blocks.items():
+        monkeypatch.setattr(row_transform, name, size)
     assert_allclose(project_image(image, n_bands), whole, rtol=0, atol=1e-14)
 
 
