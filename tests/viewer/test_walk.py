@@ -13,6 +13,7 @@ import pytest
 from harmonics.independent import random_directions
 
 from shviewer.harmonics.basis import evaluate_basis
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import is_code
 from shviewer.lights.function import FunctionLight
@@ -57,7 +58,11 @@ class Walk:
         self.drops = drops
         compare = CoefficientLight(np.random.default_rng(seed).normal(size=(36, 3)), "given") if seed % 4 == 3 else None
         n_bands = 5 if compare else (33, 5, MAX_BANDS)[seed % 3]
-        self.session = Session(state_of(*lights, light=lights[seed % len(lights)], n_bands=n_bands, compare=compare))
+        start: dict[str, object] = {"n_bands": n_bands, "compare": compare}
+        if seed % 3 == 1 and compare is None:
+            encode = list(ENCODED_BANDS)[seed % len(ENCODED_BANDS)]
+            start = {"quantity": "irradiance", "encode": encode, "n_bands": ENCODED_BANDS[encode]}
+        self.session = Session(state_of(*lights, light=lights[seed % len(lights)], **start))
         self.size = SIZES[0]
         self.trail: list[str] = []
         self.drawn: set[type[Drawn]] = set()
