@@ -27,6 +27,9 @@ from shviewer.words import all_of
 FITS = 0.02
 """Given coefficients that are off by more than this share of the light's own, in the same bands, are examined."""
 
+MANY = 3
+"""So many wrong rows are asked whether not all of a band is."""
+
 Others = Callable[[], Iterator[tuple[list[str], Array]]]
 """What makes the lights that are often taken by mistake: words after "if", and coefficients."""
 
@@ -76,14 +79,17 @@ def suspect(listed: Listed, exact: Array, named: Convention | None, others: Othe
     others: asked where the light itself does not fit.
     """
     best = _suspicion(listed, exact, named, [])
-    if best is not None and best.error <= FITS:
+    fits = best is not None and best.error <= FITS
+    if best is not None and fits and len(best.explanation.slips) < MANY:
         return best
-    for said, coefficients in others():
+    for said, coefficients in () if fits else others():
         found = _suspicion(listed, coefficients, named, said)
         if found and found.error <= EXPLAINED and (best is None or found.error < best.error / ALIKE):
             best = found
-    if best is None or best.error > CLEAN:
-        best = _of_another_light(listed, exact, named) or best
+    if best is None or best.error > CLEAN or fits:
+        cost, found = _of_another_light(listed, exact, named)
+        if found and (best is None or not fits or cost < best.explanation.cost):
+            best = found
     return best
 
 
@@ -99,8 +105,8 @@ def error_of(exact: Array, coefficients: Array, quantity: str) -> float:
     return float(np.linalg.norm(coefficients - wanted)) / norm if norm else np.inf
 
 
-def _of_another_light(listed: Listed, exact: Array, named: Convention | None) -> Suspicion | None:
-    """The simplest of those that have numbers of their own, an angle or factors, if it leaves little."""
+def _of_another_light(listed: Listed, exact: Array, named: Convention | None) -> tuple[float, Suspicion | None]:
+    """The simplest of those that have numbers of their own, an angle or factors, if it leaves little, and its cost."""
     found: list[tuple[float, Suspicion]] = []
     for light in bent(listed, exact):
         one = _suspicion(listed, light.coefficients, named, [light.said], light.choices)
@@ -108,7 +114,7 @@ def _of_another_light(listed: Listed, exact: Array, named: Convention | None) ->
             found.append((one.explanation.cost + light.cost, one))
     good = max(ALIKE * min((one.error for _, one in found), default=0.0), TINY)
     near = [(cost, one) for cost, one in found if one.error <= good]
-    return min(near, key=lambda each: each[0])[1] if near else None
+    return min(near, key=lambda each: each[0]) if near else (np.inf, None)
 
 
 def _suspicion(

@@ -98,3 +98,16 @@ def test_a_turn_is_told_under_noise() -> None:
     angle = re.search(r"by ([\d.]+) degrees", found.of_light[0])
     assert angle is not None
     assert float(angle[1]) == pytest.approx(30, abs=3)
+
+
+@pytest.mark.parametrize("bands", [(2,), (1,), (1, 2), (2, 3)])
+@pytest.mark.parametrize("convention", ["shviewer", "e3nn"])
+def test_bands_with_the_other_sign_are_told_as_bands(bands: tuple[int, ...], convention: str) -> None:
+    """But for what half a turn or the light from opposite directions explains as well: the odd bands."""
+    exact = asymmetric(4)
+    said, text = told(exact * per_coefficient(np.where(np.isin(np.arange(4), bands), -1.0, 1.0)), exact, convention)
+    assert (
+        said
+        == f"band{'s' * (len(bands) > 1)} {' and '.join(map(str, bands))} {'have' if len(bands) > 1 else 'has'} the other sign"
+    )
+    assert text == convention

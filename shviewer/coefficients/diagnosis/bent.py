@@ -1,6 +1,6 @@
 """Lights that a list may be of in place of the one that is known: seen in one colour, turned, or with its bands multiplied.
 
-Unlike a mistake in a convention these have numbers of their own, which the list tells: an angle, or a factor for each band.
+Unlike a mistake in a convention these have numbers of their own, which the list tells: an angle, a factor or a sign for each band.
 
 A turn about the vertical by a mixes c(l, m) and c(l, -m) as it mixes cos m phi and sin m phi, so that the product of a turned
 light and a list, each band of which has the power 1, is a trigonometric polynomial of a, whose largest value is looked for. No
@@ -46,6 +46,9 @@ FAR = PROGRAM
 NEAR = 0.9
 """How near the light must be to the list, but for a factor of each band, for either to be looked into."""
 
+FEWER = 1e-6
+"""The share that a band with the other sign must gain: half a turn and the like give signs, too."""
+
 PLAIN = 1.0
 """Degrees: a turn that is so near to quarters is one of axes."""
 
@@ -84,12 +87,18 @@ def bent(listed: Listed, exact: Array) -> Iterator[Bent]:
     if grey and not np.allclose(exact, exact[:, :1], rtol=1e-6):
         for said, weights in COLOURS.items():
             yield Bent(f"it is of the light's {said}", np.repeat(exact @ weights[:, None], 3, axis=1), len(COLOURS))
-    angle, turned_share, plain_share = _nearest(taken, exact)
+    angle, turned_share, plain_share, negative = _nearest(taken, exact)
     if turned_share >= NEAR and abs(angle - 90 * round(angle / 90)) > PLAIN:
         quarters = ((angle + 90 * k + 180) % 360 - 180 for k in range(4))  # axes and the phase are quarters and halves
         for one in sorted(quarters, key=abs):
             said = f"the light is turned by {one:.3g} degrees about the vertical, as by --rotate-light {one:.4g} 0"
             yield Bent(said, turned(exact, one), ANGLES, 0.0 if abs(one) <= 90 else FAR)
+    opposite = negative ^ set(range(1, n_bands, 2))  # the same from opposite directions
+    for bands in filter(None, (negative, opposite) if negative else ()):
+        some, have = ("s", "have") if len(bands) > 1 else ("", "has")
+        said = f"band{some} {all_of([str(band) for band in sorted(bands)])} {have} the other sign"
+        signs = np.where(np.isin(np.arange(n_bands), list(bands)), -1.0, 1.0)
+        yield Bent(said, exact * per_coefficient(signs), 2**n_bands, float(len(bands)))
     if plain_share >= NEAR:
         yield from _multiplied(taken[0].table[: n_bands**2], exact)
 
@@ -104,9 +113,10 @@ def turned(coefficients: Array, degrees: float) -> Array:
     return found
 
 
-def _nearest(taken: list[Way], exact: Array) -> tuple[float, float, float]:
+def _nearest(taken: list[Way], exact: Array) -> tuple[float, float, float, set[int]]:
     """The angle, -180 to 180 degrees, by which the light is turned to be nearest to the list in any orientation, and how near
-    it is then and without a turn: the product, 1 if they are the same but for a factor of each band that the list has.
+    it is then and without a turn: the product, 1 if they are the same but for a factor of each band that the list has;
+    and the bands that are so near to it with the other sign, where others are with their own.
     """
     n_bands = min(count_bands(exact), TURNED_BANDS)
     exact = exact[: n_bands**2]
@@ -114,7 +124,12 @@ def _nearest(taken: list[Way], exact: Array) -> tuple[float, float, float]:
     other = np.array([l * (l + 1) - m for l, m in map(degree_order, range(n_bands**2))])
     m = np.arange(n_bands)[:, None]
     with_order, angles = np.abs(orders) == m, np.arange(ANGLES) * (2 * np.pi / ANGLES)
-    best, most, plain = 0.0, 0.0, 0.0
+    best, most, plain, signed = 0.0, 0.0, 0.0, (0.0, np.ones(n_bands))
+    starts = np.arange(n_bands) ** 2
+    there = band_power(taken[0].table[: n_bands**2]).sum(axis=1) > 0
+    whole = float(np.sqrt(band_power(exact).sum(axis=1))[there].sum())
+    if not whole:
+        return 0.0, 0.0, 0.0, set()
     for way in taken:
         table = way.table[: n_bands**2]
         power = per_coefficient(np.sqrt(band_power(table).sum(axis=1)))
@@ -124,14 +139,14 @@ def _nearest(taken: list[Way], exact: Array) -> tuple[float, float, float]:
         products = cosines @ np.cos(m * angles) - sines @ np.sin(m * angles)
         orientation, place = np.unravel_index(int(products.argmax()), products.shape)
         plain = max(plain, float(products[:, 0].max()))
+        bands = np.add.reduceat((exact * rows).sum(axis=2), starts, axis=1)  # (192, n)
+        near = int((np.abs(bands).sum(axis=1) - FEWER * whole * (bands < 0).sum(axis=1)).argmax())
+        signed = max(signed, (float(np.abs(bands[near]).sum()), np.sign(bands[near])), key=lambda one: one[0])
         if products[orientation, place] > most:
             most = float(products[orientation, place])
             best = _refined(cosines[orientation], sines[orientation], float(angles[place]))
-    there = band_power(taken[0].table[: n_bands**2]).sum(axis=1) > 0
-    whole = float(np.sqrt(band_power(exact).sum(axis=1))[there].sum())
-    if not whole:
-        return 0.0, 0.0, 0.0
-    return float((np.degrees(best) + 180) % 360 - 180), most / whole, plain / whole
+    negative = set(np.flatnonzero(signed[1] < 0).tolist() if signed[0] >= NEAR * whole else [])
+    return float((np.degrees(best) + 180) % 360 - 180), most / whole, plain / whole, negative
 
 
 def _refined(cosines: Array, sines: Array, angle: float) -> float:
