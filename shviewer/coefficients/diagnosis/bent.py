@@ -1,6 +1,6 @@
 """Lights that a list may be of in place of the one that is known: seen in one colour, turned, or with its bands multiplied.
 
-Unlike a mistake in a convention these have numbers of their own, which the list tells: an angle, a factor or a sign for each band.
+Unlike mistakes in a convention these have numbers of their own, which the list tells: an angle, a factor or sign of each band.
 
 A turn about the vertical by a mixes c(l, m) and c(l, -m) as it mixes cos m phi and sin m phi, so that the product of a turned
 light and a list, each band of which has the power 1, is a trigonometric polynomial of a, whose largest value is looked for. No
