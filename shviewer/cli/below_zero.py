@@ -17,7 +17,9 @@ from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.programs import SHADED_WITH
 from shviewer.errors import UsageError
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS
+from shviewer.harmonics.extremes.error_grid import ErrorGrid
 from shviewer.harmonics.quantities.names import IRRADIANCE
 from shviewer.words import counted, percent
 
@@ -71,13 +73,14 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
     return says + "; if it has a sun, --split-sun takes that out" * (large and not recipe.split_sun)
 
 
-def encoded_below_zero(projected: Projected) -> str:
+def encoded_below_zero(projected: Projected, recipe: Recipe) -> str:
     """The same of what engines store of an irradiance: its own minimum, where the formula shows it, or that of its bands."""
     assert projected.stored is not None
     stored, lowest = projected.stored, projected.lows.minimum
     if not stored.encoding.turns:
         lowest = float(stored.numbers.min())
-    if stored.encoding.formula == "geomerics" or not lowest < -ROUNDING * float(np.abs(stored.numbers).max()):
+    grid = error_grid(subject(recipe).light, grid_rows(projected.n_bands))
+    if stored.encoding.formula == "geomerics" or not _below(lowest, grid, stored.numbers):
         return ""
     return (
         f"the irradiance that {stored.name} decodes to goes to {lowest:.3g}, {percent(projected.sums.relative_l2)} off; "
@@ -94,5 +97,11 @@ def _shown(recipe: Recipe, quantity: str) -> _Shown:
         light = through(light, quantity)
         coefficients = light.from_source(coefficients)
     grid = error_grid(light, grid_rows(recipe.n_bands))
-    minimum, own = grid.lows(coefficients).minimum, min(0.0, float(grid.original.min()))
-    return _Shown(minimum, minimum < (1 + OWN) * own - ROUNDING * float(np.abs(coefficients).max()), error)
+    minimum = grid.lows(coefficients).minimum
+    return _Shown(minimum, _below(minimum, grid, coefficients), error)
+
+
+def _below(minimum: float, grid: ErrorGrid, numbers: Array) -> bool:
+    """Whether it is below zero, and below the light itself on its grid, by more than the rounding of numbers."""
+    own = min(0.0, float(grid.original.min()))
+    return minimum < (1 + OWN) * own - ROUNDING * float(np.abs(numbers).max())

@@ -73,7 +73,7 @@ def _projected_of(options: argparse.Namespace, convention: Convention, light: st
         what = "--mute" if projected.recipe and projected.recipe.muted_shown else f"--window {options.window}"
         raise UsageError(f"{what}: the formula of {projected.encoding} takes no factors of bands; leave one out")
     projected = projected.turned(turn(*angles)) if angles else projected
-    said = encoded_below_zero(projected) if projected.encoding else below_zero(recipe, convention)
+    said = encoded_below_zero(projected, recipe) if projected.encoding else below_zero(recipe, convention)
     return replace(projected, below_zero=said)
 
 

@@ -225,6 +225,14 @@ def test_project_says_what_it_wrote_and_what_goes_below_zero(
     assert len(printed.err.splitlines()) == len(notes)
 
 
+def test_a_light_that_is_below_zero_itself_is_not_said_to_be(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shviewer.project("green", 2, quantity="irradiance").save(tmp_path / "two.json")
+    assert main(["project", str(tmp_path / "two.json"), "--encode", "zh3", "-o", str(tmp_path / "e.json")]) == 0
+    assert "decodes to" not in capsys.readouterr().err
+
+
 def test_several_lights_have_the_count_of_their_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["project", "green", "hemisphere", "--encode", "zh3", "-o", str(tmp_path)]) == 0
     head, first, *_ = capsys.readouterr().out.splitlines()
