@@ -36,7 +36,15 @@ from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection import project_image, project_product
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
-from shviewer.harmonics.row_transform import BLOCK_ROWS, FOLD_BANDS, FOLD_VALUES, NARROW, _step
+from shviewer.harmonics.row_transform import (
+    BLOCK_ROWS,
+    FEWEST_ROWS,
+    FOLD_BANDS,
+    FOLD_VALUES,
+    FOLDED_VALUES,
+    NARROW,
+    _step,
+)
 from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import degrees_and_orders, series_by_parity, theta_series
@@ -106,6 +114,8 @@ def least_work(image: np.ndarray, n_bands: int, precision: type[np.floating]) ->
     folds = 1 + (n_bands >= FOLD_BANDS)
     flat = image.reshape(rows, 2, columns // 2 * 3)
     height, width = min(BLOCK_ROWS, rows // 2), flat.shape[2]
+    if folds == 2 and precision is np.float64:
+        height = min(height, max(FEWEST_ROWS, FOLDED_VALUES // (4 * width)))
     n_functions, some = n_bands // folds, max(1, FOLD_VALUES // flat[0].size)
     step = _step(n_functions, height, width)
     halves, folded = np.ones((folds, 2, some, width), precision), np.ones((2 * folds, height, width), precision)
@@ -115,8 +125,8 @@ def least_work(image: np.ndarray, n_bands: int, precision: type[np.floating]) ->
 
     def work() -> None:
         for top in range(0, rows // folds, height):
-            for start in range(0, height, some):
-                out = folded[:, start : start + some]
+            for start in range(0, min(height, rows // folds - top), some):
+                out = folded[:, start : min(start + some, rows // folds - top)]
                 here = halves[..., : out.shape[1], :] if folds == 2 else out[None]
                 for half in here:
                     left, right = flat[top + start : top + start + out.shape[1]].swapaxes(0, 1)
