@@ -49,7 +49,6 @@ def test_quick_work_is_not_spoken_of(monkeypatch: pytest.MonkeyPatch, capsys: py
 WRITTEN = {
     "screenshot p.png green": "wrote p.png: 160 x 80, 5 bands",
     "screenshot p.exr green --for irradiance --encode l1": "wrote p.exr: 160 x 80, encoding l1",
-    "sweep s.webp green --turntable --frames 2": "wrote s.webp: 2 frames of 160 x 80, 0.16 s, 5 bands",
 }
 
 
