@@ -357,7 +357,7 @@ def draw_anew(renderer: Renderer) -> None:
     [
         ("sh.glsl", "int i = 0;", "int i = oops;"),
         ("display.glsl", "return clamp(light", "return light +"),
-        ("sphere.frag", "colour = vec4(encode", "color = vec4(encode"),
+        ("sphere.frag", "colour = vec4(srgb_from_linear", "color = vec4(srgb_from_linear"),
         ("screen.vert", "gl_Position = ", "gl_Place = "),
         ("layer.frag", "texelFetch(", "texelFish("),
         ("lobes.glsl", "return 1.0;", "return one;"),
