@@ -157,3 +157,9 @@ def test_a_page_is_told_in_the_characters_that_there_are(monkeypatch: pytest.Mon
     assert main(["help", "zh"]) == 0
     told.flush()
     assert told.buffer.getvalue().decode("unicode_escape") == read(next(path for path in PAGES if path.stem == "zh"))  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("mode", PARSERS)
+def test_help_fits_a_terminal_of_80_columns(mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert [line for line in PARSERS[mode]().format_help().splitlines() if len(line) > 80] == []

@@ -20,7 +20,7 @@ from shviewer.version import __version__
 
 EXIT_CODES = """exit codes:
   0    done
-  1    --reference differs, --stability fails, or one of project's lights fails
+  1    --reference differs, --stability or one of project's lights fails
   2    bad arguments
   3    a light that is unknown, unreadable or damaged
   4    a file that could not be written
@@ -41,10 +41,11 @@ USAGES = {
 
 
 class _Paragraphs(argparse.HelpFormatter):
-    """Breaks a text of one line to the width of the terminal, and leaves one of several lines as it is."""
+    """Keeps the lines of a text, and breaks those that are too long for the terminal."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
-        return text if "\n" in text else super()._fill_text(text, width, indent)
+        fill = super()._fill_text
+        return "\n".join(line if len(line) <= width else fill(line, width, indent) for line in text.splitlines())
 
 
 def _parser(mode: str, description: str, epilog: str = "") -> OneLineParser:
