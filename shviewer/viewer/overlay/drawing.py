@@ -85,7 +85,7 @@ class _Paper:
 
     def _fill(self, piece: Fill) -> None:
         if not piece.hollow:
-            self._part(piece.area)[:] = piece.ink
+            self._cover(piece.area, piece.ink)
             return
         line, area = max(1, round(piece.hollow)), piece.area
         for part in (
@@ -94,7 +94,7 @@ class _Paper:
             area._replace(right=area.left + line),
             area._replace(left=area.right - line),
         ):
-            self._part(part)[:] = piece.ink
+            self._cover(part, piece.ink)
 
     def _curve(self, piece: Curve, width: float, ink: Ink) -> None:
         box = piece.box
@@ -139,6 +139,10 @@ class _Paper:
         self._blend(((200 if rising else 255) * cover).astype(np.uint8), left, top, (*lines, 255))
         if rising:
             self._fill(Fill(area, (*ZERO_LINE, 255), hollow=piece.scale))
+
+    def _cover(self, box: Box, ink: Ink) -> None:
+        """Put an ink in place of what is there, a pixel at a time: by channels it takes five times as long."""
+        self._part(box).view(np.uint32)[:] = np.array(ink, np.uint8).view(np.uint32)
 
     def _part(self, box: Box) -> NDArray[np.uint8]:
         """The pixels of a box of the frame."""

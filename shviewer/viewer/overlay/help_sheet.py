@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from shviewer.viewer.composing.composition import Composition
@@ -50,8 +51,11 @@ class Type(NamedTuple):
     row: float
 
 
-def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list[Piece]:
-    """The sheet, which covers the frame. foot: what stands under it, if there is room; page: how often PageDown was pressed."""
+def help_blocks(state: State, at: Composition, foot: str, page: int = 0) -> list[list[Piece]]:
+    """The sheet, which covers the frame, and present values, each a block: turning the camera changes two of them.
+
+    foot: what stands under it, if there is room; page: how often PageDown was pressed.
+    """
     pieces: list[Piece] = [Fill(Box(0, 0, at.width, at.height), GROUND)]
     margin = at.margin
     pages, pitch, (size, step) = pages_of(at)
@@ -66,18 +70,21 @@ def help_pieces(state: State, at: Composition, foot: str, page: int = 0) -> list
     pieces.append(Text("help_closes", round(x), round(top), closes, 0.92 * size, FAINT))
     rule = round(top + at.px(12))
     pieces.append(Fill(Box(margin, rule, at.width - margin, rule + max(1, round(at.scale))), RULE))
-    lowest = 0.0
+    values, lowest = list[list[Piece]](), 0.0
     for number, column in enumerate(shown):
         left, y = round(margin + number * pitch), rule + at.px(28)
         for row in _aligned(column, pitch - at.px(APART), size):
-            pieces += _row(row, state, left, y, pitch - at.px(APART), Type(size, step))
+            said = _row(row, left, y, Type(size, step))
+            pieces += said
+            if said and row.binding is not None:
+                values.append(_value(row, said[-1], state, left + pitch - at.px(APART), size))
             y += max(len(row.lines), 1) * step
         lowest = max(lowest, y)
     last = at.height - at.px(12)
     if foot and last - at.px(14) > lowest - step:
         words = shortened_to(foot, at.width - 2 * margin, at.px(12))
         pieces.append(Text("help_foot", margin, round(last), words, at.px(12), FAINT))
-    return pieces
+    return [pieces, *values]
 
 
 def _aligned(column: list[Row], room: float, size: float) -> list[Row]:
@@ -87,24 +94,30 @@ def _aligned(column: list[Row], room: float, size: float) -> list[Row]:
     return [row._replace(after=after) for row in column] if after + widest <= room else column
 
 
-def _row(row: Row, state: State, x: float, y: float, room: float, face: Type) -> list[Piece]:
-    """Keys, what they do, and at the right end of the column the present value, where there is room."""
+def _row(row: Row, x: float, y: float, face: Type) -> list[Text]:
+    """Keys, and what they do."""
     (label, binding, lines, after), size = row, face.size
     if not label:
         return []
     if binding is None:
         return [Text(f"help_{label}", x, round(y), label, size, INK, SEMIBOLD)]
-    pieces: list[Piece] = [Text(f"key_{label}", x, round(y), _keys(label), size, GREY, MEDIUM)]
-    for number, text in enumerate(lines):
-        baseline = round(y + number * face.row)
-        pieces.append(Text(f"does_{label}_{number}", round(x + after), baseline, text, size, GREY))
-    value = shortened_to(typeset(binding.value(state)), x + room - pieces[-1].box.right - 0.8 * size, size)
-    if value and "…" not in value:
-        left = round(x + room - width_of(value, size))
-        pieces.append(Text(f"value_{label}", left, baseline, value, size, INK))
-    return pieces
+    does = (
+        Text(f"does_{label}_{number}", round(x + after), round(y + number * face.row), text, size, GREY)
+        for number, text in enumerate(lines)
+    )
+    return [Text(f"key_{label}", x, round(y), _keys(label), size, GREY, MEDIUM), *does]
 
 
+def _value(row: Row, last: Text, state: State, right: float, size: float) -> list[Piece]:
+    """The present value, at the right end of the column after the last line, where there is room."""
+    value = row.binding.value(state) if row.binding is not None else ""
+    value = shortened_to(typeset(value), right - last.box.right - 0.8 * size, size)
+    if not value or "…" in value:
+        return []
+    return [Text(f"value_{row.label}", round(right - width_of(value, size)), last.baseline, value, size, INK)]
+
+
+@lru_cache(maxsize=2)
 def pages_of(at: Composition) -> tuple[list[Page], float, Type]:
     """The pages, the pixels from one column to the next, and the type: the larger one, if one page has room for all of it."""
     large, small = Type(at.px(13.0), at.px(20.0)), Type(at.px(12.0), at.px(17.0))

@@ -29,7 +29,7 @@ from shviewer.viewer.overlay.foot import (
     takes_legend,
     turning_pieces,
 )
-from shviewer.viewer.overlay.help_sheet import help_pieces
+from shviewer.viewer.overlay.help_sheet import help_blocks
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
 from shviewer.viewer.overlay.pieces import Piece, Text, named_boxes
@@ -99,7 +99,7 @@ def draw_overlay(
     at, state = composition, picture.state
     if state.view.help_visible:
         at_foot = opengl if work is None else f"{work.words}; Esc stops"
-        return _overlay(at, [help_pieces(state, at, at_foot, state.view.help_page)])
+        return _overlay(at, help_blocks(state, at, at_foot, state.view.help_page))
     numbers = at.numbers
     heads, feet, unsaid = caption_blocks(picture, at, timing)
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]

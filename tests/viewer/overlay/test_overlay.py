@@ -489,6 +489,13 @@ def test_settings_stand_at_the_right_end_of_their_column_and_sentences_begin_in_
         assert max(ends) - min(ends) <= 1
 
 
+def test_turning_under_the_help_draws_anew_only_the_values_that_changed() -> None:
+    at = compose(1280, 640)
+    one, other = (draw_overlay(picture_of(camera=(azimuth, 20.0), help_visible=True), at) for azimuth in (10.0, 55.0))
+    changed = [one for one, other in zip(one.layers, other.layers, strict=True) if one.image is not other.image]
+    assert 0 < sum(layer.image.size for layer in changed) < one.image.size / 100
+
+
 def test_the_help_shows_present_values() -> None:
     five, six = (text_of(draw_overlay(picture_of(n_bands=n, help_visible=True), compose(1280, 640))) for n in (5, 6))
     assert five != six
