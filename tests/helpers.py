@@ -111,3 +111,12 @@ class Lazily(Mapping[str, T]):
 
     def __len__(self) -> int:
         return len(self._makers)
+
+
+def lat_long_grid(rows: int) -> Array:
+    """Directions (rows, 2 (rows - 1), 3) of a lat-long grid with rows on the poles, without shviewer."""
+    columns = 2 * (rows - 1)
+    theta = np.pi * np.arange(rows)[:, None] / (rows - 1)
+    phi = np.pi * (1 - 2 * (np.arange(columns) + 0.5) / columns)
+    x, y = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi)
+    return np.stack([x, y, np.broadcast_to(np.cos(theta), x.shape)], axis=-1)

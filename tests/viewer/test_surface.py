@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from helpers import lat_long_grid
 
-from shviewer.harmonics.basis import Array, evaluate_basis, index
+from shviewer.harmonics.basis import evaluate_basis, index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.zonal import Disc
 from shviewer.lights.find import find_light
@@ -22,16 +23,6 @@ from shviewer.viewer.surface import (
     unit_radius,
 )
 
-
-def grid(rows: int) -> Array:
-    """Directions (rows, 2 (rows - 1), 3) of a lat-long grid with rows on the poles, without shviewer."""
-    columns = 2 * (rows - 1)
-    theta = np.pi * np.arange(rows)[:, None] / (rows - 1)
-    phi = np.pi * (1 - 2 * (np.arange(columns) + 0.5) / columns)
-    x, y = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi)
-    return np.stack([x, y, np.broadcast_to(np.cos(theta), x.shape)], axis=-1)
-
-
 # --- values
 
 
@@ -39,7 +30,7 @@ def grid(rows: int) -> Array:
 def test_values_of_a_basis_function_are_those_of_the_basis(l: int, m: int) -> None:
     values = sample_basis(l, m, 65)
     assert values.dtype == np.float32
-    wanted = evaluate_basis(grid(65), l + 1)[..., index(l, m)]
+    wanted = evaluate_basis(lat_long_grid(65), l + 1)[..., index(l, m)]
     assert np.abs(values - wanted).max() < 1e-6 * np.abs(wanted).max()
 
 
@@ -50,14 +41,14 @@ def test_an_order_beyond_the_degree_is_refused() -> None:
 
 def test_values_of_a_reconstruction_are_its_luminance() -> None:
     coefficients = np.random.default_rng(0).normal(size=(36, 3))
-    wanted = evaluate_basis(grid(65), 6) @ coefficients @ LUMINANCE
+    wanted = evaluate_basis(lat_long_grid(65), 6) @ coefficients @ LUMINANCE
     assert np.abs(sample_reconstruction(coefficients, 65) - wanted).max() < 1e-6 * np.abs(wanted).max()
 
 
 def test_values_of_a_light_are_its_luminance_and_remembered() -> None:
     light = find_light("green")
     values = sample_light(light, 65)
-    wanted = light.radiance(grid(65).reshape(-1, 3)) @ LUMINANCE
+    wanted = light.radiance(lat_long_grid(65).reshape(-1, 3)) @ LUMINANCE
     assert np.abs(values.ravel() - wanted).max() < 1e-6  # rows stand 1e-7 aside; slopes are up to 5
     assert sample_light(light, 65) is values
 
@@ -69,7 +60,7 @@ def test_a_sun_smaller_than_a_cell_has_the_width_of_one(axis: tuple[float, float
     sun = LobeLight((Lobe(Disc(np.radians(0.05)), np.array(axis), np.array([5.0, 5.0, 5.0])),))
     bright = sample_light(sun, 129) > 4
     assert bright.any()
-    chord = np.linalg.norm(grid(129)[bright] - axis, axis=-1)
+    chord = np.linalg.norm(lat_long_grid(129)[bright] - axis, axis=-1)
     assert chord.max() < np.pi / 128
     assert bright.sum() >= 2
 

@@ -12,7 +12,7 @@ from shviewer.viewer.colour.error_scale import ErrorScale
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, WholeSphere
 from shviewer.viewer.drawn import Surfaces
-from shviewer.viewer.overlay.lettering import FAINT, GREY, Ink, width_of
+from shviewer.viewer.overlay.lettering import FAINT, GREY, width_of
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Strip, Text
 from shviewer.viewer.picture import Picture
@@ -96,12 +96,12 @@ def _ticks(scale: ErrorScale, left: int, right: int, under: int, place: Box, at:
     return pieces
 
 
-def azimuth_pieces(at: Composition, ink: Ink = FAINT) -> list[list[Piece]]:
+def azimuth_pieces(at: Composition) -> list[list[Piece]]:
     """Under each map the azimuths that are multiples of 90 degrees."""
-    return [_azimuths(number, pane, at, ink) for number, pane in enumerate(at.maps)] if at.ticks else []
+    return [_azimuths(number, pane, at) for number, pane in enumerate(at.maps)] if at.ticks else []
 
 
-def _azimuths(number: int, pane: WholeSphere, at: Composition, ink: Ink) -> list[Piece]:
+def _azimuths(number: int, pane: WholeSphere, at: Composition) -> list[Piece]:
     size, line = at.px(12.0), max(1, round(at.scale))
     under = round(pane.clip.bottom)
     pieces: list[Piece] = []
@@ -119,8 +119,8 @@ def _azimuths(number: int, pane: WholeSphere, at: Composition, ink: Ink) -> list
         width = width_of(text, size)
         start = round(min(max(x - width / 2, pane.clip.left), pane.clip.right - width))
         notch = min(max(round(x), round(pane.clip.left)), round(pane.clip.right) - line)
-        pieces.append(Fill(Box(notch, under + at.px(3), notch + line, under + at.px(3 + TICK)), ink))
+        pieces.append(Fill(Box(notch, under + at.px(3), notch + line, under + at.px(3 + TICK)), FAINT))
         if start > last + at.px(8):
-            pieces.append(Text(f"azimuth_{number}_{step}", start, under + at.px(18), text, size, ink))
+            pieces.append(Text(f"azimuth_{number}_{step}", start, under + at.px(18), text, size, FAINT))
             last = start + width
     return pieces

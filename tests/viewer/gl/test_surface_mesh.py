@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from helpers import lat_long_grid
 
-from shviewer.harmonics.basis import Array, evaluate_basis, index
+from shviewer.harmonics.basis import evaluate_basis, index
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.viewer.gl.surface_mesh import MAX_TRIANGLES, Mesh, gradient, grid_directions, surface_mesh
 from shviewer.viewer.surface import Surface, basis_surface, sample_basis, sample_light, surface
-
-
-def grid(rows: int) -> Array:
-    """Directions (rows, 2 (rows - 1), 3) of a lat-long grid with rows on the poles, without shviewer."""
-    columns = 2 * (rows - 1)
-    theta = np.pi * np.arange(rows)[:, None] / (rows - 1)
-    phi = np.pi * (1 - 2 * (np.arange(columns) + 0.5) / columns)
-    x, y = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi)
-    return np.stack([x, y, np.broadcast_to(np.cos(theta), x.shape)], axis=-1)
 
 
 def closed(mesh: Mesh) -> bool:
@@ -90,7 +82,7 @@ def test_a_grid_that_cannot_be_halved_is_refused(shape: tuple[int, int]) -> None
 def test_gradients_are_right_everywhere_and_at_the_poles() -> None:
     """Of the linear a.u it is a - (a.u) u; central differences are off by h^2/6, at 129 rows 1e-4."""
     a = np.array([0.5, -0.7, 0.3])
-    directions = grid(129)
+    directions = lat_long_grid(129)
     value = directions @ a
     wanted = a - value[..., None] * directions
     assert np.abs(np.moveaxis(gradient(value.astype(np.float32)), 0, -1) - wanted).max() < 5e-4
@@ -104,7 +96,7 @@ def test_at_a_jump_the_rim_keeps_the_slope_of_what_it_ends() -> None:
 
 
 def test_grid_directions_are_those_of_lat_long_images() -> None:
-    assert np.abs(np.moveaxis(grid_directions(65), 0, -1) - grid(65)).max() < 1e-6
+    assert np.abs(np.moveaxis(grid_directions(65), 0, -1) - lat_long_grid(65)).max() < 1e-6
 
 
 def test_an_image_with_bright_texels_gives_finite_triangles() -> None:

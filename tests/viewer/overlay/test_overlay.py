@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from helpers import Lazily, frame_of, from_srgb, overlap, picture_of
 from numpy.typing import NDArray
+from viewer.overlay.collisions import shrunk
 
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
@@ -105,10 +106,6 @@ def look_at_all(shown: Picture, at: Composition, drawn: Overlay) -> None:
     apart = [piece for piece in drawn.texts if not piece.name.startswith("ring_")]
     for one, two in itertools.combinations(apart, 2):
         assert not overlap(shrunk(one.box), two.box), (one.name, two.name)
-
-
-def shrunk(box: Box) -> Box:
-    return Box(box.left + 1, box.top + 1, box.right - 1, box.bottom - 1)
 
 
 def contrast(ink: Ink, ground: Ink) -> float:

@@ -17,8 +17,6 @@ from shviewer.viewer.overlay.directions.probe import probe
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
 
-TOWARDS_MINIMUM = (230.0, -30.0)
-
 
 def facing(direction: Array) -> tuple[float, float]:
     """A camera that looks straight at a direction of an unrotated light."""
