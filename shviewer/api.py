@@ -150,7 +150,7 @@ def _array_light(array: NDArray[np.generic]) -> Light:
 
 def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *others: type) -> Recipe:
     """The recipe with these options; those of the dataclasses `others` are left out. UsageError for an unknown option."""
-    from shviewer.analysis.comparison import as_the_file_holds
+    from shviewer.analysis.comparing.comparison import as_the_file_holds
 
     known = [name for name in options_of(Recipe, *others) if name not in NAMED_ELSEWHERE] + ["compare"]
     if unknown := sorted(set(options) - set(known)):
@@ -188,7 +188,7 @@ def _fitted(recipe: Recipe) -> Recipe:
 
 
 def _comparing(recipe: Recipe, given: LightLike) -> Recipe:
-    from shviewer.analysis.compared_files import compared_with
+    from shviewer.analysis.comparing.compared_files import compared_with
     from shviewer.lights.coefficient_light import CoefficientLight
 
     if isinstance(given, str | os.PathLike):

@@ -18,8 +18,8 @@ from PIL import Image
 import shviewer
 from shviewer.analysis import projections
 from shviewer.analysis.cache import MEMORY
-from shviewer.analysis.compared_files import compared_with
-from shviewer.analysis.comparison import verdict
+from shviewer.analysis.comparing.compared_files import compared_with
+from shviewer.analysis.comparing.comparison import verdict
 from shviewer.analysis.information import describe
 from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -32,3 +33,10 @@ def test_nothing_names_a_machine() -> None:
             continue
         data = path.read_bytes()
         assert not [word for word in words if word.encode() in data], name
+
+
+def test_no_docstring_opens_with_of() -> None:
+    """A stranger asks what it is that belongs to something."""
+    sources = [name for name in project_files() if name.endswith(".py") and (ROOT / name).is_file()]
+    assert len(sources) > 500
+    assert not [name for name in sources if re.search(r'^\s*"""Of\b', (ROOT / name).read_text("utf-8"), re.MULTILINE)]

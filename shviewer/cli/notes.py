@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shviewer.analysis.comparison import verdict_of
+from shviewer.analysis.comparing.comparison import verdict_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import subject
 from shviewer.coefficients.suns import sun_left_out

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shviewer.analysis.comparison import verdict_of
+from shviewer.analysis.comparing.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.reconstruction import Reconstruction, reconstruction_of, values_at

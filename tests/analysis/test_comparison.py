@@ -15,8 +15,8 @@ import pytest
 from coefficients.peer_cases import spoiled
 from numpy.typing import NDArray
 
-from shviewer.analysis.compared_files import compared_with
-from shviewer.analysis.comparison import agrees, as_the_file_holds, caption, verdict, verdict_of
+from shviewer.analysis.comparing.compared_files import compared_with
+from shviewer.analysis.comparing.comparison import agrees, as_the_file_holds, caption, verdict, verdict_of
 from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main

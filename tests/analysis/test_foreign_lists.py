@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shviewer.analysis.compared_files import compared_with
-from shviewer.analysis.comparison import agrees, verdict
+from shviewer.analysis.comparing.compared_files import compared_with
+from shviewer.analysis.comparing.comparison import agrees, verdict
+from shviewer.analysis.comparing.suspecting import FITS
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.suspecting import FITS
 from shviewer.coefficients.parts.axes import all_axes
 from shviewer.coefficients.parts.channels import CHANNEL_ORDERS
 from shviewer.coefficients.parts.rows import ORDERS

@@ -79,7 +79,7 @@ def test_the_peak_is_the_centre_of_the_brightest_texel(tmp_path: Path, pixels: P
 
 
 def test_the_irradiance_up_is_the_integral_over_the_upper_half(tmp_path: Path, pixels: Pixels) -> None:
-    """Of cos theta sin theta over a row: half the difference of sin^2, so that no quadrature is behind the wanted value."""
+    """The integral of cos theta sin theta over a row is half the difference of sin^2, without a quadrature."""
     found = describe(write_exr(tmp_path / "sky.exr", pixels), DEFAULT_READING)
     squares = np.sin(np.pi * np.arange(17) / 32) ** 2
     rows = (squares[1:] - squares[:-1]) / 2 * 2 * np.pi / 64
@@ -198,7 +198,7 @@ def test_a_black_light_has_neither_range_nor_bands(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("level", [0.7, 991.0, 1000.0, 1023.0])
 def test_the_darkest_is_never_outside_of_what_there_is(tmp_path: Path, level: float) -> None:
-    """Of one luminance, whatever its place in the bin of a thirty-second of a stop."""
+    """An image of one luminance, whatever its place in the bin of a thirty-second of a stop."""
     values = describe(write_exr(tmp_path / "even.exr", np.full((4, 8, 3), level, np.float32)), DEFAULT_READING).values
     assert values.darkest == values.brightest_luminance == pytest.approx(level, rel=2e-7)  # a sum of three in float32
     assert values.dynamic_range_stops == 0

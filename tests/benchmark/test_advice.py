@@ -103,7 +103,7 @@ def test_an_error_next_to_1_has_the_digits_that_tell_it_from_1() -> None:
 
 
 def test_values_that_differ_are_told_apart_and_the_others_are_short() -> None:
-    """Of a light that no bands hold, 0.99 and more was the same "1.0e+00" in every line of the front."""
+    """For a light that no bands hold, 0.99 and more was the same "1.0e+00" in every line of the front."""
     values = [0.99999936, 0.99999934, 0.957, 0.957, None, 0.95701]
     said = ["99.99994 %", "99.99993 %", "95.700 %", "95.700 %", "-", "95.701 %"]
     assert tables.told_apart(values, tables.error) == said
@@ -136,7 +136,7 @@ def test_a_tolerance_that_no_row_reaches_is_not_made_up(record: LightRecord) -> 
 
 
 def test_tolerances_of_which_the_same_can_be_said_share_a_sentence(record: LightRecord) -> None:
-    """Of coefficients, which their own bands hold whole, the same sentence stood there three times."""
+    """For coefficients, which their own bands hold whole, the same sentence stood there three times."""
     given = replace(record, bands_within={"0.1": 3, "0.05": 3, "0.01": 3}, error_by_bands=[0.9, 0.5, 0.0])
     (said,) = sentences(given, [row("best", 3, 0.1, 0.0)])
     assert said.startswith("for a total error of 10 %, 5 % and 1 %: 3 bands, fastest by closed form")

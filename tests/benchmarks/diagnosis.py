@@ -15,7 +15,7 @@ from statistics import median
 import numpy as np
 from measure import wall_milliseconds
 
-from shviewer.analysis.suspecting import error_of
+from shviewer.analysis.comparing.suspecting import error_of
 from shviewer.coefficients.diagnosis.search import explain
 from shviewer.coefficients.diagnosis.ways import ways
 from shviewer.coefficients.numbers import Listed

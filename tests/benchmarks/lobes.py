@@ -109,7 +109,7 @@ def silhouette_error(shown: Array, true: Array) -> str:
 
 
 def mesh_coverage(surfaces: SurfaceRenderer, height: int) -> Array:
-    """Of the sphere drawn last, in the frame's pixels, top row first."""
+    """The pixels of the sphere drawn last, in the frame's pixels, top row first."""
     assert surfaces.tile is not None
     tones = np.frombuffer(surfaces.tile[0].read(components=1, dtype="f2"), dtype=np.float16)
     pixels = (tones.reshape(TILE, OVERSAMPLING, TILE, OVERSAMPLING) != 0).mean(axis=(1, 3))

@@ -9,8 +9,8 @@ import numpy as np
 from clients.drawing import Drawn, by_axes
 from clients.known import HERE, PROGRAMS
 
-from shviewer.analysis.compared_files import compared_with
-from shviewer.analysis.comparison import verdict
+from shviewer.analysis.comparing.compared_files import compared_with
+from shviewer.analysis.comparing.comparison import verdict
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.lights.reading import Reading
@@ -20,7 +20,7 @@ FILE = HERE / "measured.json"
 
 @dataclass(frozen=True)
 class Measured:
-    """Of one program; None where it cannot show that."""
+    """The numbers of one program; None where it cannot show that."""
 
     version: str
     sphere: float

@@ -24,7 +24,7 @@ FLAT = 1e-5
 OTHERWISE = 0.1
 """No other axes come as near as this; the light was chosen so."""
 SHOWN = 0.012
-"""Of a lat-long image: looked up without interpolation, or kept in 8 bits."""
+"""The error of a lat-long image: looked up without interpolation, or kept in 8 bits."""
 
 programs = pytest.mark.parametrize("name", PROGRAMS)
 

@@ -54,7 +54,7 @@ THEIR_DIRECTIONS = {
 """Ours -> theirs, written out; the others have our axes."""
 
 EXACT = 1e-12
-"""Of sums of up to 400 values of size 1."""
+"""The rounding of sums of up to 400 values of size 1."""
 
 
 def directions_here(count: int = 1000) -> Array:

@@ -9,8 +9,8 @@ import pytest
 from coefficients.peer_cases import asymmetric
 from numpy.testing import assert_allclose
 
-from shviewer.analysis.recognised import recognise
-from shviewer.analysis.suspecting import suspect
+from shviewer.analysis.comparing.recognised import recognise
+from shviewer.analysis.comparing.suspecting import suspect
 from shviewer.coefficients.diagnosis.bent import turned
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.texts import parse_convention
@@ -83,7 +83,7 @@ def test_a_grey_list_of_a_coloured_light_is_of_one_channel(weights: Array, said:
 
 @pytest.mark.parametrize("n_bands", [2, 3, 4, 6])
 def test_strangers_are_no_turned_or_windowed_lights(n_bands: int) -> None:
-    """Of 10 lists of random numbers none is told to be of this light, whatever its angle or factors."""
+    """None of 10 lists of random numbers is told to be of this light, whatever its angle or factors."""
     exact, random = asymmetric(n_bands), np.random.default_rng(n_bands)
     for _ in range(10):
         assert suspect(Listed(random.normal(size=exact.shape)), exact, None, nothing_else) is None  # type: ignore[arg-type]

@@ -83,7 +83,7 @@ def test_the_rows_that_are_wrong_are_named_in_the_convention_that_was_meant(kind
 @pytest.mark.parametrize("kind", ["sign", "swapped", "empty"])
 @pytest.mark.parametrize("n_bands", [2, 3, 4, 5])
 def test_what_is_said_of_a_list_that_names_nothing_is_true(kind: str, n_bands: int) -> None:
-    """Of few bands several explanations fit as well: whichever is given, with it undone the list is the light's."""
+    """For few bands several explanations fit as well: whichever is given, with it undone the list is the light's."""
     for _, exact, numbers, _ in cases(kind, n_bands, 4):
         for named in (None, OURS):
             found = explain(Listed(numbers), exact, named)

@@ -28,8 +28,8 @@ from watch import remove, unwatched, watched
 
 import shviewer.lights.suns.compact_sources  # noqa: F401 - a reader loads it late, and making its classes runs code
 from shviewer.analysis.cache import MEMORY
-from shviewer.analysis.compared_files import compared_with
-from shviewer.analysis.comparison import verdict
+from shviewer.analysis.comparing.compared_files import compared_with
+from shviewer.analysis.comparing.comparison import verdict
 from shviewer.analysis.information import describe
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe

@@ -89,7 +89,7 @@ class DoorMutations:
 
 @dataclass(frozen=True)
 class Truncations:
-    """Of each seed, from nothing to all but one byte; of large ones about `_LARGE` of them."""
+    """The beginnings of each seed, from nothing to all but one byte; of large ones about `_LARGE` of them."""
 
     def judge(self) -> Judge:
         return warmed_up(Witness, _seeds())

@@ -187,7 +187,7 @@ def test_waves_become_bands_and_back_without_a_table_as_with_it(n_bands, monkeyp
 
 
 def test_512_bands_of_an_image_are_the_integrals_over_its_texels():
-    """Of one texel about the middle of a row, over which Gauss points integrate the independent functions."""
+    """One texel about the middle of a row, over which Gauss points integrate the independent functions."""
     image = np.zeros((8, 16, 3))
     image[2, 5] = 1, 2, 3
     found = project_image(image, 512)

@@ -42,7 +42,7 @@ class Found(NamedTuple):
     name: str
     data: Callable[[], bytes]
     mean: tuple[float, float, float] | None
-    """Of the light; None for a file that is refused."""
+    """The mean of the light; None for a file that is refused."""
     said: str = ""
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from helpers import to_srgb
 
-from shviewer.analysis.comparison import verdict
+from shviewer.analysis.comparing.comparison import verdict
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.lights.coefficient_light import CoefficientLight

@@ -39,7 +39,7 @@ def wall_milliseconds(work: Work) -> float:
 
 
 def wall_and_cpu_milliseconds(work: Work) -> tuple[float, float]:
-    """Of work of one thread."""
+    """The time that work takes on the wall, and that of its thread's processor."""
     start, begun = perf_counter(), thread_time()
     work()
     return 1000 * (perf_counter() - start), 1000 * (thread_time() - begun)

@@ -47,7 +47,7 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
     recipe.check()
     compared, said = vars(options).get("compare"), ""
     if compared:
-        from shviewer.analysis.compared_files import compared_with
+        from shviewer.analysis.comparing.compared_files import compared_with
 
         recipe, found = compared_with(recipe, compared)
         if not vars(options).get("like") and not (vars(options).get("lights") or vars(options).get("light")):
@@ -61,7 +61,7 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
             print(f"shviewer: {found}", file=sys.stderr)
     listed = isinstance(light, str) and split_light(light)[0].suffix.lower() in COEFFICIENT_SUFFIXES
     if compared or (listed and start is START):
-        from shviewer.analysis.comparison import as_the_file_holds
+        from shviewer.analysis.comparing.comparison import as_the_file_holds
 
         any_bands = options.n_bands is None and options.tolerance is None
         recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)

@@ -25,7 +25,7 @@ class MonomialProducts:
         self.points, self.norms = np.empty((3, length)), np.empty(length)
         (self.constant, self.linear), *tables = _tables(n_bands)
         self.degrees = []
-        """Of each degree from 2 on: how its monomials are multiplied, and the products that give its part of the basis."""
+        """For each degree from 2 on: how its monomials are multiplied, and the products that give its part of the basis."""
         x, y, z = self.points
         even, odd = self.points[:2], self.points[2:]  # powers of z, in the order of `_powers`
         for l, (for_even, for_odd) in enumerate(tables, start=2):

@@ -41,7 +41,7 @@ class CompactSources:
         self._layout = layout
         self._solid_angles = layout.solid_angles().astype(np.float32)
         self._mean: NDArray[np.float32] = pixels @ np.full(3, 1 / 3, dtype=np.float32)
-        """Of the channels of what is left, (height, width); 0 for a texel that shows nothing."""
+        """The mean of the channels of what is left, (height, width); 0 for a texel that shows nothing."""
         self._mean *= self._solid_angles > 0
         self._caps = Caps(layout, *pixels.shape[:2])
         self._plateau = highest(pixels, self._caps)

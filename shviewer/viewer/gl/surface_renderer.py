@@ -41,22 +41,6 @@ class SurfaceRenderer:
     def resolve_program(self) -> Program:
         return Program(self.context, "surface_resolve.frag", {"TONE": "NONE"})
 
-    def draw(
-        self,
-        target: moderngl.Framebuffer,
-        sphere: Sphere,
-        height: int,
-        surface: Surface,
-        light_from_view: Array,
-    ) -> None:
-        """Draw the surface in place of a sphere, over BACKGROUND; pixels that it does not touch are left alone.
-
-        target: RGBA8, sRGB, `height` pixels high; sphere: its centre, the length of radius 1 in pixels, and where it is cut.
-        light_from_view: 3 x 3, as for the spheres. What is bound, enabled and in view is left as found.
-        """
-        for box in tiles(sphere, height):
-            self.draw_tile(target, sphere, height, surface, light_from_view, box)
-
     def draw_tile(
         self,
         target: moderngl.Framebuffer,
@@ -66,7 +50,12 @@ class SurfaceRenderer:
         light_from_view: Array,
         box: Pixels,
     ) -> None:
-        """Draw what of it is in one of its `tiles`."""
+        """Draw what of a surface is in one of its `tiles`, over BACKGROUND; pixels that it does not touch are left alone.
+
+        target: RGBA8, sRGB, `height` pixels high; sphere: in whose place it is, with its centre, the length of radius 1 in
+        pixels, and where it is cut. light_from_view: 3 x 3, as for the spheres. What is bound, enabled and in view is left as
+        found.
+        """
         fine, tones, _ = self.tile = self.tile or self._make_tile()
         viewport = target.viewport
         (x, y, wide, high), side = box, TILE * OVERSAMPLING

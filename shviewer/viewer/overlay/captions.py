@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from shviewer.analysis.comparison import caption
+from shviewer.analysis.comparing.comparison import caption
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities.encodings import ENCODINGS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from shviewer.analysis.comparison import agrees
+from shviewer.analysis.comparing.comparison import agrees
 from shviewer.analysis.figures import Pending
 from shviewer.viewer import message
 from shviewer.viewer.animation.metronome import TURN_STEP

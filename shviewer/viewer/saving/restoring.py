@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from shviewer.analysis.compared_files import compared_with
+from shviewer.analysis.comparing.compared_files import compared_with
 from shviewer.analysis.options import is_number
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.errors import LightError, ShviewerError, UsageError

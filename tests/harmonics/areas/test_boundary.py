@@ -7,7 +7,7 @@ from shviewer.harmonics.areas.boundary import project_boundary
 from shviewer.harmonics.basis import evaluate_basis
 
 EXACT = 2e-14
-"""Of the longest way round a pole in radians; both sums of waves end at 2e-15."""
+"""As a share of the longest way round a pole in radians; both sums of waves end at 2e-15."""
 
 
 def circle(axis, opening, n_points=600):

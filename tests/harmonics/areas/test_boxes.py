@@ -9,7 +9,7 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.theta_series import from_waves
 
 EXACT = 2e-14
-"""Of the sum of |value|: the series of a box end at 1e-15 in each of two angles, and sums of products round."""
+"""A share of the sum of |value|: the series of a box end at 1e-15 in each of two angles, and sums of products round."""
 
 
 @pytest.mark.parametrize("n_bands", [1, 2, 33, 100])

@@ -41,7 +41,7 @@ def named(layouts):
 
 
 def all_layouts(size):
-    """Of about as many texels each: faces of `size` texels."""
+    """Layouts of about as many texels each: faces of `size` texels."""
     cubes = [CubeLayout(arrangement, size) for arrangement in CUBES]
     return [LatLongLayout(2 * size, 4 * size), *cubes, AngularLayout(3 * size), MirrorBallLayout(3 * size)]
 

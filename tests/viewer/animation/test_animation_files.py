@@ -33,7 +33,7 @@ SMALL = compose(480, 300)
 STATE = state_of("green", muted=frozenset({1}))
 
 GIF_LARGEST, GIF_RMS = 20, 2.5
-"""Of 255. Measured at 1280 x 640: 16 and 1.7 for the sweep of venice_sunset, 6 and 0.4 for that of green."""
+"""In steps of 255. Measured at 1280 x 640: 16 and 1.7 for the sweep of venice_sunset, 6 and 0.4 for that of green."""
 
 Save = Callable[..., Path]
 
@@ -67,7 +67,7 @@ def frames_of(path: Path) -> tuple[list[NDArray[np.uint8]], list[int]]:
 
 
 def local_tables(data: bytes) -> list[bool]:
-    """Of each frame of a GIF89a whether it has a colour table of its own; every frame must stay (disposal 1)."""
+    """Whether each frame of a GIF89a has a colour table of its own; every frame must stay (disposal 1)."""
     assert data[:6] == b"GIF89a"
     assert data[10] & 0x80
     at, found = 13 + 3 * 2 ** (1 + (data[10] & 7)), []

@@ -40,7 +40,7 @@ def test_the_direction_of_the_place_of_a_direction_is_the_direction(pane: WholeS
 
 
 def test_a_map_without_zoom_has_the_directions_of_a_lat_long_image() -> None:
-    """Of columns and rows at texel centres, as the lights' reader counts them."""
+    """Directions of columns and rows at texel centres, as the lights' reader counts them."""
     pane = whole_sphere(Box(0, 0, 16, 8))
     wanted = directions_from_angles(row_angles(8)[:, None], column_azimuths(16))
     found = [[pane.direction(x + 0.5, y + 0.5, SEEN_FROM) for x in range(16)] for y in range(8)]

@@ -80,7 +80,7 @@ def test_a_grid_that_cannot_be_halved_is_refused(shape: tuple[int, int]) -> None
 
 
 def test_gradients_are_right_everywhere_and_at_the_poles() -> None:
-    """Of the linear a.u it is a - (a.u) u; central differences are off by h^2/6, at 129 rows 1e-4."""
+    """The gradient of the linear a.u is a - (a.u) u; central differences are off by h^2/6, at 129 rows 1e-4."""
     a = np.array([0.5, -0.7, 0.3])
     directions = lat_long_grid(129)
     value = directions @ a

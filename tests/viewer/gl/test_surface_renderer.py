@@ -22,7 +22,7 @@ from shviewer.viewer.gl import surface_renderer, triangles
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.gl.shared import BACKGROUND
 from shviewer.viewer.gl.surface_mesh import surface_mesh
-from shviewer.viewer.gl.surface_renderer import OVERSAMPLING, TILE, SurfaceRenderer
+from shviewer.viewer.gl.surface_renderer import OVERSAMPLING, TILE, SurfaceRenderer, tiles
 from shviewer.viewer.gl.triangles import MOST_SURFACES
 from shviewer.viewer.surface import (
     Surface,
@@ -50,7 +50,8 @@ class Frame:
         """(height, width, 3), top row first, over BACKGROUND."""
         self.target.use()
         self.target.clear(*(EMPTY / 255), 1.0)
-        self.surfaces.draw(self.target, sphere, SIDE, shown, light_from_view)
+        for box in tiles(sphere, SIDE):
+            self.surfaces.draw_tile(self.target, sphere, SIDE, shown, light_from_view, box)
         pixels = np.frombuffer(self.target.read(components=3), dtype=np.uint8)
         return pixels.reshape(SIDE, SIDE, 3)[::-1].astype(int)
 
@@ -134,7 +135,7 @@ def test_a_reconstruction_has_the_outline_that_rays_find(frame: Frame) -> None:
 
 
 def test_square_roots_have_the_outline_that_rays_find(frame: Frame) -> None:
-    """Of a magnitude that is steep where its sign changes."""
+    """The surface of a magnitude that is steep where its sign changes."""
     coefficients = np.random.default_rng(1).normal(size=(36, 3))
     values = sample_reconstruction(coefficients, 513)
     unit = float(np.abs(values).max())
@@ -256,7 +257,7 @@ def test_poles_and_seam_do_not_show(frame: Frame) -> None:
 
 @pytest.mark.parametrize(("l", "m"), [(1, 0), (2, 1), (4, 3)])
 def test_normals_are_those_of_the_function(l: int, m: int) -> None:
-    """Of the vertices, against float64 differences of the function; where a triangle is pinched they are interpolated."""
+    """Normals of vertices, against float64 differences of the function; where a triangle is pinched they are interpolated."""
     shown = basis_surface(l, m, 257)
     mesh = surface_mesh(shown.values, 0.25 / SPHERE.radius)
     value, direction = mesh.vertices[:, 0].astype(float), mesh.vertices[:, 1:4].astype(float)
@@ -326,7 +327,8 @@ def test_state_is_left_as_found(frame: Frame) -> None:
     other.clear(0.2, 0.4, 0.6, 1.0)
     context.enable_only(moderngl.BLEND)
     target.viewport = (3, 5, 70, 80)
-    frame.surfaces.draw(target, SPHERE, SIDE, basis_surface(2, 1, 129), SKEW)
+    for box in tiles(SPHERE, SIDE):
+        frame.surfaces.draw_tile(target, SPHERE, SIDE, basis_surface(2, 1, 129), SKEW, box)
     assert target.viewport == (3, 5, 70, 80)
     assert other.viewport == (0, 0, 32, 32)
     # A triangle at half strength, drawn without saying where: blended into the framebuffer that was bound, at any depth.

@@ -41,7 +41,7 @@ def shown(renderer: Renderer, picture: Picture, frame: Composition, side: int) -
 def test_the_map_of_a_reconstruction_is_right_within_two_ten_millionths_a_band(
     renderer: Renderer, n_bands: int, where: str
 ) -> None:
-    """Of the peak, and half a millionth: float32's rounding of the direction, 1e-7 or 2e-7, times n peaks per radian."""
+    """Some of the peak, and half a millionth: float32's rounding of the direction, 1e-7 or 2e-7, times n peaks per radian."""
     coefficients = np.random.default_rng(n_bands).normal(size=(n_bands**2, 3))
     for view in ({}, TURNED):
         picture = reconstructing(picture_of("green", n_bands=n_bands, **view), coefficients)

@@ -86,7 +86,7 @@ def test_nothing_overlaps_nothing_is_cut_and_every_text_can_be_read(name: str, m
 
 
 def look_at(shown: Picture, at: Composition) -> None:
-    """Of the curve only the labels of its axes are held apart: lines cross bars, and rings have their numbers on both."""
+    """Only the labels of the curve's axes are held apart: lines cross bars, and rings have their numbers on both."""
     for work in (None, Work("projecting 40 960 000 jittered samples", 0.43, 3.0)):
         look_at_all(shown, at, draw_overlay(shown, at, timing=True, work=work))
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from helpers import frame_of, picture_of
 
-from shviewer.analysis.compared_files import compared_with
+from shviewer.analysis.comparing.compared_files import compared_with
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.options.modes import screenshot_parser

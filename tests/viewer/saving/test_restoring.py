@@ -16,7 +16,7 @@ from helpers import frame_of, picture_of
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from shviewer.analysis.compared_files import compared_with
+from shviewer.analysis.comparing.compared_files import compared_with
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main

@@ -50,7 +50,7 @@ def written(tmp_path: Path) -> Written:
 
 
 def directions() -> NDArray[np.float64]:
-    """Of pixel centres: azimuth from half a turn on the left to minus half a turn, elevation from the top down."""
+    """The angles of pixel centres: azimuth from half a turn on the left to minus half a turn, elevation from the top down."""
     azimuth = np.pi * (1 - 2 * (np.arange(WIDTH) + 0.5) / WIDTH)
     elevation = (np.pi * (0.5 - (np.arange(HEIGHT) + 0.5) / HEIGHT))[:, None]
     flat = np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth)

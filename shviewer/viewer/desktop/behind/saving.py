@@ -131,7 +131,8 @@ class _Drawing:
         try:
             self._share = next(self._parts)
         except StopIteration as last:
-            return last.value  # type: ignore[no-any-return]
+            pixels: Read = last.value
+            return pixels
         return None
 
     def release(self) -> None:

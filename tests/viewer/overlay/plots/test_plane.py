@@ -79,7 +79,7 @@ def drawn_of(picture: Picture, size: tuple[int, int] = (1280, 640)) -> tuple[Ove
 
 
 def made_up(errors: dict[tuple[str, int, int], tuple[float, float]]) -> tuple[Measurement, ...]:
-    """Of (milliseconds, error), the same for every number of bands."""
+    """Measurements of (milliseconds, error), the same for every number of bands."""
     return tuple(
         Measurement(*key, key[0], time, 1, np.full(MAX_DIRECT_BANDS, error)) for key, (time, error) in errors.items()
     )

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.analysis.cache import remember
+from shviewer.analysis.comparing.suspecting import FITS, held_as, suspect
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.analysis.suspecting import FITS, held_as, suspect
 from shviewer.coefficients.diagnosis.search import EXPLAINED
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.programs import OURS

@@ -7,9 +7,9 @@ from functools import partial
 from math import ceil, sqrt
 from pathlib import Path
 
+from shviewer.analysis.comparing.recognised import Recognised, recognise
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.recognised import Recognised, recognise
 from shviewer.analysis.subjects import load_light
 from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.reading import interpreted, read_numbers

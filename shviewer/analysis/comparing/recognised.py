@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shviewer.analysis.suspecting import FITS, Others, error_of, suspect
+from shviewer.analysis.comparing.suspecting import FITS, Others, error_of, suspect
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.diagnosis.search import ALIKE, EXPLAINED, TINY
 from shviewer.coefficients.numbers import Listed
