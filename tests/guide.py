@@ -35,7 +35,7 @@ from shviewer.benchmark.page.bands_page import needed_table
 from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.writing import as_markdown
 from shviewer.benchmark.rows.report import read_report
-from shviewer.cli.options.modes import EXIT_CODES, PARSERS, view_parser
+from shviewer.cli.options.modes import EXIT_CODES, PARSERS
 from shviewer.viewer.keys import key_table
 
 MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
@@ -72,7 +72,7 @@ def generated(what: str) -> str:
 
 
 def usage() -> str:
-    return re.sub("^ *(?=shviewer)", "", view_parser().usage or "", flags=re.MULTILINE)
+    return re.sub("^ *(?=shviewer)", "", PARSERS["view"]().usage or "", flags=re.MULTILINE)
 
 
 def exit_codes() -> str:

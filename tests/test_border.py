@@ -30,7 +30,7 @@ from shviewer.benchmark.rows.report import Report, read_report
 from shviewer.cli import project
 from shviewer.cli.main import main
 from shviewer.cli.options.inputs import reading_from
-from shviewer.cli.options.modes import info_parser
+from shviewer.cli.options.modes import PARSERS
 from shviewer.coefficients.lists.scan import plain_numbers
 from shviewer.coefficients.numbers import as_table
 from shviewer.coefficients.reading import read_coefficients
@@ -359,5 +359,5 @@ def test_a_stamp_that_is_no_text_of_an_object_is_refused(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("flag", ["--max-megatexels", "--max-file-mib", "--max-memory-mib", "--max-side"])
 def test_a_limit_may_be_any_finite_number(flag: str) -> None:
-    limits = reading_from(info_parser().parse_args(["green", flag, "1e308"])).limits
+    limits = reading_from(PARSERS["info"]().parse_args(["green", flag, "1e308"])).limits
     assert max(filter(None, astuple(limits))) >= 2**63

@@ -8,7 +8,7 @@ import pytest
 from documents import GUIDE, README, ROOT, code_blocks, read
 
 from shviewer.analysis.recipe import METHODS, Recipe
-from shviewer.cli.options.modes import view_parser
+from shviewer.cli.options.modes import PARSERS
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.keys import key_table
 
@@ -31,7 +31,7 @@ def test_the_table_of_pages_is_that_of_the_guide() -> None:
 
 
 def test_the_help_names_the_methods_the_default_bands_and_their_limit() -> None:
-    text = "".join(view_parser().format_help().split())  # argparse breaks lines at hyphens, too
+    text = "".join(PARSERS["view"]().format_help().split())  # argparse breaks lines at hyphens, too
     assert all(method in text for method in METHODS)
     assert f"1to{MAX_BANDS}(default{Recipe.n_bands})" in text
 

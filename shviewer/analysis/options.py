@@ -37,18 +37,19 @@ class Option(NamedTuple):
     default: Any
     kind: Kind
     help: str
-    flag: str = ""
-    """Its name on the command line; "" if its value is given with another option."""
-    metavar: str | tuple[str, ...] = ""
+    called: str = ""
+    """Its name on the command line and what stands for its values there; "" if they are given with another option."""
     const: Any = None
     """The value that a flag without one stands for; None for an option that takes a value."""
 
+    @property
+    def flag(self) -> str:
+        return self.called.partition(" ")[0]
 
-def option(
-    default: T, kind: Kind, help: str, flag: str = "", metavar: str | tuple[str, ...] = "", const: T | None = None
-) -> T:
-    """Declare a field of a dataclass as an option."""
-    held: T = field(default=default, metadata={"option": (kind, help, flag, metavar, const)})
+
+def option(default: T, kind: Kind, help: str, called: str = "", const: T | None = None) -> T:
+    """Declare a field of a dataclass as an option, called "--camera AZIMUTH ELEVATION"."""
+    held: T = field(default=default, metadata={"option": (kind, help, called, const)})
     return held
 
 

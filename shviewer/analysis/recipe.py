@@ -52,23 +52,20 @@ class Recipe:
         5,
         Whole(1, MAX_BANDS, "{} bands", f"the viewer shows 1 to {MAX_BANDS}"),
         f"number of bands, 1 to {MAX_BANDS} (default 5)",
-        "--bands",
-        "N",
+        "--bands N",
     )
     tolerance: float = option(
         0.05,
         Share(0, 1, "it must be between 0 and 1, such as 0.05 or 5%", closed=False),
         "as many bands as keep the relative L2 error within T, such as 5% or 0.05; with --bands, what counts as enough",
-        "--tolerance",
-        "T",
+        "--tolerance T",
     )
     quantity: str = option(
         RADIANCE,
         Quantity(),
         "radiance (default), irradiance: what a white Lambertian surface receives, or glossy:R, such as glossy:0.4: what a"
         " glossy surface of roughness R reflects (0.1 to 1)",
-        "--for",
-        "WHAT",
+        "--for WHAT",
     )
     split_sun: bool = option(
         False,
@@ -81,15 +78,13 @@ class Recipe:
         "auto",
         WholeOr(("auto", "all"), 16),
         "what --split-sun takes: auto (default), one or two suns; or so many of the compact sources, lamps among them; or all",
-        "--suns",
-        "N",
+        "--suns N",
     )
     window: str = option(
         "none",
         Choice(WINDOWS),
         "none, hann, lanczos, gauss (WIDTH in bands, default N) or dering",
-        "--window",
-        "W[:WIDTH]",
+        "--window W[:WIDTH]",
     )
     window_width: float | None = option(
         None,
@@ -97,24 +92,22 @@ class Recipe:
         "width of the window in bands; as many as are shown unless given",
     )
     muted: frozenset[int] = option(
-        frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3 or 2-4", "--mute", "L,L"
+        frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3 or 2-4", "--mute L,L"
     )
     method: str = option(
-        "best", Choice(METHODS), "best (of this light), jittered (the paper's) or gauss-legendre", "--method", "M"
+        "best", Choice(METHODS), "best (of this light), jittered (the paper's) or gauss-legendre", "--method M"
     )
     samples: int = option(
         10_000,
         Whole(1, MAX_SAMPLES, "{} samples", f"there must be 1 to {MAX_SAMPLES}"),
         "number of samples of the sampled methods (default 10000)",
-        "--samples",
-        "K",
+        "--samples K",
     )
     seed: int = option(
         0,
         Whole(0, float("inf"), "seed {}", "it must not be negative"),
         "seed of the jittered samples (default 0)",
-        "--seed",
-        "S",
+        "--seed S",
     )
     turn: tuple[float, ...] | None = None
     """The matrix from directions of the world to those of the light, row by row, where the light is projected as it stands in

@@ -46,38 +46,33 @@ class View:
             called="exposure",
         ),
         "fixed, instead of chosen from the light",
-        "--exposure",
-        "STOPS",
+        "--exposure STOPS",
     )
     exposure_offset: float = option(
         0.0,
         Number(-MAX_EXPOSURE, MAX_EXPOSURE, f"it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops"),
         "added to the exposure, fixed or chosen",
-        "--exposure-offset",
-        "STOPS",
+        "--exposure-offset STOPS",
     )
-    tone: str = option("none", Choice(TONES), "curve after exposure: none, reinhard, aces or log", "--tone", "T")
+    tone: str = option("none", Choice(TONES), "curve after exposure: none, reinhard, aces or log", "--tone T")
     error: str = option(
         "off",
         Choice(ERRORS),
         "a third sphere, reconstruction minus original: off (default), signed, absolute or relative",
-        "--error",
-        "E",
+        "--error E",
     )
     beside: str = option(
         "off",
         Choice(BESIDES),
         "a third sphere in place of the error: what the same bands give without the window (no-window), by the other "
         "method (method), or by the light's own coefficients beside compared ones (own)",
-        "--beside",
-        "WHAT",
+        "--beside WHAT",
     )
     error_range: float | None = option(
         None,
         Number(DIMMEST, BRIGHTEST, f"it must be {DIMMEST:g} to {BRIGHTEST:g}", optional=True),
         "where its colours end: a radiance, or for the relative error such as 20%; chosen from the light unless given",
-        "--error-range",
-        "R",
+        "--error-range R",
     )
     marks: bool = option(
         True,
@@ -97,16 +92,14 @@ class View:
         None,
         Pair("l and m, such as (2, -1)", whole=True, optional=True),
         "the surface of one basis function Y(l, m) on the right",
-        "--basis",
-        ("L", "M"),
+        "--basis L M",
     )
     encode: str = option(
         "",
         Choice(("", *ENCODED_BANDS)),
         "show what engines store of the irradiance in few numbers, in place of bands: l1, geomerics, hallucinated, zh3, the"
         " last two also with -shared, l2 or l2-deringed",
-        "--encode",
-        "NAME",
+        "--encode NAME",
     )
     by_roughness: bool = option(
         False,
@@ -121,15 +114,13 @@ class View:
         "auto",
         Choice(EVALUATIONS),
         "sum the bands per pixel (direct), draw from a map, or auto (default): by the time that a frame takes",
-        "--evaluate",
-        "E",
+        "--evaluate E",
     )
     camera: tuple[float, float] | None = option(
         None,
         Pair("azimuth and elevation in degrees, such as (30, 10)", optional=True),
         "where the camera stands, degrees; facing the light unless given",
-        "--camera",
-        ("AZIMUTH", "ELEVATION"),
+        "--camera AZIMUTH ELEVATION",
     )
     """None: where `derived.camera_of` puts it."""
     whole_sphere: bool = option(
@@ -139,23 +130,20 @@ class View:
         (0.0, 0.0),
         Pair("azimuth and elevation in degrees, such as (180, 0)"),
         "what is in the middle of the maps, degrees",
-        "--map-centre",
-        ("AZIMUTH", "ELEVATION"),
+        "--map-centre AZIMUTH ELEVATION",
     )
     light_rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
     zoom: float = option(
         1.0,
         Number(*ZOOM_RANGE, f"it must be {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g}"),
         f"size of the spheres, {ZOOM_RANGE[0]:g} to {ZOOM_RANGE[1]:g} (default 1)",
-        "--zoom",
-        "Z",
+        "--zoom Z",
     )
     pan: tuple[float, float] = option(
         (0.0, 0.0),
         Pair("two numbers, right and up, such as (0.5, 0)"),
         "move the spheres, in radii at zoom 1",
-        "--pan",
-        ("RIGHT", "UP"),
+        "--pan RIGHT UP",
     )
     cursor: int = 0
     cursor_visible: bool = False

@@ -20,7 +20,7 @@ from shviewer.analysis.comparing.comparison import agrees, as_the_file_holds, ca
 from shviewer.analysis.figures import needs
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main
-from shviewer.cli.options.modes import screenshot_parser
+from shviewer.cli.options.modes import PARSERS
 from shviewer.cli.options.states import state_from
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import parse_convention
@@ -410,7 +410,7 @@ def test_it_is_said_with_which_light_where_none_is_named(
 ) -> None:
     np.save(tmp_path / "own.npy", find_light("green").coefficients(3))
     words = ["out.png", *light, "--compare", str(tmp_path / "own.npy"), "--convention", "shviewer"]
-    state_from(screenshot_parser().parse_intermixed_args(words), all_lights=False)
+    state_from(PARSERS["screenshot"]().parse_intermixed_args(words), all_lights=False)
     said = f"no LIGHT is named, so that {tmp_path / 'own.npy'} is compared with green: name its own"
     assert (said in capsys.readouterr().err) == (not light)
 

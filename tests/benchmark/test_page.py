@@ -19,7 +19,7 @@ from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.writing import SECTIONS, as_markdown
 from shviewer.benchmark.rows.report import Report, read_report
 from shviewer.benchmark.rows.row import Row
-from shviewer.cli.options.modes import info_parser, report_parser
+from shviewer.cli.options.modes import PARSERS
 
 COMMITTED = ROOT / "assets" / "report"
 
@@ -60,7 +60,7 @@ def test_the_page_first_says_how_many_bands_each_light_needs() -> None:
 def test_every_section_says_the_command_that_makes_it(committed: Page) -> None:
     page = as_markdown(committed)
     flags = {
-        flag for make in (report_parser, info_parser) for action in make()._actions for flag in action.option_strings
+        flag for mode in ("report", "info") for action in PARSERS[mode]()._actions for flag in action.option_strings
     }
     for title, command, _ in SECTIONS:
         assert command.startswith(("shviewer report", "shviewer info"))

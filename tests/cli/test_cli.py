@@ -18,7 +18,7 @@ import pytest
 from PIL import Image
 
 from shviewer.cli.main import main
-from shviewer.cli.options.modes import PARSERS, screenshot_parser, view_parser
+from shviewer.cli.options.modes import PARSERS
 from shviewer.cli.options.states import state_from
 from shviewer.errors import (
     GraphicsError,
@@ -593,7 +593,7 @@ def test_a_mistyped_command_is_one_line(
 
 
 def test_counts_may_be_written_with_a_power_of_ten() -> None:
-    assert view_parser().parse_args(["--samples", "1e6"]).samples == 1_000_000
+    assert PARSERS["view"]().parse_args(["--samples", "1e6"]).samples == 1_000_000
 
 
 def test_a_function_that_exits_or_gives_complex_numbers_is_refused(
@@ -763,10 +763,10 @@ def test_an_option_that_changes_nothing_is_refused_with_what_is_missing(
     "words", ["--mute 4", "--samples 9 --seed 2 --beside method", "--seed 3 --method jittered", "--error-range 0.3"]
 )
 def test_one_that_changes_something_or_waits_for_a_key_is_not(words: str) -> None:
-    options = screenshot_parser().parse_intermixed_args(["out.png", "green", *words.split()])
+    options = PARSERS["screenshot"]().parse_intermixed_args(["out.png", "green", *words.split()])
     state_from(options, all_lights=False)
     for given, _ in IDLE[:5]:
-        state_from(view_parser().parse_intermixed_args(["green", *given.split()]), all_lights=True)
+        state_from(PARSERS["view"]().parse_intermixed_args(["green", *given.split()]), all_lights=True)
 
 
 def test_of_several_lights_it_is_said_how_many_bands_shade_them_all(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,7 @@ from places import kernels
 
 import shviewer
 from shviewer.cli.main import main
-from shviewer.cli.options.modes import screenshot_parser
+from shviewer.cli.options.modes import PARSERS
 from shviewer.cli.options.states import state_from
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
@@ -156,7 +156,7 @@ def test_Ctrl_E_writes_the_bands_that_are_shown_where_a_window_leaves_no_formula
 
 
 def test_an_encoding_is_of_irradiance_without_saying_so(tmp_path: Path) -> None:
-    options = screenshot_parser().parse_args([str(tmp_path / "p.png"), "green", "--encode", "geomerics"])
+    options = PARSERS["screenshot"]().parse_args([str(tmp_path / "p.png"), "green", "--encode", "geomerics"])
     recipe = state_from(options, all_lights=False).recipe
     assert (recipe.quantity, recipe.n_bands) == ("irradiance", 32)
 

@@ -14,7 +14,7 @@ from helpers import frame_of, picture_of
 from shviewer.analysis.comparing.compared_files import compared_with
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
-from shviewer.cli.options.modes import screenshot_parser
+from shviewer.cli.options.modes import PARSERS
 from shviewer.cli.options.states import state_from
 from shviewer.coefficients.programs import OURS
 from shviewer.errors import UsageError
@@ -32,7 +32,7 @@ from shviewer.viewer.state import State, state_of
 def made_again(state: State) -> State:
     """The state that the arguments ask for, once they have been through a shell."""
     words = shlex.split(shlex.join(arguments_of(state, (640, 320))))
-    options = screenshot_parser().parse_intermixed_args(["out.png", *words])
+    options = PARSERS["screenshot"]().parse_intermixed_args(["out.png", *words])
     found = state_from(options, all_lights=False)
     assert options.size == (640, 320)
     return found
