@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from shviewer.analysis.cache import remember
-from shviewer.analysis.projections import BEST, Projection, Way, project, sampling_of
+from shviewer.analysis.projections import BEST, Projection, Way, project, way_of
 from shviewer.analysis.recipe import Recipe, Shown
 from shviewer.analysis.subjects import load_light, through
 from shviewer.errors import UsageError, refused_as
@@ -36,7 +36,6 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.harmonics.scattered import project_samples
-from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 
@@ -110,7 +109,7 @@ def needs(recipe: Recipe) -> Needs:
     """
     answers = {}
     for quantity in dict.fromkeys((RADIANCE, IRRADIANCE, recipe.quantity)):
-        errors = errors_of(load_light(replace(recipe, quantity=quantity)), *sampling_of(recipe))
+        errors = errors_of(load_light(replace(recipe, quantity=quantity)), way_of(recipe))
         answers[quantity] = smallest_band_count(errors, recipe.tolerance), errors
     radiance, irradiance = answers[RADIANCE][0], answers[IRRADIANCE][0]
     shown, errors = answers[recipe.quantity]
@@ -134,28 +133,28 @@ def estimate_from_samples(recipe: Recipe) -> SampleEstimate:
 
 
 @remember(most=16, doing="searching bands")
-def errors_of(light: Light, method: Way, samples: int, seed: int) -> Array:
+def errors_of(light: Light, way: Way) -> Array:
     """The relative L2 error for every band count searched: (MAX_BANDS,), for samples, which are rarely good for more,
     (MAX_DIRECT_BANDS,), of given coefficients all that there are.
     """
-    exact, shown = searched_coefficients(light, method, samples, seed)
+    exact, shown = searched_coefficients(light, way)
     return errors_by_band_count(light.products(), exact[: len(shown)], shown)
 
 
-def searched_coefficients(light: Light, method: Way, samples: int, seed: int) -> tuple[Array, Array]:
-    """The exact coefficients of MAX_BANDS bands, and those of a method, as many as a search for bands goes through."""
-    exact = project(light, *BEST, MAX_BANDS).coefficients
-    if method == "best":
+def searched_coefficients(light: Light, way: Way) -> tuple[Array, Array]:
+    """The exact coefficients of MAX_BANDS bands, and those of a way to project, as many as a search for bands goes through."""
+    exact = project(light, BEST, MAX_BANDS).coefficients
+    if way == BEST:
         return exact, exact
-    n_bands = min(method.n_bands, MAX_BANDS) if isinstance(method, CoefficientLight) else MAX_DIRECT_BANDS
-    return exact, project(light, method, samples, seed, n_bands).coefficients
+    n_bands = MAX_DIRECT_BANDS if way.given is None else min(way.given.n_bands, MAX_BANDS)
+    return exact, project(light, way, n_bands).coefficients
 
 
 @remember(most=64)
 def sums(light: Light, projection: Projection, what: Shown) -> tuple[Array, Sums]:
     """The coefficients shown of a projection, (n_bands**2, 3), and the figures that need no search."""
     n_bands, muted, window_name, width = what
-    exact = project(light, *BEST, projection.n_bands).coefficients
+    exact = project(light, BEST, projection.n_bands).coefficients
     shown = projection.coefficients[: n_bands**2] * band_weights(n_bands, frozenset(muted))
     factors = _window_factors(shown, window_name, width)
     shown = shown * per_coefficient(factors)
@@ -196,7 +195,7 @@ def irradiance_error(light: Light, projection: Projection, what: Shown) -> float
     if projection.stored is not None:
         return known.relative_l2
     irradiance = through(light, IRRADIANCE)
-    own = project(light, *BEST, projection.n_bands).radiance[: len(shown)]
+    own = project(light, BEST, projection.n_bands).radiance[: len(shown)]
     shading = projection.radiance[: len(shown)] * per_coefficient(np.array(known.factors))
     norm = irradiance.products().diagonal()
     return relative(sum(squared_error(norm, *map(irradiance.from_source, (own, shading)))), norm)

@@ -9,7 +9,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -30,22 +30,23 @@ from shviewer.limits import MAX_DIRECT_BANDS
 if TYPE_CHECKING:
     from shviewer.harmonics.quantities.encodings import Stored
 
-BEST = ("best", 0, 0)
-"""Method, samples and seed of the best way, which does not depend on the last two."""
-
 MOST_MEASUREMENTS = 128
 """How many are kept per light, quantity and bands: more than the keys reach, at most 1 KiB each."""
 
 
-class Turned(NamedTuple):
-    """A method whose samples stand in the world. turn: as in `Recipe`."""
+class Way(NamedTuple):
+    """A way to project. The best way draws no samples, and does not depend on how the light is turned."""
 
-    method: str
-    turn: tuple[float, ...]
+    method: str = "best"
+    samples: int = 0
+    seed: int = 0
+    turn: tuple[float, ...] | None = None
+    """As in `Recipe`, where samples stand in the world."""
+    given: CoefficientLight | None = None
+    """Coefficients in place of all that."""
 
 
-Way: TypeAlias = str | Turned | CoefficientLight
-"""A method, or given coefficients in its place."""
+BEST = Way()
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +81,7 @@ class Projection:
 class Measurement:
     """The time and the errors of one way to project a light: a few numbers, kept longer than the projection itself."""
 
-    method: str
-    samples: int
-    seed: int
+    way: Way
     words: str
     """The method as `Projection` names it."""
     milliseconds: float
@@ -91,85 +90,68 @@ class Measurement:
     errors: Array = field(compare=False)
     """Relative L2 error with the first n = 1 ... N bands, (N,); it follows from the other fields and the light."""
 
-    @property
-    def sampling(self) -> tuple[str, int, int]:
-        return self.method, self.samples, self.seed
 
-
-def sampling_of(recipe: Recipe) -> tuple[Way, int, int]:
-    """Method, samples and seed of a recipe. The best way does not depend on the last two, so they are always the same for it,
-    nor on how the light is turned. Given coefficients stand in place of the method.
-    """
+def way_of(recipe: Recipe) -> Way:
+    """The way of a recipe: samples, seed and turn that its method does not depend on are always the same."""
     if recipe.compare is not None:
-        return recipe.compare, 0, 0
-    method, samples, seed = way_of(recipe)
-    return (method if recipe.turn is None or recipe.method == "best" else Turned(method, recipe.turn)), samples, seed
+        return Way("given", given=recipe.compare)
+    return BEST if recipe.method == "best" else Way(recipe.method, recipe.samples, recipe.seed, recipe.turn)
 
 
-def way_of(recipe: Recipe) -> tuple[str, int, int]:
-    """The same without given coefficients, which are no way to project: nothing is measured for them."""
-    if recipe.compare is not None:
-        return "given", 0, 0
-    return BEST if recipe.method == "best" else (recipe.method, recipe.samples, recipe.seed)
-
-
-def project(light: Light, method: Way, samples: int, seed: int, n_bands: int) -> Projection:
-    """Project a light; another quantity of a sampled light comes from the samples of the light itself.
-
-    method: "best", "jittered" or "gauss-legendre", one of these where the light is turned, or given coefficients instead.
-    """
-    if isinstance(method, Turned):
-        return _turned_projection(light, method, samples, seed, n_bands)
-    if not isinstance(method, str):
-        return _given_projection(light, method, n_bands)
-    found = _measured_projection(light, method, samples, seed, n_bands)
+def project(light: Light, way: Way, n_bands: int) -> Projection:
+    """Project a light; another quantity of a sampled light comes from the samples of the light itself."""
+    if way.given is not None:
+        return _given_projection(light, way.given, n_bands)
+    if way.turn is not None:
+        return _turned_projection(light, way, n_bands)
+    found = _measured_projection(light, way, n_bands)
     with MEMORY.lock:
         known = _known(light, n_bands)
-        if (method, samples, seed) in known:  # not if another thread has read the light again
-            known.move_to_end((method, samples, seed))
+        if way in known:  # not if another thread has read the light again
+            known.move_to_end(way)
     return found
 
 
 def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
-    """The measurements of this session for projecting the light to `n_bands` bands, by method, samples and seed."""
+    """The measurements of this session for projecting the light to `n_bands` bands, by their ways."""
     with MEMORY.lock:
         return tuple(found for _, found in sorted(_known(light, n_bands).items())) if light in MEMORY else ()
 
 
-def _known(light: Light, n_bands: int) -> OrderedDict[tuple[str, int, int], Measurement]:
+def _known(light: Light, n_bands: int) -> OrderedDict[Way, Measurement]:
     known: OrderedDict[Any, Measurement] = MEMORY.results(light, (Measurement, light.quantity, n_bands))
     return known
 
 
-def _measure(light: Light, sampling: tuple[str, int, int], projection: Projection) -> None:
+def _measure(light: Light, way: Way, projection: Projection) -> None:
     """Measure a projection that took time and keep the numbers; a repetition keeps the lesser time."""
     assert projection.milliseconds is not None
     n_bands, shown = projection.n_bands, projection.coefficients
-    exact = shown if sampling == BEST else project(light, *BEST, n_bands).coefficients
+    exact = shown if way == BEST else project(light, BEST, n_bands).coefficients
     errors = errors_by_band_count(light.products(), exact, shown)
     with MEMORY.lock:
         known = _known(light, n_bands)
-        spent = _known(light.source, n_bands).get(sampling) if light is not light.source else None
+        spent = _known(light.source, n_bands).get(way) if light is not light.source else None
         if spent:  # the only time spent was that on the light itself
-            known[sampling] = replace(spent, errors=errors)
+            known[way] = replace(spent, errors=errors)
         else:
-            before = known.get(sampling)
+            before = known.get(way)
             least = min(projection.milliseconds, before.milliseconds if before else np.inf)
             repetitions = 1 + (before.repetitions if before else 0)
-            known[sampling] = Measurement(*sampling, projection.method, least, repetitions, errors)
+            known[way] = Measurement(way, projection.method, least, repetitions, errors)
         if len(known) > MOST_MEASUREMENTS:
             known.popitem(last=False)
 
 
 @remember(most=8, doing="projecting")
-def _turned_projection(light: Light, how: Turned, samples: int, seed: int, n_bands: int) -> Projection:
+def _turned_projection(light: Light, way: Way, n_bands: int) -> Projection:
     """A light projected by samples that stand still while it turns; the coefficients are in its own frame."""
     if light is not light.source:
-        source = project(light.source, how, samples, seed, n_bands)
+        source = project(light.source, way, n_bands)
         return replace(source, coefficients=light.from_source(source.coefficients))
-    sampled = how.method == "jittered"
-    points = jittered(samples, seed) if sampled else gauss_legendre(samples).direction_set()
-    moved = DirectionSet(points.directions @ np.reshape(how.turn, (3, 3)).T, points.weights)
+    sampled = way.method == "jittered"
+    points = jittered(way.samples, way.seed) if sampled else gauss_legendre(way.samples).direction_set()
+    moved = DirectionSet(points.directions @ np.array(way.turn).reshape(3, 3).T, points.weights)
     start = perf_counter()
     radiance = project_samples(light.integrand, moved, n_bands)
     spent = 1000 * (perf_counter() - start)
@@ -179,7 +161,7 @@ def _turned_projection(light: Light, how: Turned, samples: int, seed: int, n_ban
 @remember(most=8, doing="projecting")
 def turned_exactly(light: Light, turn: tuple[float, ...], n_bands: int) -> Projection:
     """The best way, as it stands in the world and turned back. Exact coefficients of an image or a function turn with it."""
-    found, source = project(light, *BEST, n_bands), light.source
+    found, source = project(light, BEST, n_bands), light.source
     if not source.lobes:
         return found
     light_from_world = np.reshape(turn, (3, 3))
@@ -214,30 +196,30 @@ def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Pr
 
 
 @remember(most=32, doing="projecting")
-def _measured_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+def _measured_projection(light: Light, way: Way, n_bands: int) -> Projection:
     """Project, take the time, and keep the measurement; what took none has the time that was measured before, if any."""
-    projection = _timed_projection(light, method, samples, seed, n_bands)
+    projection = _timed_projection(light, way, n_bands)
     if projection.milliseconds is not None:
-        _measure(light, (method, samples, seed), projection)
+        _measure(light, way, projection)
         return projection
     with MEMORY.lock:
-        before = _known(light, n_bands).get((method, samples, seed))
+        before = _known(light, n_bands).get(way)
     return replace(projection, milliseconds=before.milliseconds) if before else projection
 
 
-def _timed_projection(light: Light, method: str, samples: int, seed: int, n_bands: int) -> Projection:
+def _timed_projection(light: Light, way: Way, n_bands: int) -> Projection:
     """Project and take the time: of a convolved light that of its source, of coefficients that the light has kept none."""
     if light is not light.source:
-        source = project(light.source, method, samples, seed, n_bands)
+        source = project(light.source, way, n_bands)
         return replace(source, coefficients=light.from_source(source.coefficients))
     start, evaluations, kept = perf_counter(), None, False
-    if method == "jittered":
-        directions = jittered(samples, seed)
+    if way.method == "jittered":
+        directions = jittered(way.samples, way.seed)
         evaluations = len(directions.weights)
         coefficients = project_samples(light.integrand, directions, n_bands)
         words = "jittered"
-    elif method == "gauss-legendre":
-        rule = gauss_legendre(samples)
+    elif way.method == "gauss-legendre":
+        rule = gauss_legendre(way.samples)
         evaluations = len(rule.theta) * rule.n_columns
         coefficients = project_product(light.integrand, rule, n_bands)[0]
         words = "Gauss-Legendre"

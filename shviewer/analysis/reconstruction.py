@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shviewer.analysis.figures import Figures, Sums, error_grid, figures_of, grid_rows, sums
-from shviewer.analysis.projections import BEST, Projection, encoded, project, sampling_of, turned_exactly
+from shviewer.analysis.projections import BEST, Projection, encoded, project, turned_exactly, way_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
@@ -60,12 +60,12 @@ def reconstruction_of(
     recipe.check()
     found = subject(recipe)
     if ahead > recipe.projected_bands and found.light.about.size is not None:
-        project(found.light, *BEST, ahead)
-    sampling = sampling_of(recipe)
-    if recipe.turn is not None and sampling == BEST:
+        project(found.light, BEST, ahead)
+    way = way_of(recipe)
+    if recipe.turn is not None and way == BEST:
         projection = turned_exactly(found.light, recipe.turn, recipe.projected_bands)
     else:
-        projection = project(found.light, *sampling, recipe.projected_bands)
+        projection = project(found.light, way, recipe.projected_bands)
     if encoding:
         projection = encoded(found.light, projection, encoding, turn)
     named = recipe.light if isinstance(recipe.light, str) else found.light.name

@@ -15,7 +15,7 @@ import numpy as np
 
 from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import needs, searched_coefficients
-from shviewer.analysis.projections import Way, sampling_of
+from shviewer.analysis.projections import Way, way_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.basis import Array
@@ -74,18 +74,18 @@ class Staircase:
 def staircase(recipe: Recipe) -> Staircase:
     """The staircase of the recipe's light for its tolerance, by its method or the coefficients that it compares."""
     recipe = replace(recipe, quantity=RADIANCE)
-    found, errors = needs(recipe), errors_by_roughness(load_light(recipe), *sampling_of(recipe))
+    found, errors = needs(recipe), errors_by_roughness(load_light(recipe), way_of(recipe))
     counts = tuple(smallest_band_count(row, recipe.tolerance) for row in errors)
     return Staircase(recipe.tolerance, counts, found.radiance, found.irradiance, errors.shape[1])
 
 
 @remember(most=8, doing="searching roughness")
-def errors_by_roughness(light: Light, method: Way, samples: int, seed: int) -> Array:
+def errors_by_roughness(light: Light, way: Way) -> Array:
     """Relative L2 errors of the first n = 1, 2, ... bands for each of ROUGHNESS, at least as large as they are.
 
     (roughness, bands), as many bands as `errors_of` searches.
     """
-    exact, shown = searched_coefficients(light, method, samples, seed)
+    exact, shown = searched_coefficients(light, way)
     power = band_power(exact).sum(axis=1)
     added = band_power(shown - exact[: len(shown)]).sum(axis=1)
     beyond = max(float(np.trace(light.products())) - float(power.sum()), 0.0)

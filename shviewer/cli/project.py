@@ -12,7 +12,7 @@ from pathlib import Path
 
 from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projected import Projected, project_recipe
-from shviewer.analysis.projections import sampling_of
+from shviewer.analysis.projections import way_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.cli.batch import error_in_percent, make_folder, project_batch
@@ -113,7 +113,7 @@ def check_tolerance(recipe: Recipe, convention: Convention) -> None:
     if most is None or recipe.n_bands <= most:
         return
     bands = counted(most, "band")
-    reached = float(errors_of(load_light(recipe), *sampling_of(recipe))[most - 1])
+    reached = float(errors_of(load_light(recipe), way_of(recipe))[most - 1])
     suns = () if recipe.split_sun else subject(replace(recipe, split_sun=True)).suns
     remedy = "take its sun out, --split-sun, or " if suns else ""
     raise UsageError(

@@ -177,7 +177,7 @@ def error_scale(
     largest error is that on the grid.
     """
     coefficients, figures = sums(light, projection, shown)
-    exact = project(light, *BEST, projection.n_bands).coefficients
+    exact = project(light, BEST, projection.n_bands).coefficients
     floor = max(float(np.abs(exact[0]).mean()) / (2 * np.sqrt(np.pi)), DIMMEST)
     grid, synthesis = error_grid(light, grid_rows(shown.n_bands)), Synthesis(coefficients)
     values = synthesis.on_rows(grid.theta, len(grid.phi))

@@ -219,12 +219,12 @@ def test_a_functions_file_is_executed_again_at_the_same_size_within_the_same_sec
 def test_a_file_that_has_become_unreadable_leaves_what_is_known(image: Path) -> None:
     recipe = recipe_of(image)
     light, read = load_light(recipe), version_read(recipe)
-    results = projections.project(light, "best", 0, 0, 32)
+    results = projections.project(light, projections.BEST, 32)
     image.write_bytes(b"#?RADIANCE\n")
     with pytest.raises(LightError, match=r"image\.hdr"):
         read_again(recipe)
     assert load_light(recipe) is light
-    assert projections.project(light, "best", 0, 0, 32) is results
+    assert projections.project(light, projections.BEST, 32) is results
     assert version_read(recipe) == read != file_version(str(image))
 
 

@@ -20,18 +20,18 @@ REFERENCE = kernels()["A"]
 
 @pytest.mark.parametrize("name", ["green", "studio", "venice_sunset"])
 def test_errors_are_those_of_the_convolved_light(name: str) -> None:
-    found = errors_by_roughness(load_light(Recipe(name)), *BEST)
+    found = errors_by_roughness(load_light(Recipe(name)), BEST)
     for roughness in (0.25, 0.4, 0.83, 1.0):
-        wanted = errors_of(load_light(Recipe(name, quantity=f"glossy:{roughness}")), *BEST)
+        wanted = errors_of(load_light(Recipe(name, quantity=f"glossy:{roughness}")), BEST)
         row = found[ROUGHNESS.index(roughness)]
         assert (row >= wanted - 1e-7).all()  # of squares of 1e-14 that differ
         np.testing.assert_allclose(row, wanted, rtol=0, atol=5e-5)  # the bands beyond 128, at most f(128) of them
 
 
 def test_a_count_is_never_too_small_where_bands_are_missing() -> None:
-    found = errors_by_roughness(load_light(Recipe("sun-sky")), *BEST)
+    found = errors_by_roughness(load_light(Recipe("sun-sky")), BEST)
     for roughness in (0.1, 0.15, 0.2):
-        wanted = errors_of(load_light(Recipe("sun-sky", quantity=f"glossy:{roughness}")), *BEST)
+        wanted = errors_of(load_light(Recipe("sun-sky", quantity=f"glossy:{roughness}")), BEST)
         assert (found[ROUGHNESS.index(roughness)] >= wanted - 1e-9).all()
 
 

@@ -67,7 +67,7 @@ def test_band_counts_come_smallest_first_as_far_as_the_time_allows(
 
 
 def test_what_the_bands_leave_out_is_what_the_window_says(green: MeasuredLight) -> None:
-    errors = errors_of(green.light, *BEST)
+    errors = errors_of(green.light, BEST)
     for row in reconstruction_rows(green, NO_OPENGL, budget=0, bands=(2, 9), at_least=1):
         assert row.n_bands is not None
         assert row.truncation == errors[row.n_bands - 1]

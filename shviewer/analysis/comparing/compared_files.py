@@ -55,7 +55,7 @@ def _recognised(recipe: Recipe, listed: Listed) -> Recognised:
     """The convention in which the numbers fit the radiance of the light that is projected."""
     light = load_light(replace(recipe, quantity="radiance"))
     most = min(MAX_BANDS, max(1, ceil(sqrt(listed.numbers.size))))  # the bands of a grey list; others have fewer
-    return recognise(listed, project(light, *BEST, most).coefficients, partial(mistaken, light, most))
+    return recognise(listed, project(light, BEST, most).coefficients, partial(mistaken, light, most))
 
 
 def _kind(text: str) -> str:

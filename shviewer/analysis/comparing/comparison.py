@@ -74,7 +74,7 @@ def verdict(light: Light, given: CoefficientLight) -> str:
 
     Both are compared as what the file holds, radiance or irradiance, whatever is shown.
     """
-    exact = project(light, *BEST, given.n_bands).coefficients
+    exact = project(light, BEST, given.n_bands).coefficients
     wanted, held = held_as(exact, given.quantity), _numbers(given)
     norm, off = float(np.linalg.norm(wanted)), float(np.linalg.norm(wanted - held))
     if off <= FITS * norm:

@@ -39,7 +39,7 @@ def two_bands(a: float, b: float, axis: tuple[float, float, float]) -> Coefficie
 
 def shown_as(light: Light, n_bands: int, muted: tuple[int, ...] = ()) -> Figures:
     """The figures of a light shown with its first bands, some of them muted."""
-    return figures_of(light, project(light, *BEST, 32), Shown(n_bands, muted))
+    return figures_of(light, project(light, BEST, 32), Shown(n_bands, muted))
 
 
 def error_figures() -> float:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from shviewer.analysis.figures import errors_of
-from shviewer.analysis.projections import sampling_of
+from shviewer.analysis.projections import way_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.roughness import ROUGHNESS, Staircase, staircase
 from shviewer.analysis.subjects import load_light, subject
@@ -27,7 +27,7 @@ def bands_needed(recipe: Recipe) -> dict[str, Any]:
     """Radiance or irradiance -> the fewest bands within each of TOLERANCES, None if none are, and what some LEAVE."""
     found = {}
     for quantity in QUANTITIES:
-        errors = errors_of(load_light(replace(recipe, quantity=quantity)), *sampling_of(recipe))
+        errors = errors_of(load_light(replace(recipe, quantity=quantity)), way_of(recipe))
         within = {f"{tolerance:g}": smallest_band_count(errors, tolerance) for tolerance in TOLERANCES}
         leaves = {str(n): float(errors[n - 1]) for n in LEAVE if n <= len(errors)}
         found[quantity] = {"within": within, "leaves": leaves}

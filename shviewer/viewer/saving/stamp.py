@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from shviewer.analysis.figures import Figures, Needs, Pending
-from shviewer.analysis.projections import project, sampling_of
+from shviewer.analysis.projections import project, way_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.harmonics.basis import Array
 from shviewer.lights.find import file_of, version_of_light
@@ -176,7 +176,7 @@ def _coefficients(picture: Picture) -> list[list[float]]:
     Of more than MAX_DIRECT_BANDS bands, the first.
     """
     recipe = picture.state.recipe
-    radiance = project(picture.light.source, *sampling_of(recipe), recipe.projected_bands)
+    radiance = project(picture.light.source, way_of(recipe), recipe.projected_bands)
     return _rounded(radiance.coefficients[: min(recipe.n_bands, MAX_DIRECT_BANDS) ** 2])
 
 

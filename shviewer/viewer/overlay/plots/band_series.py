@@ -8,7 +8,7 @@ import numpy as np
 
 from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import Pending, errors_of
-from shviewer.analysis.projections import BEST, project, sampling_of
+from shviewer.analysis.projections import BEST, project, way_of
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import band_power, errors_by_band_count
@@ -74,7 +74,7 @@ def _pending(picture: Picture, least: int) -> BandSeries:
     """What is known at once: the error of the bands that are projected, and what they are worth."""
     recipe, figures, light = picture.state.recipe, picture.figures, picture.light
     slots, on_shading = band_slots(picture.state.bands_ahead, None, least), recipe.quantity == "irradiance"
-    exact = project(light, *BEST, picture.projection.n_bands).coefficients
+    exact = project(light, BEST, picture.projection.n_bands).coefficients
     errors = errors_by_band_count(light.products(), exact, picture.projection.coefficients)[:slots]
     known = tuple(np.maximum(errors, figures.floor).tolist())
     worth = np.sqrt(np.maximum(figures.energy_share[:slots], 0.0))
@@ -103,7 +103,7 @@ def band_slots(n_bands: int, answer: int | None, least: int = SLOT_COUNTS[0]) ->
 @remember(most=4)
 def _worth(light: Light) -> Array:
     """The square roots of the bands' shares of a light's energy, (MAX_BANDS,)."""
-    power = band_power(project(light, *BEST, MAX_BANDS).coefficients).sum(axis=1)
+    power = band_power(project(light, BEST, MAX_BANDS).coefficients).sum(axis=1)
     total = float(np.trace(light.products()))
     return np.sqrt(power / total) if total > 0 else np.zeros(len(power))
 
@@ -111,8 +111,8 @@ def _worth(light: Light) -> Array:
 def _errors(picture: Picture, light: Light, slots: int) -> tuple[float, ...]:
     """The error with bands 0 to l by the method in use; as far as it is known, and below the floor the floor."""
     recipe = picture.state.recipe
-    errors = errors_of(light, *sampling_of(recipe))
+    errors = errors_of(light, way_of(recipe))
     if light is picture.light and recipe.n_bands > len(errors):  # samples were searched no further
-        exact = project(light, *BEST, picture.projection.n_bands).coefficients
+        exact = project(light, BEST, picture.projection.n_bands).coefficients
         errors = errors_by_band_count(light.products(), exact, picture.projection.coefficients)
     return tuple(np.maximum(errors[:slots], picture.figures.floor).tolist())

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from shviewer.analysis.projections import BEST, Measurement, measurements, way_of
+from shviewer.analysis.projections import BEST, Measurement, Way, measurements, way_of
 from shviewer.harmonics.metrics import pareto_front
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
@@ -39,9 +39,6 @@ SHORTEST, LEAST = 1e-4, 1e-5
 
 MORE = "M changes the method, S the samples"
 
-Sampling = tuple[str, int, int]
-"""A way to project: method, samples, seed."""
-
 
 @dataclass(frozen=True)
 class Plane:
@@ -50,13 +47,13 @@ class Plane:
     area: Box
     milliseconds: Axis
     error: Axis
-    known: dict[Sampling, Measurement]
-    errors: dict[Sampling, float]
+    known: dict[Way, Measurement]
+    errors: dict[Way, float]
     floor: float
     """The error of the best way, which no samples get below."""
-    present: Sampling
-    places: dict[Sampling, Point]
-    front: list[Sampling]
+    present: Way
+    places: dict[Way, Point]
+    front: list[Way]
 
 
 def measured(picture: Picture) -> tuple[Measurement, ...]:
@@ -66,7 +63,7 @@ def measured(picture: Picture) -> tuple[Measurement, ...]:
 
 def plane_of(picture: Picture, at: Composition) -> Plane | None:
     """The plane of a picture in the place of the curve; None where there is none, or nothing was measured."""
-    box, known = at.numbers.curve, {found.sampling: found for found in measured(picture)}
+    box, known = at.numbers.curve, {found.way: found for found in measured(picture)}
     least = max(picture.figures.floor, LEAST)
     errors = {key: max(float(found.errors[picture.state.recipe.n_bands - 1]), least) for key, found in known.items()}
     times = {key: max(found.milliseconds, SHORTEST) for key, found in known.items()}
@@ -81,7 +78,9 @@ def plane_of(picture: Picture, at: Composition) -> Plane | None:
     milliseconds = padded_axis(min(every), max(every), 10.0, area.left, area.right, pad, pad, centred=True)
     places = {key: (milliseconds.at(times[key]), error.at(errors[key])) for key in keys}
     front = [keys[i] for i in pareto_front([(times[key], errors[key]) for key in keys])]
-    return Plane(area, milliseconds, error, known, errors, floor, way_of(picture.state.recipe), places, front)
+    return Plane(
+        area, milliseconds, error, known, errors, floor, way_of(picture.state.recipe)._replace(turn=None), places, front
+    )
 
 
 def plane_pieces(plane: Plane, at: Composition) -> list[Piece]:
@@ -89,7 +88,7 @@ def plane_pieces(plane: Plane, at: Composition) -> list[Piece]:
     pieces = [*_axes(plane, at), *_front(plane, at)]
     order = sorted(plane.places, key=lambda key: (key == plane.present, -plane.places[key][0]))
     for key in order:
-        (x, y), (shape, ink) = plane.places[key], LOOKS[key[0]]
+        (x, y), (shape, ink) = plane.places[key], LOOKS[key.method]
         if key == plane.present:
             pieces.append(Disc(x, y, at.px(2 * MARK), ACCENT, at.px(1.5), GROUND, "plane_present"))
         pieces += [_mark(shape, x, y, at.px(MARK + 1), GROUND), _mark(shape, x, y, at.px(MARK), ink)]
@@ -102,16 +101,16 @@ def plane_legend(plane: Plane, picture: Picture, line: Line, at: Composition) ->
     said = [MORE] if len(plane.places) == 1 else [""]
     if plane.present in plane.places:
         found, error = plane.known[plane.present], share(plane.errors[plane.present], floor=picture.figures.floor)
-        name = _words(found) if plane.present == BEST else f"{_words(found)} {short_count(found.samples)}"
+        name = _words(found) if plane.present == BEST else f"{_words(found)} {short_count(found.way.samples)}"
         time = f"{name}: {grouped_number(found.milliseconds)} ms"
         full = f"{time} for {picture.projection.n_bands} bands, {error} in {n_bands}"
         said = [*(f"{full}; {MORE}" for _ in said if said[0]), full, f"{time}, {error}"]
-    shown = {method for method, _, _ in plane.places}
+    shown = {key.method for key in plane.places}
     for names in ([method for method in LOOKS if method in shown], []):
         pieces: list[Piece] = []
         x = line.left
         for method in names if len(names) > 1 else []:
-            words = _words(next(found for found in plane.known.values() if found.method == method))
+            words = _words(next(found for found in plane.known.values() if found.way.method == method))
             shape, ink = LOOKS[method]
             pieces.append(_mark(shape, x + at.px(MARK), line.baseline - 0.36 * size, at.px(MARK), ink))
             name = "best" if method == "best" else words
@@ -162,14 +161,13 @@ def _samples(plane: Plane, at: Composition) -> Iterator[Piece]:
     size, reach = at.px(11.0 if at.compact else 12.0), at.px(MARK)
     taken = [Box(x, y, x, y).grown(reach, reach) for x, y in plane.places.values()]
     for key in sorted(plane.places, key=lambda key: -plane.places[key][0]):
-        method, samples, seed = key
         x, y = plane.places[key]
         ring = reach if key == plane.present else 0.0
         for baseline in (y - reach - ring - at.px(3), y + reach + ring + at.px(3) + 0.76 * size) if key != BEST else ():
-            text, name = short_count(samples), f"plane_{method}_{samples}_{seed}"
+            text, name = short_count(key.samples), f"plane_{key.method}_{key.samples}_{key.seed}"
             left = x - width_of(text, size) / 2
             label = Text(
-                name, round(left), round(baseline), text, size, LOOKS[method][1], casing=at.px(1.6), rim=GROUND
+                name, round(left), round(baseline), text, size, LOOKS[key.method][1], casing=at.px(1.6), rim=GROUND
             )
             if label.box.inside(plane.area) and not any(label.box.overlaps(other) for other in taken):
                 taken.append(label.box.grown(0.5 * size, 0))

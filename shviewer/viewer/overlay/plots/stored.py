@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from shviewer.analysis.figures import sums
-from shviewer.analysis.projections import encoded, project, sampling_of
+from shviewer.analysis.projections import encoded, project, way_of
 from shviewer.analysis.recipe import Shown
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.encodings import ENCODINGS
@@ -50,7 +50,7 @@ LOWEST_ROW, HIGHEST_ROW, GAP = 18.0, 26.0, 28.0
 def stored_errors(picture: Picture) -> dict[str, float | None]:
     """The relative L2 error of each encoding of the picture's irradiance; None for one that it cannot have."""
     recipe, light = picture.state.recipe, picture.light
-    plain, found = project(light, *sampling_of(recipe), recipe.projected_bands), dict[str, float | None]()
+    plain, found = project(light, way_of(recipe), recipe.projected_bands), dict[str, float | None]()
     for name, n_bands in ENCODED_BANDS.items():
         try:
             shown = (

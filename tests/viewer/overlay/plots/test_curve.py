@@ -85,7 +85,7 @@ def rings(pieces: list[Piece]) -> list[Disc]:
 def test_rings_are_where_each_line_first_meets_the_tolerance() -> None:
     shown = picture_of()
     series, axes, pieces = drawn(shown)
-    exact = errors_of(load_light(Recipe("green")), *BEST)
+    exact = errors_of(load_light(Recipe("green")), BEST)
     first = int(np.flatnonzero(exact <= 0.05)[0]) + 1
     assert series.needed == first == 15
     assert {(ring.x, ring.ink) for ring in rings(pieces)} == {(axes.x(14), INK), (axes.x(2), GREY)}
