@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from html import escape
 from itertools import groupby
 
-from shviewer.viewer.overlay.lettering import ACCENT, GREY, GROUND, INK, RULE, Ink
+from shviewer.viewer.overlay.inks import ACCENT, GREY, GROUND, INK, RULE, Ink
 
 
 def css(ink: Ink) -> str:

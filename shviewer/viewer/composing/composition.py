@@ -72,6 +72,16 @@ class Composition:
     def margin(self) -> float:
         return self.px(margin_of(self.width / self.scale))
 
+    @property
+    def hair(self) -> int:
+        """The width of the finest line, pixels."""
+        return max(1, round(self.scale))
+
+    @property
+    def small(self) -> float:
+        """The size of small type, pixels."""
+        return self.px(11.0 if self.compact else 12.0)
+
 
 @lru_cache(maxsize=8)
 def compose(

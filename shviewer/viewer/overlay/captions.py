@@ -17,7 +17,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces
-from shviewer.viewer.overlay.lettering import FAINT, GREY, INK, REGULAR, SEMIBOLD, Ink, shortened_to, width_of
+from shviewer.viewer.overlay.inks import FAINT, GREY, INK, Ink
+from shviewer.viewer.overlay.lettering import REGULAR, SEMIBOLD, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
 from shviewer.viewer.overlay.setting import Part, set_on

@@ -12,7 +12,8 @@ from shviewer.viewer.colour.error_scale import ErrorScale
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, WholeSphere
 from shviewer.viewer.drawn import Surfaces
-from shviewer.viewer.overlay.lettering import FAINT, GREY, width_of
+from shviewer.viewer.overlay.inks import FAINT, GREY
+from shviewer.viewer.overlay.lettering import width_of
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Strip, Text
 from shviewer.viewer.picture import Picture
@@ -71,7 +72,7 @@ def colour_bar_pieces(picture: Picture, at: Composition) -> list[Piece]:
 
 def _ticks(scale: ErrorScale, left: int, right: int, under: int, place: Box, at: Composition) -> list[Piece]:
     """As many numbers as stand clear of each other."""
-    size = at.px(11.0 if at.compact else 12.0)
+    size = at.small
     low = -scale.end if scale.kind == "signed" else 0.0
     for most in (9, 7, 5, 3, 2):
         ticks = round_ticks(low, scale.end, most)
@@ -89,9 +90,8 @@ def _ticks(scale: ErrorScale, left: int, right: int, under: int, place: Box, at:
         return []
     pieces: list[Piece] = []
     tick = max(2, round(at.px(TICK * (0.5 if at.compact else 1))))
-    line = max(1, round(at.scale))
     for number, (notch, start, text) in enumerate(zip(notches, starts, texts, strict=True)):
-        pieces.append(Fill(Box(round(notch), under, round(notch) + line, under + tick), GREY))
+        pieces.append(Fill(Box(round(notch), under, round(notch) + at.hair, under + tick), GREY))
         pieces.append(Text(f"error_tick_{number}", start, under + tick + 0.95 * size, text, size, GREY))
     return pieces
 
@@ -102,7 +102,7 @@ def azimuth_pieces(at: Composition) -> list[list[Piece]]:
 
 
 def _azimuths(number: int, pane: WholeSphere, at: Composition) -> list[Piece]:
-    size, line = at.px(12.0), max(1, round(at.scale))
+    size, line = at.px(12.0), at.hair
     under = round(pane.clip.bottom)
     pieces: list[Piece] = []
     last = -math.inf

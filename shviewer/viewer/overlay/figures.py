@@ -13,7 +13,8 @@ from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words, 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Cell
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import GREY, INK, MEDIUM, REGULAR, width_of
+from shviewer.viewer.overlay.inks import GREY, INK
+from shviewer.viewer.overlay.lettering import MEDIUM, REGULAR, width_of
 from shviewer.viewer.overlay.numerals import bound_text, share, typeset, value
 from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
 from shviewer.viewer.picture import Picture
@@ -124,7 +125,7 @@ def _figure(figure: _Figure, cell: Cell, at: Composition) -> list[Piece]:
     numbers, name = at.numbers, figure.name
     weight = MEDIUM if name == "relative_l2" else REGULAR
     room, label_size = cell.right - cell.left - at.px(COLUMN_GAP), at.px(numbers.label_size)
-    sizes = at.px(numbers.figure_size), label_size, at.px(11.0 if at.compact else 12.0)
+    sizes = at.px(numbers.figure_size), label_size, at.small
     (said, bound), size, bound_size = _fitting(figure.said, room, sizes, weight)
     pieces: list[Piece] = [Text(name, cell.left, cell.value, said, size, INK, weight)]
     if bound:

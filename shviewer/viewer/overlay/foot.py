@@ -11,20 +11,8 @@ from shviewer.viewer.animation.metronome import TURN_STEP
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import (
-    ACCENT,
-    ERROR,
-    FAINT,
-    GREY,
-    INK,
-    MEDIUM,
-    RULE,
-    WARNING,
-    Ink,
-    escaped,
-    shortened_to,
-    width_of,
-)
+from shviewer.viewer.overlay.inks import ACCENT, ERROR, FAINT, GREY, INK, RULE, WARNING, Ink
+from shviewer.viewer.overlay.lettering import MEDIUM, escaped, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Text
 from shviewer.viewer.overlay.setting import sentence
@@ -167,7 +155,7 @@ def work_pieces(at: Composition, work: Work) -> list[Piece]:
     line = message_line(at)
     if line is None:
         return []
-    size, small = at.px(12.0 if at.compact else 13.0), at.px(11.0 if at.compact else 12.0)
+    size, small = at.px(12.0 if at.compact else 13.0), at.small
     parts = []
     if work.share is not None:
         parts.append(typeset(f"{100 * work.share:.0f} %"))
@@ -194,7 +182,7 @@ def turning_pieces(at: Composition, picture: Picture, pace: float | None) -> lis
     line = message_line(at)
     if line is None:
         return []
-    recipe, size, small = picture.state.recipe, at.px(12.0 if at.compact else 13.0), at.px(11.0 if at.compact else 12.0)
+    recipe, size, small = picture.state.recipe, at.px(12.0 if at.compact else 13.0), at.small
     samples = "fresh samples" if picture.state.view.turning == "fresh" else "the same samples"
     how = {"best": "projected exactly", "gauss-legendre": "points that stand still"}.get(recipe.method, samples)
     rate = "" if pace is None else f"{pace:.0f} frames a second" if pace >= 9.5 else f"{pace:.1g} frames a second"

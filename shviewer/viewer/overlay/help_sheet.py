@@ -8,17 +8,8 @@ from typing import NamedTuple
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.keys import BINDINGS, Binding
-from shviewer.viewer.overlay.lettering import (
-    FAINT,
-    GREY,
-    GROUND,
-    INK,
-    MEDIUM,
-    RULE,
-    SEMIBOLD,
-    shortened_to,
-    width_of,
-)
+from shviewer.viewer.overlay.inks import FAINT, GREY, GROUND, INK, RULE
+from shviewer.viewer.overlay.lettering import MEDIUM, SEMIBOLD, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.state import State
@@ -69,7 +60,7 @@ def help_blocks(state: State, at: Composition, foot: str, page: int = 0) -> list
     x = at.width - margin - width_of(closes, 0.92 * size)
     pieces.append(Text("help_closes", round(x), round(top), closes, 0.92 * size, FAINT))
     rule = round(top + at.px(12))
-    pieces.append(Fill(Box(margin, rule, at.width - margin, rule + max(1, round(at.scale))), RULE))
+    pieces.append(Fill(Box(margin, rule, at.width - margin, rule + at.hair), RULE))
     values, lowest = list[list[Piece]](), 0.0
     for number, column in enumerate(shown):
         left, y = round(margin + number * pitch), rule + at.px(28)

@@ -1,4 +1,4 @@
-"""Lettering: the inks, and text in the face that everything shares, as coverage of pixels.
+"""Lettering: text in the face that everything shares, as coverage of pixels.
 
 Text is drawn at four times its size and averaged, so it is not hinted; its baseline lies between two rows of pixels.
 """
@@ -17,14 +17,6 @@ from PIL import Image, ImageDraw, ImageFont, features
 
 from shviewer.resources import resource_folder
 from shviewer.viewer.overlay.glyphs import Face, has, system_face
-
-Ink = tuple[int, int, int, int]
-INK, GREY, FAINT, RULE = (236, 236, 240, 255), (178, 178, 188, 255), (146, 146, 156, 255), (66, 66, 72, 255)
-GROUND = (39, 39, 42, 255)
-BAR, UNUSED, ACCENT = (72, 122, 204, 255), (100, 100, 110, 255), (100, 160, 255, 255)
-WARNING, ERROR = (255, 196, 92, 255), (255, 128, 112, 255)
-CASING = (12, 12, 14, 255)
-"""The ink around what is written over a sphere."""
 
 REGULAR, MEDIUM, SEMIBOLD = "Regular", "Medium", "SemiBold"
 FINE = 4

@@ -30,8 +30,9 @@ from shviewer.viewer.overlay.foot import (
     turning_pieces,
 )
 from shviewer.viewer.overlay.help_sheet import help_blocks
+from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import INK, SEMIBOLD
+from shviewer.viewer.overlay.lettering import SEMIBOLD
 from shviewer.viewer.overlay.pieces import Piece, Text, named_boxes
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeAlias
 
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
-from shviewer.viewer.overlay.lettering import REGULAR, Ink, shortened_to, width_of
+from shviewer.viewer.composing.panes import Box
+from shviewer.viewer.overlay.inks import GREY, Ink
+from shviewer.viewer.overlay.lettering import REGULAR, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import typeset
-from shviewer.viewer.overlay.pieces import Piece, Text
+from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 
 Part: TypeAlias = tuple[str, ...]
 """Something to be said, in wordings of which the longest that has room is taken; "" and what has none is left out."""
@@ -18,6 +21,29 @@ def ended(name: str, right: float, baseline: float, text: str, size: float, ink:
     """A text that ends at `right`."""
     said = typeset(text)
     return Text(name, round(right - width_of(said, size, weight)), baseline, said, size, ink, weight)
+
+
+def centred(
+    name: str,
+    x: float,
+    ends: tuple[float, float],
+    baseline: float,
+    text: str,
+    size: float,
+    ink: Ink,
+    weight: str = REGULAR,
+) -> Text:
+    """A text in the middle over or under x, as far as it stays between its ends."""
+    said = typeset(text)
+    wide = width_of(said, size, weight)
+    return Text(name, round(min(max(x - wide / 2, ends[0]), ends[1] - wide)), baseline, said, size, ink, weight)
+
+
+def dashes(left: float, right: float, y: int, at: Composition) -> list[Piece]:
+    """A dashed line."""
+    dash = at.px(4)
+    starts = [left + 2 * number * dash for number in range(int((right - left) / (2 * dash)))]
+    return [Fill(Box(start, y, start + dash, y + at.hair), GREY) for start in starts]
 
 
 def sentence(name: str, line: Line, wordings: Sequence[str], size: float, ink: Ink) -> list[Piece]:

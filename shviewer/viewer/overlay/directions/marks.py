@@ -19,8 +19,9 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Pane, Sphere
 from shviewer.viewer.overlay.directions.behind import behind_sphere
 from shviewer.viewer.overlay.directions.placed import FAR, GAP, Placed, free, layers_at, type_size
+from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import INK, MEDIUM
+from shviewer.viewer.overlay.lettering import MEDIUM
 from shviewer.viewer.overlay.numerals import share, value
 from shviewer.viewer.overlay.pieces import Curve, Text
 from shviewer.viewer.picture import Picture

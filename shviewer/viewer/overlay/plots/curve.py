@@ -7,29 +7,15 @@ lines have the same unit, and what is off the chart is never silent.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import (
-    ACCENT,
-    BAR,
-    FAINT,
-    GREY,
-    GROUND,
-    INK,
-    MEDIUM,
-    REGULAR,
-    RULE,
-    SEMIBOLD,
-    UNUSED,
-    Ink,
-    width_of,
-)
-from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Text
+from shviewer.viewer.overlay.inks import ACCENT, BAR, FAINT, GREY, GROUND, INK, RULE, UNUSED, Ink
+from shviewer.viewer.overlay.lettering import MEDIUM, REGULAR, SEMIBOLD, width_of
+from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.plots.band_series import BandSeries
-from shviewer.viewer.overlay.setting import ended
+from shviewer.viewer.overlay.setting import centred, dashes, ended
 from shviewer.viewer.state import State
 from shviewer.words import round_percent
 
@@ -71,6 +57,10 @@ class Axes:
         down = math.log(max(error, self.low / 100) / self.low) / math.log(self.high / self.low)
         return self.base - down * (self.base - self.top)
 
+    def within(self, error: float) -> float:
+        """The height of an error, or the end of the axis that it lies beyond."""
+        return min(max(self.y(error), self.top), self.base)
+
     def slot(self, band: int, below: float) -> Box:
         """Where a click means the band: its slot and its number."""
         return Box(self.x(band) - self.pitch / 2, self.top, self.x(band) + self.pitch / 2, self.base + below)
@@ -111,12 +101,9 @@ def curve_blocks(series: BandSeries, state: State, at: Composition) -> list[list
     for errors, ink, width in ((series.shading, GREY, 1.6), (series.errors, INK, 1.8)):
         points = [(axes.x(band), axes.y(error)) for band, error in enumerate(errors) if math.isfinite(error)]
         if len(points) > 1 and min(y for _, y in points) < axes.base:
-            ended = _until_below(points, axes.base + at.px(6))
-            lines.append(Curve(ended, at.px(width), ink, clip, at.px(1.2), GROUND))
-    for errors, needed, ink in (
-        (series.shading, series.shading_needed, GREY),
-        (series.errors, series.needed, INK),
-    ):
+            last = max(number for number, (_, y) in enumerate(points) if y < axes.base + at.px(6))
+            lines.append(Curve(tuple(points[: last + 2]), at.px(width), ink, clip, at.px(1.2), GROUND))
+    for errors, needed, ink in ((series.shading, series.shading_needed, GREY), (series.errors, series.needed, INK)):
         if needed is not None and needed <= min(len(errors), axes.slots):
             lines += _ring(axes, needed - 1, errors[needed - 1], ink, at)
     n_bands = state.recipe.n_bands
@@ -125,8 +112,7 @@ def curve_blocks(series: BandSeries, state: State, at: Composition) -> list[list
 
 def _grid(axes: Axes, series: BandSeries, at: Composition) -> list[Piece]:
     """The powers of ten, and the tolerance as a dashed line."""
-    size = at.px(11.0 if at.compact else 12.0)
-    line, end = max(1, round(at.scale)), axes.left - at.px(8)
+    size, line, end = at.small, at.hair, axes.left - at.px(8)
     pieces: list[Piece] = []
     decades = round(math.log10(axes.high / axes.low))
     step = 1 if (axes.base - axes.top) / decades >= 1.2 * size else 2
@@ -141,14 +127,7 @@ def _grid(axes: Axes, series: BandSeries, at: Composition) -> list[Piece]:
         label = ended(f"share_{number}", end, baseline, round_percent(error), size, FAINT)
         if number % step == 0 and not (tolerance and label.box.overlaps(tolerance.box)):
             pieces.append(label)
-    if tolerance:
-        y, dash = round(within), at.px(4)
-        count = int((axes.right - axes.left) / (2 * dash))
-        for number in range(count):
-            left = axes.left + 2 * number * dash
-            pieces.append(Fill(Box(left, y, left + dash, y + line), GREY))
-        pieces.append(tolerance)
-    return pieces
+    return [*pieces, *dashes(axes.left, axes.right, round(within), at), tolerance] if tolerance else pieces
 
 
 def _bar(axes: Axes, band: int, worth: float, series: BandSeries, at: Composition) -> list[Piece]:
@@ -170,17 +149,10 @@ def _bar(axes: Axes, band: int, worth: float, series: BandSeries, at: Compositio
     return [*pieces, Fill(bar._replace(top=max(kept, top)), BAR)] if kept < base else pieces
 
 
-def _until_below(points: list[tuple[float, float]], floor: float) -> tuple[tuple[float, float], ...]:
-    """The points up to the last one over the floor, and where the line goes on from there."""
-    last = max((number for number, (_, y) in enumerate(points) if y < floor), default=-1)
-    return tuple(points[: last + 2])
-
-
 def _numbers(axes: Axes, state: State, at: Composition) -> list[Piece]:
     """The numbers of the bands, as many as have room, the last one in use in bold; and the cursor."""
-    size = at.px(11.0 if at.compact else 12.0)
+    size, n_bands = at.small, state.recipe.n_bands
     baseline = axes.base + at.px(13 if at.compact else 17)
-    n_bands = state.recipe.n_bands
     widest = width_of(str(axes.slots - 1), size) + at.px(6)
     step = next(step for step in (1, 2, 4, 8, 16, 32) if step * axes.pitch >= widest or step == 32)
     muted = state.recipe.muted_shown
@@ -193,27 +165,22 @@ def _numbers(axes: Axes, state: State, at: Composition) -> list[Piece]:
             continue
         weight = SEMIBOLD if band == here else REGULAR
         ink = INK if band == here else FAINT if band > here or band in muted else GREY
-        wide = width_of(str(band), size, weight)
-        x = round(min(axes.x(band) - wide / 2, axes.right - wide))
-        pieces.append(Text(f"band_{band}", x, baseline, str(band), size, ink, weight))
+        pieces.append(centred(f"band_{band}", axes.x(band), (0, axes.right), baseline, str(band), size, ink, weight))
     if state.view.cursor_visible and state.view.cursor < n_bands:
         middle, half = axes.x(state.view.cursor), max(axes.pitch * BAR_SHARE / 2, 2.0)
-        y = round(axes.base + at.px(2))
-        pieces.append(
-            Fill(Box(round(middle - half), y, round(middle + half), y + max(2, round(at.px(2)))), INK, "cursor")
-        )
+        y, thick = round(axes.base + at.px(2)), max(2, round(at.px(2)))
+        pieces.append(Fill(Box(round(middle - half), y, round(middle + half), y + thick), INK, "cursor"))
     return pieces
 
 
 def _ring(axes: Axes, band: int, error: float, ink: Ink, at: Composition) -> list[Piece]:
     """The first band count within the tolerance, with its number over it."""
-    x, y = axes.x(band), min(max(axes.y(error), axes.top), axes.base)
-    size, text = at.px(11.0 if at.compact else 12.0), str(band + 1)
-    wide = width_of(text, size, SEMIBOLD)
-    left = round(min(x - wide / 2, axes.right - wide))
+    x, y = axes.x(band), axes.within(error)
+    name, above = f"ring_{ink is INK}_{band}", round(y - at.px(8))
+    number = centred(name, x, (0, axes.right), above, str(band + 1), at.small, ink, SEMIBOLD)
     return [
         Disc(x, y, at.px(RING - 0.7), ink, at.px(RING_WIDTH), GROUND),
-        Text(f"ring_{ink is INK}_{band}", left, round(y - at.px(8)), text, size, ink, SEMIBOLD, at.px(1.6), GROUND),
+        replace(number, casing=at.px(1.6), rim=GROUND),
     ]
 
 
@@ -221,18 +188,14 @@ def _dot(axes: Axes, series: BandSeries, n_bands: int, at: Composition) -> list[
     """What is shown now: on its line, or off it, joined by a stem, where bands are muted or windowed."""
     if not math.isfinite(series.shown) or n_bands > axes.slots:
         return []
-    x, y = axes.x(n_bands - 1), min(max(axes.y(series.shown), axes.top), axes.base)
+    x, y = axes.x(n_bands - 1), axes.within(series.shown)
     line = series.shading if series.on_shading else series.errors
     pieces: list[Piece] = []
     if n_bands <= len(line) and math.isfinite(line[n_bands - 1]):
-        whole = min(max(axes.y(line[n_bands - 1]), axes.top), axes.base)
+        whole = axes.within(line[n_bands - 1])
         if abs(whole - y) > at.px(2):
             high, low = sorted((round(whole), round(y)))
             left = round(x - at.scale / 2)
-            pieces.append(Fill(Box(left, high, left + max(1, round(at.scale)), low), ACCENT))
-    return [*pieces, Disc(x, y, at.px(RING + 0.6), ACCENT, at.px(1.2), ACCENT), *_rim(x, y, at)]
-
-
-def _rim(x: float, y: float, at: Composition) -> Sequence[Piece]:
-    """A dark ring around the dot, under which the line stays visible."""
-    return (Disc(x, y, at.px(RING + 0.3), GROUND, at.px(1.0), ACCENT),)
+            pieces.append(Fill(Box(left, high, left + at.hair, low), ACCENT))
+    rim = Disc(x, y, at.px(RING + 0.3), GROUND, at.px(1.0), ACCENT)  # dark, so that the dot is apart from its line
+    return [*pieces, Disc(x, y, at.px(RING + 0.6), ACCENT, at.px(1.2), ACCENT), rim]

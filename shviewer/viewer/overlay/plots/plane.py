@@ -16,11 +16,12 @@ from shviewer.harmonics.metrics import pareto_front
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import ACCENT, FAINT, GREY, GROUND, INK, MEDIUM, RULE, Ink, width_of
+from shviewer.viewer.overlay.inks import ACCENT, FAINT, GREY, GROUND, INK, RULE, Ink
+from shviewer.viewer.overlay.lettering import MEDIUM, width_of
 from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Point, Text
 from shviewer.viewer.overlay.plots.log_axis import Axis, padded_axis
-from shviewer.viewer.overlay.setting import ended, sentence
+from shviewer.viewer.overlay.setting import centred, dashes, ended, sentence
 from shviewer.viewer.picture import Picture
 from shviewer.words import grouped_number, round_percent, short_count
 
@@ -123,7 +124,7 @@ def plane_legend(plane: Plane, picture: Picture, line: Line, at: Composition) ->
 
 def _axes(plane: Plane, at: Composition) -> Iterator[Piece]:
     """Round errors and times with their lines, and the floor as a dashed line with its error."""
-    area, size, line = plane.area, at.px(11.0 if at.compact else 12.0), max(1, round(at.scale))
+    area, size, line = plane.area, at.small, at.hair
     end, baseline = area.left - at.px(8), area.bottom + at.px(13 if at.compact else 17)
     level = round(plane.error.at(plane.floor))
     floor = ended("plane_floor", end, level + 0.36 * size, share(plane.floor), size, INK, MEDIUM)
@@ -135,21 +136,15 @@ def _axes(plane: Plane, at: Composition) -> Iterator[Piece]:
         if not (label.box.overlaps(floor.box) or label.box.overlaps(axis.box)):
             yield label
     for number, value in enumerate(plane.milliseconds.ticks(4 * size)):
-        x, text = round(plane.milliseconds.at(value)), typeset(f"{value:,g}".replace(",", " "))
+        x, text = round(plane.milliseconds.at(value)), f"{value:,g}".replace(",", " ")
         yield Fill(Box(x, area.top, x + line, area.bottom), RULE)
-        wide = width_of(text, size)
-        left = round(min(max(x - wide / 2, area.left), area.right - wide))
-        yield Text(f"plane_time_{number}", left, baseline, text, size, GREY)
-    yield from (axis, floor)
-    dash = at.px(4)
-    for number in range(int((area.right - area.left) / (2 * dash))):
-        start = area.left + 2 * number * dash
-        yield Fill(Box(start, level, start + dash, level + line), GREY)
+        yield centred(f"plane_time_{number}", x, (area.left, area.right), baseline, text, size, GREY)
+    yield from (axis, floor, *dashes(area.left, area.right, level, at))
 
 
 def _front(plane: Plane, at: Composition) -> Iterator[Piece]:
     """The front as steps down: the best way is the last point of any front."""
-    line = max(1, round(at.scale))
+    line = at.hair
     corners = [(round(x), round(y)) for x, y in (plane.places[key] for key in plane.front)]
     for (left, high), (right, low) in pairwise(corners):
         yield Fill(Box(left, high, right + line, high + line), GREY)
@@ -158,7 +153,7 @@ def _front(plane: Plane, at: Composition) -> Iterator[Piece]:
 
 def _samples(plane: Plane, at: Composition) -> Iterator[Piece]:
     """How many samples a point has, over or under it, where nothing else is."""
-    size, reach = at.px(11.0 if at.compact else 12.0), at.px(MARK)
+    size, reach = at.small, at.px(MARK)
     taken = [Box(x, y, x, y).grown(reach, reach) for x, y in plane.places.values()]
     for key in sorted(plane.places, key=lambda key: -plane.places[key][0]):
         x, y = plane.places[key]

@@ -15,22 +15,11 @@ from shviewer.limits import MAX_BANDS
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import (
-    ACCENT,
-    BAR,
-    FAINT,
-    GREY,
-    GROUND,
-    INK,
-    RULE,
-    SEMIBOLD,
-    UNUSED,
-    width_of,
-)
-from shviewer.viewer.overlay.numerals import typeset
-from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Text
+from shviewer.viewer.overlay.inks import ACCENT, BAR, FAINT, GREY, GROUND, INK, RULE, UNUSED
+from shviewer.viewer.overlay.lettering import SEMIBOLD
+from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.plots.curve import RING
-from shviewer.viewer.overlay.setting import ended, sentence
+from shviewer.viewer.overlay.setting import centred, ended, sentence
 from shviewer.viewer.picture import Picture
 from shviewer.words import counted
 
@@ -52,8 +41,7 @@ def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> 
     """Grid, steps, the line of the bands in use, and what they serve."""
     box, recipe = at.numbers.curve, picture.state.recipe
     assert box is not None
-    n_bands, size = recipe.n_bands, at.px(11.0 if at.compact else 12.0)
-    line, thick = max(1, round(at.scale)), max(2, round(at.px(LANE)))
+    n_bands, size, line, thick = recipe.n_bands, at.small, at.hair, max(2, round(at.px(LANE)))
     left, right, top, base = box.left + at.px(LABELS), box.right, box.top, box.bottom - thick
     counts = [count for count in steps.counts if count is not None] if steps else []
     most = next(count for count in COUNTS if count >= max([16, n_bands, *counts]))
@@ -79,13 +67,8 @@ def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> 
     pieces.append(Fill(Box(left, lane, right, lane + thick), UNUSED))
     if steps is not None:
         for low, high in steps.served(n_bands):
-            pieces.append(
-                Fill(
-                    Box(round(x(low)), lane, max(round(x(high)), round(x(low)) + 2), lane + thick),
-                    BAR,
-                    f"served_{low:g}",
-                )
-            )
+            served = Box(round(x(low)), lane, max(round(x(high)), round(x(low)) + 2), lane + thick)
+            pieces.append(Fill(served, BAR, f"served_{low:g}"))
         for run in _runs(steps):
             points = [(x(ROUGHNESS[run[0]]), y(steps.counts[run[0]] or 1))]
             for number in run[1:]:
@@ -98,10 +81,8 @@ def steps_pieces(steps: Staircase | None, picture: Picture, at: Composition) -> 
     baseline = lane + thick + size
     step = next(step for step in (1, 3, 9) if step * (x(0.2) - x(0.1)) >= 3.4 * size or step == 9)
     for roughness in TICKS[::step]:
-        text = typeset(f"{roughness:g}")
-        wide = width_of(text, size)
-        place = round(min(max(x(roughness) - wide / 2, left), right - wide))
-        pieces.append(Text(f"roughness_{roughness:g}", place, baseline, text, size, GREY))
+        name, text = f"roughness_{roughness:g}", f"{roughness:g}"
+        pieces.append(centred(name, x(roughness), (left, right), baseline, text, size, GREY))
     pieces.append(ended("roughness_axis", left - at.px(8), baseline, "roughness", size, FAINT))
     return pieces
 

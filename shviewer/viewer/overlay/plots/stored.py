@@ -13,18 +13,8 @@ from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import (
-    BAR,
-    FAINT,
-    GREY,
-    INK,
-    MEDIUM,
-    REGULAR,
-    RULE,
-    SEMIBOLD,
-    UNUSED,
-    width_of,
-)
+from shviewer.viewer.overlay.inks import BAR, FAINT, GREY, INK, RULE, UNUSED
+from shviewer.viewer.overlay.lettering import MEDIUM, REGULAR, SEMIBOLD, width_of
 from shviewer.viewer.overlay.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.overlay.setting import sentence
@@ -78,7 +68,7 @@ def stored_pieces(errors: Mapping[str, float | None], picture: Picture, at: Comp
     length = wide - after - width_of(typeset("88.8 %"), size, SEMIBOLD) - 0.8 * size
     known = [error for error in errors.values() if error is not None]
     each = max(length, 0.0) / max((*known, picture.state.recipe.tolerance))  # pixels for an error of 1
-    line, pieces = max(1, round(at.scale)), list[Piece]()
+    line, pieces = at.hair, list[Piece]()
     for number, column in enumerate(columns):
         left = area.left + number * (wide + at.px(GAP))
         within = round(left + after + each * picture.state.recipe.tolerance)

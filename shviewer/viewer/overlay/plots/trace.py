@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.overlay.lettering import ACCENT, GROUND, INK, RULE
+from shviewer.viewer.overlay.inks import ACCENT, GROUND, INK, RULE
 from shviewer.viewer.overlay.numerals import share
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece
 from shviewer.viewer.overlay.setting import sentence
@@ -26,7 +26,7 @@ def trace_pieces(changes: Sequence[float], line: Line, at: Composition) -> list[
     size, base, top = at.px(12.0), line.baseline + at.px(2), line.baseline - at.px(HEIGHT - 2)
     right = line.left + at.px(WIDTH)
     rms, most = math.sqrt(sum(change**2 for change in changes) / len(changes)), max(changes)
-    pieces: list[Piece] = [Fill(Box(line.left, round(base), right, round(base) + max(1, round(at.scale))), RULE)]
+    pieces: list[Piece] = [Fill(Box(line.left, round(base), right, round(base) + at.hair), RULE)]
     if most > NOTHING and len(changes) > 1:
         step = (right - line.left) / (len(changes) - 1)
         points = tuple((line.left + k * step, base - change / most * (base - top)) for k, change in enumerate(changes))

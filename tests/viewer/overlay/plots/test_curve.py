@@ -12,7 +12,7 @@ from shviewer.analysis.figures import errors_of, load_light
 from shviewer.analysis.projections import BEST
 from shviewer.analysis.recipe import Recipe
 from shviewer.viewer.composing.composition import Composition, compose
-from shviewer.viewer.overlay.lettering import ACCENT, BAR, GREY, GROUND, INK, UNUSED
+from shviewer.viewer.overlay.inks import ACCENT, BAR, GREY, GROUND, INK, UNUSED
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.plots.band_series import BandSeries, band_series, band_slots
 from shviewer.viewer.overlay.plots.curve import Axes, axes_of, curve_blocks, least_slots

@@ -25,7 +25,7 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.overlay.lettering import ACCENT
+from shviewer.viewer.overlay.inks import ACCENT
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.pieces import Disc
 from shviewer.viewer.overlay.plots import plane
