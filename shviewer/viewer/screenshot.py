@@ -108,7 +108,7 @@ def _layers(
 ) -> tuple[Layer, ...]:
     """Layers of all text and marks of a picture."""
     written = draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
-    return (*mark_layers(picture, composition, written.obstacles), *written.layers)
+    return (*mark_layers(picture, composition, tuple(written.boxes.values())), *written.layers)
 
 
 def read_rgb(renderer: Renderer, composition: Composition, layers: Sequence[Layer] = ()) -> NDArray[np.uint8]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from places import kernels
+from viewer.overlay.written import texts_of
 
 import shviewer
 from shviewer.cli.main import main
@@ -57,7 +58,7 @@ def test_figures_are_the_published_ones_and_coefficients_those_of_the_encoding(n
 
 
 def test_the_picture_says_which_and_how_many_numbers() -> None:
-    texts = {text.text for text in draw_overlay(prepare(encoding("geomerics")), compose(1280, 640)).texts}
+    texts = {text.text for text in texts_of(draw_overlay(prepare(encoding("geomerics")), compose(1280, 640)))}
     assert {"L1, Geomerics", "4 numbers a channel"} <= texts
 
 

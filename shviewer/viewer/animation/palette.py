@@ -29,8 +29,6 @@ class SharedPalette:
 
     colours: NDArray[np.uint8]
     table: NDArray[np.uint8]
-    reach: float
-    """The largest distance, in any channel, between the mean of a bin and its entry."""
 
     def indices(self, pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """The entry of each pixel: (..., 3) uint8 of a frame that was counted -> (...)."""
@@ -72,8 +70,7 @@ class ColourCount:
             farthest = int((distance * preference).argmax())
         table = np.zeros(len(self.counts), dtype=np.uint8)
         table[used] = entry
-        reach = float(np.abs(means - means[chosen][entry]).max())
-        return SharedPalette(np.rint(means[chosen]).astype(np.uint8), table, reach)
+        return SharedPalette(np.rint(means[chosen]).astype(np.uint8), table)
 
 
 def _bins(pixels: NDArray[np.uint8]) -> NDArray[np.int32]:

@@ -9,9 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
-
-from shviewer.harmonics.basis import Array
 
 ACES = (2.51, 0.03, 2.43, 0.59, 0.14)
 """x (a x + b) / (x (c x + d) + e): a fit to the filmic curve of the Academy Color Encoding System.
@@ -25,19 +22,6 @@ LOG_RANGE = 1000.0
 
 BRIGHTEST_EXPOSED = 1e6
 """Brighter values count as this, which is white under every curve and has a finite square in float32."""
-
-
-def toned(exposed: NDArray[np.floating], tone: str) -> Array:
-    """The linear level at which exposed radiance >= 0, of any shape, is shown by one of the TONES."""
-    x: Array = np.minimum(exposed, BRIGHTEST_EXPOSED).astype(np.float64)
-    if tone == "reinhard":  # [E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, eq. 3]
-        return np.asarray(x / (1 + x))
-    if tone == "aces":
-        a, b, c, d, e = ACES
-        return np.asarray(x * (a * x + b) / (x * (c * x + d) + e))
-    if tone == "log":
-        return np.asarray(np.log1p(LOG_RANGE * x) / np.log1p(LOG_RANGE))
-    return x
 
 
 def steepest(tone: str) -> float:

@@ -204,7 +204,7 @@ class Canvas:
             return ()
         if written is None:
             return mark_layers(picture, composition)
-        layers = (*mark_layers(picture, composition, written.obstacles), *written.layers)
+        layers = (*mark_layers(picture, composition, tuple(written.boxes.values())), *written.layers)
         if pointer is None or picture.state.view.help_visible:
             return layers
         with suppress(ShviewerError):  # a light that cannot be evaluated there has no values to show

@@ -5,7 +5,7 @@ Equal pieces make the same layer, which is remembered: what did not change is ne
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, floor
 
@@ -75,7 +75,7 @@ class _Paper:
                 self._disc(piece)
             case Strip():
                 colours = np.frombuffer(piece.colours, np.uint8).reshape(1, -1, 3)
-                rows = self._part(piece.area)
+                rows = self._part(piece.box)
                 rows[..., :3], rows[..., 3] = colours[:, : rows.shape[1]], 255
             case Swatch():
                 self._swatch(piece)
@@ -86,9 +86,9 @@ class _Paper:
 
     def _fill(self, piece: Fill) -> None:
         if not piece.hollow:
-            self._cover(piece.area, piece.ink)
+            self._cover(piece.box, piece.ink)
             return
-        line, area = max(1, round(piece.hollow)), piece.area
+        line, area = max(1, round(piece.hollow)), piece.box
         for part in (
             area._replace(bottom=area.top + line),
             area._replace(top=area.bottom - line),
@@ -123,7 +123,7 @@ class _Paper:
             self._blend((255 * inner).astype(np.uint8), left, top, piece.inside)
 
     def _swatch(self, piece: Swatch) -> None:
-        area = piece.area
+        area = piece.box
         rows, columns = np.mgrid[round(area.top) : round(area.bottom), round(area.left) : round(area.right)] + 0.5
         rising = piece.kind != "white"
         along = (columns + rows if rising else columns - rows) / np.sqrt(2)
@@ -169,11 +169,3 @@ class _Paper:
         before[:, :3] = (np.asarray(ink[:3], np.float32) * alpha + before[:, :3] * kept) / total
         before[:, 3:] = 255 * total
         under[rows, columns] = np.rint(before)
-
-
-def image_of(layers: Iterable[Layer], width: int, height: int) -> NDArray[np.uint8]:
-    """Layers over each other as one image of the frame, (height, width, 4) with straight alpha."""
-    sheet = Image.new("RGBA", (width, height))
-    for layer in layers:
-        sheet.alpha_composite(Image.fromarray(layer.image), (max(layer.left, 0), max(layer.top, 0)))
-    return np.asarray(sheet)

@@ -7,18 +7,15 @@ can see that nothing overlaps.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-
-import numpy as np
-from numpy.typing import NDArray
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
-from shviewer.viewer.overlay.drawing import image_of, layer_of
+from shviewer.viewer.overlay.drawing import layer_of
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
 from shviewer.viewer.overlay.foot import (
     Work,
@@ -33,7 +30,7 @@ from shviewer.viewer.overlay.help_sheet import help_blocks
 from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import SEMIBOLD
-from shviewer.viewer.overlay.pieces import Piece, Text, named_boxes
+from shviewer.viewer.overlay.pieces import Piece, Text
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots
 from shviewer.viewer.overlay.plots.legend import hovered_pieces, legend_pieces
@@ -47,38 +44,22 @@ NOT_TIMED = "nothing was projected that could be timed; M changes the method"
 NO_ROOM = "no room for time against error: enlarge the window, or B"
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Overlay:
-    """Everything written, in blocks of pieces. boxes: name -> where it is. bars: band -> where to click."""
+    """Everything written, in blocks of pieces, and the boxes in which a click finds bands."""
 
-    width: int
-    height: int
     blocks: tuple[tuple[Piece, ...], ...]
-    boxes: dict[str, Box] = field(default_factory=dict)
-    bars: dict[int, Box] = field(default_factory=dict)
+    bars: dict[int, Box]
 
     @cached_property
     def layers(self) -> tuple[Layer, ...]:
         """The layers of everything written, one of each block; drawn when first asked for."""
         return tuple(found for found in map(layer_of, self.blocks) if found is not None)
 
-    @property
-    def pieces(self) -> tuple[Piece, ...]:
-        return tuple(piece for block in self.blocks for piece in block)
-
     @cached_property
-    def image(self) -> NDArray[np.uint8]:
-        """All layers as one image of the frame, (height, width, 4) uint8 with straight alpha."""
-        return image_of(self.layers, self.width, self.height)
-
-    @property
-    def texts(self) -> list[Text]:
-        return [piece for piece in self.pieces if isinstance(piece, Text)]
-
-    @property
-    def obstacles(self) -> tuple[Box, ...]:
-        """The boxes of all text, which marks and probed values keep clear of."""
-        return tuple(self.boxes.values())
+    def boxes(self) -> dict[str, Box]:
+        """The boxes of all pieces that have a name, which marks and probed values keep clear of."""
+        return {piece.name: piece.box for block in self.blocks for piece in block if piece.name}
 
 
 def draw_overlay(
@@ -100,7 +81,7 @@ def draw_overlay(
     at, state = composition, picture.state
     if state.view.help_visible:
         at_foot = opengl if work is None else f"{work.words}; Esc stops"
-        return _overlay(at, help_blocks(state, at, at_foot, state.view.help_page))
+        return _overlay(help_blocks(state, at, at_foot, state.view.help_page))
     numbers = at.numbers
     heads, feet, unsaid = caption_blocks(picture, at, timing)
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]
@@ -138,7 +119,7 @@ def draw_overlay(
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)
             blocks.append([Text("curve_head", head.left, head.baseline, head_words, size, INK, SEMIBOLD)])
-    return _overlay(at, blocks, bars)
+    return _overlay(blocks, bars)
 
 
 def _plotted(
@@ -171,7 +152,7 @@ def _plotted(
 def status_layers(work: Work, composition: Composition) -> tuple[Layer, ...]:
     """What is being done, where messages stand; for a window that has no picture yet."""
     blocks = [hairline_pieces(composition, work), foot_pieces(composition, "", work)]
-    return _overlay(composition, blocks).layers
+    return _overlay(blocks).layers
 
 
 def foresee(picture: Picture) -> None:
@@ -183,10 +164,5 @@ def foresee(picture: Picture) -> None:
         stored_errors(picture)
 
 
-def _overlay(at: Composition, blocks: Sequence[Sequence[Piece]], bars: dict[int, Box] | None = None) -> Overlay:
-    found = tuple(tuple(block) for block in blocks if block)
-    return Overlay(at.width, at.height, found, _boxes(found), bars or {})
-
-
-def _boxes(blocks: Sequence[Sequence[Piece]]) -> dict[str, Box]:
-    return named_boxes([piece for block in blocks for piece in block])
+def _overlay(blocks: Sequence[Sequence[Piece]], bars: dict[int, Box] | None = None) -> Overlay:
+    return Overlay(tuple(tuple(block) for block in blocks if block), bars or {})

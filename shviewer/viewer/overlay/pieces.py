@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -43,15 +42,11 @@ class Text:
 class Fill:
     """A rectangle."""
 
-    area: Box
+    box: Box
     ink: Ink
     name: str = ""
     hollow: float = 0.0
     """The width of its outline if it is not filled, pixels."""
-
-    @property
-    def box(self) -> Box:
-        return self.area
 
 
 @dataclass(frozen=True)
@@ -102,32 +97,19 @@ class Disc:
 class Strip:
     """A row of colours, repeated over the height of a box. colours: RGB bytes, one pixel each."""
 
-    area: Box
+    box: Box
     colours: bytes
     name: str = ""
-
-    @property
-    def box(self) -> Box:
-        return self.area
 
 
 @dataclass(frozen=True)
 class Swatch:
     """A sample of how the spheres are drawn: "lines", "negative" with its zero line, or the zebra "white"."""
 
-    area: Box
+    box: Box
     kind: str
     scale: float
     name: str = ""
 
-    @property
-    def box(self) -> Box:
-        return self.area
-
 
 Piece: TypeAlias = Text | Fill | Curve | Disc | Strip | Swatch
-
-
-def named_boxes(pieces: Sequence[Piece]) -> dict[str, Box]:
-    """The boxes of the pieces that have a name."""
-    return {piece.name: piece.box for piece in pieces if piece.name}

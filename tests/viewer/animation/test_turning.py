@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from viewer.overlay.written import pieces_of, texts_of
 
 from shviewer.cli.main import main
 from shviewer.errors import UsageError
@@ -70,11 +71,11 @@ def test_the_line_under_the_curve_tells_the_last_changes_in_any_order_of_frames(
     overlay = draw_overlay(early, AT)
     assert "trace_words" in overlay.boxes
     assert not [name for name in overlay.boxes if name.startswith("legend_")]
-    assert any(isinstance(piece, Curve) and piece.name == "trace" for piece in overlay.pieces)
-    words = next(text.text for text in overlay.texts if text.name == "trace_words")
+    assert any(isinstance(piece, Curve) and piece.name == "trace" for piece in pieces_of(overlay))
+    words = next(text.text for text in texts_of(overlay) if text.name == "trace_words")
     assert "of the light from frame to frame, RMS of 3 frames" in words
     still = draw_overlay(picture(light_turn(state_of("green"), 4, 0.1, fresh=True), 2), AT)
-    assert "the same to rounding" in next(text.text for text in still.texts if text.name == "trace_words")
+    assert "the same to rounding" in next(text.text for text in texts_of(still) if text.name == "trace_words")
 
 
 def test_what_cannot_turn_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,6 @@ from shviewer.viewer.colour.error_scale import automatic_range, error_values
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.colour_bar import colour_bar_pieces, round_ticks, tick_text
 from shviewer.viewer.overlay.drawing import layer_of
-from shviewer.viewer.overlay.pieces import named_boxes
 
 ORIGINAL = np.array([[1.0, 2.0, 0.5], [0.0, 0.0, 4.0]])
 RECONSTRUCTION = np.array([[1.1, 1.5, 0.5], [0.3, -0.1, 4.2]])
@@ -109,7 +108,7 @@ def test_ticks_have_as_many_decimals_as_the_finest_of_them() -> None:
 def test_a_tick_stands_under_its_colour(error: str, size: tuple[int, int]) -> None:
     shown = picture_of(error=error)
     pieces = colour_bar_pieces(shown, compose(*size, n_spheres=3))
-    layer, boxes = layer_of(tuple(pieces)), named_boxes(pieces)
+    layer, boxes = layer_of(tuple(pieces)), {piece.name: piece.box for piece in pieces}
     assert layer is not None
     bar = boxes["colour_bar"]
     ticks = [box for name, box in boxes.items() if name.startswith("error_tick")]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from harmonics.independent import random_directions
+from viewer.colour.curves import toned
 
-from shviewer.viewer.colour.tone import exposed_for, steepest, toned
+from shviewer.viewer.colour.tone import exposed_for, steepest
 from shviewer.viewer.derived import WHITE_LEVEL
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import state_of

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from viewer.overlay.written import texts_of
 
 from shviewer.analysis.figures import PENDING, Figures
 from shviewer.errors import LightError
@@ -76,7 +77,7 @@ def test_pending_figures_are_dots_on_the_picture_and_never_numbers(monkeypatch: 
     monkeypatch.setattr(band_series, "errors_of", None)
     picture = first_picture(state_of("studio", error="absolute", tolerance=0.2))
     drawn = draw_overlay(picture, compose(1600, 800, n_spheres=3))
-    pending = {text.name for text in drawn.texts if text.text == "\u2026"}
+    pending = {text.name for text in texts_of(drawn) if text.text == "\u2026"}
     assert pending == {"max_error", "minimum", "negative_area", "radiance_answer", "shading_answer"}
     assert {"relative_l2", "energy"} <= set(drawn.boxes)
     assert {mark.name for mark in marks_of(picture)} == {"peak"}  # the light's own, which is there at once

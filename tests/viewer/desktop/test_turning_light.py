@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from viewer.desktop.desktop import Viewer
+from viewer.overlay.written import texts_of
 
 from shviewer.analysis.projected import project_recipe
 from shviewer.harmonics.quadrature import gauss_legendre
@@ -70,7 +71,7 @@ def azimuth(picture: Picture) -> float:
 
 
 def words(picture: Picture, pace: float | None = None) -> dict[str, str]:
-    return {text.name: text.text for text in draw_overlay(picture, AT, pace=pace).texts}
+    return {text.name: text.text for text in texts_of(draw_overlay(picture, AT, pace=pace))}
 
 
 @pytest.mark.parametrize("encode", ["", "hallucinated"])

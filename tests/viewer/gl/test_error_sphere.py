@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from helpers import picture_of, to_srgb
 from numpy.typing import NDArray
+from viewer.colour.curves import toned
 from viewer.gl.frames import lobes, picture_view, positions, reconstructing, rounding, sum_of_harmonics
 
 from shviewer.harmonics.basis import Array
@@ -17,7 +18,6 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobe import Lobe
 from shviewer.viewer.colour.colour_maps import linear, map_of, table
 from shviewer.viewer.colour.error_scale import error_values
-from shviewer.viewer.colour.tone import toned
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Sphere
 from shviewer.viewer.drawn import DirectSum, SplineMap

@@ -10,6 +10,7 @@ import pytest
 from helpers import frame_of, picture_of, to_srgb
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from viewer.colour.curves import toned
 from viewer.gl.frames import map_frame, positions, square_frame
 
 from shviewer.harmonics.basis import Array
@@ -18,7 +19,6 @@ from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.colour.colour_maps import linear as from_srgb
-from shviewer.viewer.colour.tone import toned
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Sphere
 from shviewer.viewer.gl.renderer import Renderer

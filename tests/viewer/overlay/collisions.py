@@ -6,6 +6,8 @@ import itertools
 from collections import Counter
 from collections.abc import Iterator
 
+from viewer.overlay.written import pieces_of, texts_of
+
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.directions.marks import Placed, place_marks
@@ -21,14 +23,14 @@ FIGURES = ("relative_l2", "max_error", "minimum", "negative_area", "energy")
 
 def faults(picture: Picture, at: Composition, drawn: Overlay) -> list[str]:
     """Everything that is wrong with what is written over a picture in a frame."""
-    marks = place_marks(picture, at, drawn.obstacles)
+    marks = place_marks(picture, at, tuple(drawn.boxes.values()))
     return [*_cut(at, drawn), *_meeting(drawn), *_running_on(drawn), *_said_twice(drawn), *_marks(at, drawn, marks)]
 
 
 def _cut(at: Composition, drawn: Overlay) -> Iterator[str]:
     """Texts and samples that leave the frame, or that lie on the hairline."""
     line, alone = at.hairline, "help_title" not in drawn.boxes  # the help has a rule of its own
-    for piece in drawn.pieces:
+    for piece in pieces_of(drawn):
         if isinstance(piece, Text | Swatch | Strip):
             box = piece.box
             if not (min(box.left, box.top) >= 2 and box.right <= at.width - 2 and box.bottom <= at.height - 1):
@@ -39,7 +41,7 @@ def _cut(at: Composition, drawn: Overlay) -> Iterator[str]:
 
 def _meeting(drawn: Overlay) -> Iterator[str]:
     """Texts and samples that meet. Numbers of rings may stand on bars and lines, and over each other."""
-    pieces = [piece for piece in drawn.pieces if isinstance(piece, Text | Swatch | Strip)]
+    pieces = [piece for piece in pieces_of(drawn) if isinstance(piece, Text | Swatch | Strip)]
     pieces = [piece for piece in pieces if not piece.name.startswith("ring_")]
     for one, two in itertools.combinations(pieces, 2):
         if shrunk(one.box).overlaps(two.box):
@@ -48,7 +50,7 @@ def _meeting(drawn: Overlay) -> Iterator[str]:
 
 def _running_on(drawn: Overlay) -> Iterator[str]:
     """Texts on one baseline that read on in the next: neighbours of different columns or kinds."""
-    texts = [piece for piece in drawn.texts if not piece.name.startswith(("ring_", "band_"))]
+    texts = [piece for piece in texts_of(drawn) if not piece.name.startswith(("ring_", "band_"))]
     for one, two in itertools.permutations(texts, 2):
         if abs(one.baseline - two.baseline) > 2 or _phrase(one.name) == _phrase(two.name):
             continue
@@ -66,7 +68,7 @@ def _phrase(name: str) -> str:
 def _said_twice(drawn: Overlay) -> Iterator[str]:
     """Sentences that stand twice: not names of keys and lines, and not what two panes have alike."""
     names = ("key_", "legend_", "in_use", "count_", "radiance_label", "stored_", *FIGURES)
-    said = [piece.text for piece in drawn.texts if not piece.name.startswith(names)]
+    said = [piece.text for piece in texts_of(drawn) if not piece.name.startswith(names)]
     for text, count in Counter(said).items():
         if count > 1 and " " in text and not text.startswith(("radius", "cut at", ">")):
             yield f"said twice: {text!r}"

@@ -10,6 +10,7 @@ import pytest
 from helpers import Lazily, frame_of, from_srgb, overlap, picture_of
 from numpy.typing import NDArray
 from viewer.overlay.collisions import shrunk
+from viewer.overlay.written import image_of, pieces_of, texts_of
 
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
@@ -74,7 +75,7 @@ def frame(shown: Picture, size: tuple[int, int], maps: bool = False, content_sca
 
 def text_of(drawn: Overlay) -> str:
     """Everything that is written, with plain spaces."""
-    return " | ".join(piece.text for piece in drawn.texts).replace("\u202f", " ")
+    return " | ".join(piece.text for piece in texts_of(drawn)).replace("\u202f", " ")
 
 
 # --- rules that hold at every size
@@ -93,9 +94,9 @@ def look_at(shown: Picture, at: Composition) -> None:
 
 
 def look_at_all(shown: Picture, at: Composition, drawn: Overlay) -> None:
-    assert drawn.texts
+    assert texts_of(drawn)
     alone = not shown.state.view.help_visible
-    for piece in drawn.texts:
+    for piece in texts_of(drawn):
         assert piece.size >= (11 if at.compact else 12) * at.scale * 0.61, piece  # the least: the unit of an answer
         assert piece.size >= 11, piece
         assert contrast(piece.ink, GROUND) >= 4.5, piece
@@ -104,7 +105,7 @@ def look_at_all(shown: Picture, at: Composition, drawn: Overlay) -> None:
         assert piece.box.top >= 4, piece
         assert piece.baseline <= at.height - 3, piece
         assert not (alone and any(pane.touches(piece.box) for pane in at.panes)), piece
-    apart = [piece for piece in drawn.texts if not piece.name.startswith("ring_")]
+    apart = [piece for piece in texts_of(drawn) if not piece.name.startswith("ring_")]
     for one, two in itertools.combinations(apart, 2):
         assert not overlap(shrunk(one.box), two.box), (one.name, two.name)
 
@@ -133,7 +134,7 @@ def test_every_frame_that_is_allowed_can_be_drawn(width: int, height: int, conte
     for shown in (PICTURES["green"], PICTURES["signed error"], PICTURES["help"]):
         for maps in (False, True):
             at = frame(shown, (width, height), maps, content_scale)
-            assert draw_overlay(shown, at, opengl="OpenGL 3.3").image.shape == (height, width, 4)
+            assert image_of(draw_overlay(shown, at, opengl="OpenGL 3.3"), (width, height)).shape == (height, width, 4)
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
@@ -245,14 +246,14 @@ def test_low_range_is_said_at_every_size(name: str) -> None:
 def test_the_description_ends_in_what_must_not_be_missed(encoding: str, notes: tuple[str, ...], end: str) -> None:
     light = EnvironmentLight(np.ones((4, 8, 3), np.float32), name="mine", notes=notes, encoding=encoding)
     drawn = draw_overlay(picture_of(light), compose(1920, 1080))
-    words = [piece.text for piece in drawn.texts if piece.name.startswith("original_about")]
+    words = [piece.text for piece in texts_of(drawn) if piece.name.startswith("original_about")]
     assert ", ".join(words) == f"original, {end}"
 
 
 def test_captions_of_enlarged_spheres_stand_on_them_with_a_rim() -> None:
     shown = picture_of(zoom=3.0)
     drawn = draw_overlay(shown, frame(shown, (1280, 640)))
-    heads = [piece for piece in drawn.texts if piece.name in ("original", "reconstruction_about", "exposure")]
+    heads = [piece for piece in texts_of(drawn) if piece.name in ("original", "reconstruction_about", "exposure")]
     assert len(heads) == 3
     assert all(piece.casing > 0 and piece.ink == INK for piece in heads)
 
@@ -327,7 +328,7 @@ def test_the_energy_in_use_is_the_share_of_all_energy() -> None:
     shares = PICTURES["green"].figures.energy_share
     for muted in (frozenset(), frozenset({1})):
         drawn = draw_overlay(picture_of(muted=muted), compose(1280, 640))
-        found = next(piece.text for piece in drawn.texts if piece.name == "energy").replace("\u202f", " ")
+        found = next(piece.text for piece in texts_of(drawn) if piece.name == "energy").replace("\u202f", " ")
         assert found == percent(sum(shares[band] for band in range(5) if band not in muted), 2)
 
 
@@ -362,9 +363,9 @@ def test_a_figure_that_is_set_smaller_fits_its_column(said: str) -> None:
 
 def test_swatches_are_the_legend_of_what_is_negative_and_of_nothing_else() -> None:
     drawn = draw_overlay(PICTURES["green"], compose(1280, 640))
-    assert sorted(piece.kind for piece in drawn.pieces if isinstance(piece, Swatch)) == ["lines", "negative"]
+    assert sorted(piece.kind for piece in pieces_of(drawn) if isinstance(piece, Swatch)) == ["lines", "negative"]
     bare = draw_overlay(PICTURES["constant"], compose(1280, 640))
-    assert not [piece for piece in bare.pieces if isinstance(piece, Swatch)]
+    assert not [piece for piece in pieces_of(bare) if isinstance(piece, Swatch)]
 
 
 # --- messages and work
@@ -411,15 +412,15 @@ def test_an_error_has_a_cross() -> None:
 def test_where_a_sun_is_to_blame_u_is_among_the_keys_and_stands_out(size: tuple[int, int]) -> None:
     """Beside three panes there is no room for all keys."""
     shown = picture_of("venice_sunset", n_bands=9, error="signed")
-    inks = {piece.name: piece.ink for piece in draw_overlay(shown, frame(shown, size)).texts}
+    inks = {piece.name: piece.ink for piece in texts_of(draw_overlay(shown, frame(shown, size)))}
     assert (inks["key_U"], inks["key_D"], inks["key_H"]) == (INK, GREY, GREY)
-    found = draw_overlay(PICTURES["green"], compose(1280, 640)).texts
+    found = texts_of(draw_overlay(PICTURES["green"], compose(1280, 640)))
     assert next(piece.ink for piece in found if piece.name == "key_U") == GREY
 
 
 def lit(at: Composition, work: Work) -> tuple[float, float]:
     """The part of the hairline in the accent, as shares of its length."""
-    (bar,) = (piece.area for piece in hairline_pieces(at, work) if isinstance(piece, Fill) and piece.ink == ACCENT)
+    (bar,) = (piece.box for piece in hairline_pieces(at, work) if isinstance(piece, Fill) and piece.ink == ACCENT)
     return (bar.left - at.hairline.left) / at.hairline.width, (bar.right - at.hairline.left) / at.hairline.width
 
 
@@ -447,21 +448,21 @@ def test_the_help_is_whole_on_its_pages_and_nothing_is_cut(size: tuple[int, int]
     from shviewer.viewer.keys import BINDINGS
 
     pages = [help_of(size, page) for page in range(12)]
-    said = {piece.name for page in pages for piece in page.texts}
+    said = {piece.name for page in pages for piece in texts_of(page)}
     for rows in BINDINGS.values():
         assert all(f"key_{row.label}" in said for row in rows)
-    words = {piece.text for page in pages for piece in page.texts if piece.name.startswith("does_")}
+    words = {piece.text for page in pages for piece in texts_of(page) if piece.name.startswith("does_")}
     assert not any("…" in text for text in words)
     for page in pages:
-        for one, two in itertools.combinations(page.texts, 2):
+        for one, two in itertools.combinations(texts_of(page), 2):
             assert not overlap(shrunk(one.box), two.box), (one.text, two.text)
-        for piece in page.texts:
+        for piece in texts_of(page):
             assert 0 <= piece.box.left < piece.right <= size[0]
             assert piece.baseline < size[1]
 
 
 def test_the_help_covers_everything() -> None:
-    assert (help_of((1280, 640)).image[..., 3] == 255).all()
+    assert (image_of(help_of((1280, 640)))[..., 3] == 255).all()
     assert "PageDown" not in text_of(help_of((1280, 640)))
     assert "PageDown: page 2 of" in text_of(help_of((400, 300), 1))
 
@@ -478,7 +479,7 @@ def test_settings_stand_at_the_right_end_of_their_column_and_sentences_begin_in_
     """Where a column has the room, no sentence is broken."""
     drawn = help_of((1280, 640))
     columns: dict[int, list[float]] = {}
-    for piece in drawn.texts:
+    for piece in texts_of(drawn):
         if piece.name.startswith("value_"):
             columns.setdefault(round(piece.right) // 420, []).append(piece.right)
         assert not piece.name.startswith("does_") or piece.name.endswith("_0"), piece
@@ -491,7 +492,7 @@ def test_turning_under_the_help_draws_anew_only_the_values_that_changed() -> Non
     at = compose(1280, 640)
     one, other = (draw_overlay(picture_of(camera=(azimuth, 20.0), help_visible=True), at) for azimuth in (10.0, 55.0))
     changed = [one for one, other in zip(one.layers, other.layers, strict=True) if one.image is not other.image]
-    assert 0 < sum(layer.image.size for layer in changed) < one.image.size / 100
+    assert 0 < sum(layer.image.size for layer in changed) < image_of(one).size / 100
 
 
 def test_the_help_shows_present_values() -> None:
@@ -531,16 +532,16 @@ def test_slots_stand_side_by_side_and_a_click_finds_one() -> None:
 
 def test_the_cursor_is_shown_under_its_band_once_it_is_used() -> None:
     without, at_2 = bars_of(5), bars_of(5, cursor=2, cursor_visible=True)
-    changed = np.flatnonzero((without.image != at_2.image).any(axis=(0, 2)))
+    changed = np.flatnonzero((image_of(without) != image_of(at_2)).any(axis=(0, 2)))
     assert without.bars[2].left <= changed.min()
     assert changed.max() <= without.bars[2].right
-    np.testing.assert_array_equal(bars_of(5, cursor=2).image, without.image)
+    np.testing.assert_array_equal(image_of(bars_of(5, cursor=2)), image_of(without))
 
 
 def test_the_band_under_the_mouse_tells_its_values_in_place_of_the_legend() -> None:
     drawn = draw_overlay(PICTURES["green"], compose(1280, 640), hovered=4)
     assert "legend_radiance" not in drawn.boxes
-    said = next(piece.text for piece in drawn.texts if piece.name == "hovered").replace("\u202f", " ")
+    said = next(piece.text for piece in texts_of(drawn) if piece.name == "hovered").replace("\u202f", " ")
     assert said.startswith("band 4:")
     assert "28.3 %" in said
 
@@ -552,17 +553,17 @@ def test_what_explains_the_curve_stands_at_the_foot_where_it_has_no_line_and_is_
     shown = picture_of("film_studio", **view)
     for size in ((500, 1000), (720, 720), (1280, 640)):
         drawn = draw_overlay(shown, frame_of(shown, *size), hovered=None if view else 3)
-        (said,) = [piece for piece in drawn.texts if piece.name in ("steps_sentence", "stored_legend", "hovered")]
+        (said,) = [piece for piece in texts_of(drawn) if piece.name in ("steps_sentence", "stored_legend", "hovered")]
         assert "…" not in said.text, size
     working = draw_overlay(shown, frame_of(shown, 500, 1000), work=Work("projecting"))
-    assert [piece.text for piece in working.texts if piece.name in ("message", said.name)] == ["projecting"]
+    assert [piece.text for piece in texts_of(working) if piece.name in ("message", said.name)] == ["projecting"]
 
 
 @pytest.mark.parametrize("size", [(500, 1000), (640, 360), (720, 720), (1280, 720)])
 @pytest.mark.parametrize("error", ["off", "signed"])
 def test_what_the_radius_of_surfaces_is_is_said_once(size: tuple[int, int], error: str) -> None:
     shown = picture_of(lobe_view=True, error=error, n_bands=6)
-    said = [piece.text for piece in draw_overlay(shown, frame_of(shown, *size)).texts if "radius" in piece.text]
+    said = [piece.text for piece in texts_of(draw_overlay(shown, frame_of(shown, *size))) if "radius" in piece.text]
     assert len(said) == 1, size
 
 
@@ -570,7 +571,7 @@ def test_a_zoomed_frame_has_the_same_numbers() -> None:
     plain, zoomed = PICTURES["green"], picture_of(zoom=2.0)
     one, two = (draw_overlay(shown, frame_of(shown)) for shown in (plain, zoomed))
     assert one.bars == two.bars
-    assert [p for p in one.pieces if isinstance(p, Disc)] == [p for p in two.pieces if isinstance(p, Disc)]
+    assert [p for p in pieces_of(one) if isinstance(p, Disc)] == [p for p in pieces_of(two) if isinstance(p, Disc)]
 
 
 # --- numbers
@@ -621,7 +622,7 @@ def test_a_radiance_has_three_digits_or_a_power_of_ten(value: float, text: str) 
 
 
 def pixels(drawn: Overlay, box: Box) -> NDArray[np.uint8]:
-    return drawn.image[round(box.top) : round(box.bottom), round(box.left) : round(box.right)]
+    return image_of(drawn)[round(box.top) : round(box.bottom), round(box.left) : round(box.right)]
 
 
 def test_thousands_stand_apart_where_there_are_more_than_four_digits() -> None:
@@ -631,10 +632,10 @@ def test_thousands_stand_apart_where_there_are_more_than_four_digits() -> None:
 
 def test_what_is_written_is_drawn_where_it_says() -> None:
     drawn = draw_overlay(PICTURES["green"], compose(1280, 640))
-    for piece in drawn.texts:
+    for piece in texts_of(drawn):
         assert (pixels(drawn, piece.box)[..., 3] > 128).any(), piece
-    outside = drawn.image[..., 3] > 60
-    for piece in drawn.pieces:
+    outside = image_of(drawn)[..., 3] > 60
+    for piece in pieces_of(drawn):
         box = piece.box
         outside[int(box.top) - 2 : int(box.bottom) + 3, max(int(box.left) - 2, 0) : int(box.right) + 3] = False
     assert not outside.any()

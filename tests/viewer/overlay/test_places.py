@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from helpers import Lazily, frame_of, picture_of
 from viewer.overlay.collisions import faults
+from viewer.overlay.written import texts_of
 
 from shviewer.analysis.figures import Figures
 from shviewer.lights.function import FunctionLight
@@ -100,7 +101,7 @@ def test_what_was_changed_is_said_at_every_size(size: tuple[int, int], maps: boo
     """A picture in a report of a fault must say which window it has, which bands are muted, and that a sun is apart."""
     shown = PICTURES["all apart, maps" if maps else "all apart"]
     said = " | ".join(
-        piece.text for piece in draw_overlay(shown, frame_of(shown, *size)).texts if "key" not in piece.name
+        piece.text for piece in texts_of(draw_overlay(shown, frame_of(shown, *size))) if "key" not in piece.name
     )
     least = 1 if size == (400, 300) else 2 if size in ((500, 1000), (640, 320)) else 3
     assert sum(any(words in said for words in part) for part in (("Hann",), ("muted",), ("sun apart",))) >= least
@@ -110,5 +111,5 @@ def test_what_was_changed_is_said_at_every_size(size: tuple[int, int], maps: boo
 @pytest.mark.parametrize("size", [(400, 300), (500, 1000), (640, 360), (720, 720), (1280, 640)], ids=str)
 def test_what_was_changed_of_surfaces_is_said_beside_their_radius(size: tuple[int, int]) -> None:
     shown = picture_of("studio", n_bands=9, window="hann", muted=frozenset({3}), lobe_view=True, error="signed")
-    said = " | ".join(piece.text for piece in draw_overlay(shown, frame_of(shown, *size)).texts)
+    said = " | ".join(piece.text for piece in texts_of(draw_overlay(shown, frame_of(shown, *size))))
     assert all(words in said for words in ("muted 3", "Hann", "radius: ")), said

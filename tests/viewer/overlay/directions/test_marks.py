@@ -68,7 +68,7 @@ def test_what_is_behind_is_told_outside_the_limb_in_its_direction(size: tuple[in
     """A triangle there, nothing on any sphere, and the words clear of spheres, of other text and of the frame's edge."""
     shown = picture_of("studio", n_bands=6, error="signed", camera=(float(turn), -20.0))
     composition = frame_of(shown, *size)
-    obstacles = draw_overlay(shown, composition).obstacles
+    obstacles = draw_overlay(shown, composition).boxes.values()
     placed = place_marks(shown, composition, obstacles)
     for name, mark in placed.items():
         sphere = circle(shown, composition, name)
@@ -99,7 +99,7 @@ def test_words_of_a_mark_behind_have_room_whichever_way_the_spheres_are_turned()
     for turn in range(0, 360, 15):
         shown = picture_of(error="signed", camera=(float(turn), -10.0))
         placed = place_marks(
-            shown, frame_of(shown, 1280, 720), draw_overlay(shown, frame_of(shown, 1280, 720)).obstacles
+            shown, frame_of(shown, 1280, 720), draw_overlay(shown, frame_of(shown, 1280, 720)).boxes.values()
         )
         assert set(placed) == {"minimum", "largest"}
         assert all(mark.label for mark in placed.values())
@@ -161,7 +161,7 @@ def test_the_words_of_a_mark_in_front_stand_beside_its_ring_in_its_pane(
 ) -> None:
     shown = picture_of(error="signed", camera=camera, whole_sphere=whole_sphere, map_centre=camera)
     composition = frame_of(shown, *size)
-    obstacles = draw_overlay(shown, composition).obstacles
+    obstacles = draw_overlay(shown, composition).boxes.values()
     placed = place_marks(shown, composition, obstacles)
     for name, mark in placed.items():
         if mark.behind or mark.label is None:
@@ -186,7 +186,7 @@ def test_no_ring_is_drawn_on_words() -> None:
         at = frame_of(shown, 1016, 264)
         drawn = draw_overlay(shown, at)
         assert faults(shown, at, drawn) == [], azimuth
-        met += "minimum" not in place_marks(shown, at, drawn.obstacles)
+        met += "minimum" not in place_marks(shown, at, drawn.boxes.values())
     assert met > 0
 
 

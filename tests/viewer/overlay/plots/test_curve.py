@@ -33,9 +33,7 @@ def bars(pieces: list[Piece], axes: Axes, band: int) -> list[Fill]:
     return [
         piece
         for piece in pieces
-        if isinstance(piece, Fill)
-        and piece.area.bottom == round(axes.base)
-        and slot.left < piece.area.left < slot.right
+        if isinstance(piece, Fill) and piece.box.bottom == round(axes.base) and slot.left < piece.box.left < slot.right
     ]
 
 
@@ -48,7 +46,7 @@ def test_a_bar_is_the_error_with_that_band_alone_left_out() -> None:
         missing = np.sqrt(without.figures.relative_l2**2 - whole.figures.relative_l2**2)
         assert series.worth[band] == pytest.approx(missing, rel=1e-6)
         (bar,) = bars(pieces, axes, band)
-        assert bar.area.top == round(axes.y(missing))
+        assert bar.box.top == round(axes.y(missing))
 
 
 @pytest.mark.parametrize("light", ["green", "venice_sunset"])
@@ -73,9 +71,9 @@ def test_inks_tell_what_is_in_use_muted_and_unused() -> None:
 def test_under_a_window_a_bar_is_filled_to_its_factor() -> None:
     shown = picture_of("studio", n_bands=9, window="hann")
     series, axes, pieces = drawn(shown)
-    frame, filled = sorted(bars(pieces, axes, 4), key=lambda bar: bar.area.top)
+    frame, filled = sorted(bars(pieces, axes, 4), key=lambda bar: bar.box.top)
     assert frame.hollow
-    assert filled.area.top == round(axes.y(series.worth[4] * shown.figures.factors[4]))
+    assert filled.box.top == round(axes.y(series.worth[4] * shown.figures.factors[4]))
 
 
 def rings(pieces: list[Piece]) -> list[Disc]:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from helpers import centre, frame_of
 from viewer.overlay.collisions import faults
+from viewer.overlay.written import image_of, pieces_of, texts_of
 
 from shviewer import api
 from shviewer.analysis import projections
@@ -254,7 +255,7 @@ def test_a_point_is_drawn_in_the_colour_of_its_method() -> None:
     hidden = 0
     for key in others:
         x, y = found.places[key]
-        hidden += tuple(drawn.image[round(y), round(x)]) != LOOKS[key[0]][1]
+        hidden += tuple(image_of(drawn)[round(y), round(x)]) != LOOKS[key[0]][1]
     assert hidden <= 3  # behind a point in front
     assert len({shape for shape, _ in LOOKS.values()}) == len(LOOKS)
 
@@ -291,7 +292,7 @@ def test_the_front_is_drawn_as_steps_to_the_best_way(monkeypatch: pytest.MonkeyP
     drawn, found = drawn_of(shown(method="jittered"))
     assert found.front == [fast, BEST]
     (left, high), (right, low) = found.places[fast], found.places[BEST]
-    lighter = drawn.image[..., 0].astype(int) > 100
+    lighter = image_of(drawn)[..., 0].astype(int) > 100
     assert lighter[round(high), round(left) + 30 : round(right) - 8].all()
     assert lighter[round(high) + 1 : round(low) - 10, round(right)].all()
 
@@ -304,9 +305,9 @@ def test_the_present_choice_has_a_ring_and_its_name_time_and_error(sampling: tup
     drawn, found = drawn_of(picture)
     assert found.present == (BEST if sampling[0] == "best" else Way(*sampling))
     assert centre(drawn.boxes["plane_present"]) == pytest.approx(found.places[found.present])
-    ring = next(piece for piece in drawn.pieces if isinstance(piece, Disc) and piece.name == "plane_present")
+    ring = next(piece for piece in pieces_of(drawn) if isinstance(piece, Disc) and piece.name == "plane_present")
     assert ring.ink == ACCENT
-    (said,) = (text.text.replace("\u202f", " ") for text in drawn.texts if text.name == "plane_sentence")
+    (said,) = (text.text.replace("\u202f", " ") for text in texts_of(drawn) if text.name == "plane_sentence")
     time = grouped_number(found.known[found.present].milliseconds)
     assert f"{time} ms for 32 bands" in said
     assert said.endswith(f"{percent(found.errors[found.present])} in 15")
@@ -315,8 +316,8 @@ def test_the_present_choice_has_a_ring_and_its_name_time_and_error(sampling: tup
 def test_one_point_says_how_to_get_more() -> None:
     def said(picture: Picture) -> tuple[str, set[str]]:
         drawn, _ = drawn_of(picture)
-        names = {text.name.removeprefix("plane_") for text in drawn.texts}
-        return next(text.text for text in drawn.texts if text.name == "plane_sentence"), names & set(LOOKS)
+        names = {text.name.removeprefix("plane_") for text in texts_of(drawn)}
+        return next(text.text for text in texts_of(drawn) if text.name == "plane_sentence"), names & set(LOOKS)
 
     assert said(shown())[0].endswith("M changes the method, S the samples")
     assert said(shown())[1] == set()

@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import combinations
 
 import pytest
+from viewer.overlay.written import pieces_of, texts_of
 
 from shviewer.analysis.figures import PENDING
 from shviewer.analysis.roughness import ROUGHNESS, staircase
@@ -24,7 +25,7 @@ def shown(light: str = "st_fagans_interior", **values: object) -> Picture:
 
 def test_the_sentence_under_the_steps_is_that_of_the_light_and_its_bands() -> None:
     overlay = draw_overlay(shown(n_bands=9), compose(1280, 640))
-    (said,) = [text.text for text in overlay.texts if text.name == "steps_sentence"]
+    (said,) = [text.text for text in texts_of(overlay) if text.name == "steps_sentence"]
     assert said.replace("\u2009", " ").replace("\u202f", " ") == staircase(shown(n_bands=9).state.recipe).sentence(9)
     assert overlay.bars == {}
 
@@ -32,7 +33,7 @@ def test_the_sentence_under_the_steps_is_that_of_the_light_and_its_bands() -> No
 @pytest.mark.parametrize("size", [(1280, 640), (900, 500), (1920, 1080), (2560, 900)])
 @pytest.mark.parametrize("n_bands", [1, 3, 9, 128])
 def test_no_texts_of_the_steps_overlap(size: tuple[int, int], n_bands: int) -> None:
-    texts = draw_overlay(shown("sun-sky", n_bands=n_bands), compose(*size)).texts
+    texts = texts_of(draw_overlay(shown("sun-sky", n_bands=n_bands), compose(*size)))
     for one, two in combinations(texts, 2):
         assert not one.box.overlaps(two.box), (one.name, two.name)
 
@@ -43,7 +44,7 @@ def test_the_lit_part_under_the_axis_is_what_the_bands_serve() -> None:
     steps = staircase(picture.state.recipe)
     ((low, high),) = steps.served(4)
     pieces = steps_pieces(steps, picture, at)
-    (lit,) = [piece.area for piece in pieces if isinstance(piece, Fill) and piece.name.startswith("served")]
+    (lit,) = [piece.box for piece in pieces if isinstance(piece, Fill) and piece.name.startswith("served")]
     box = at.numbers.curve
     assert box is not None
     left, right = box.left + at.px(LABELS), box.right
@@ -59,7 +60,7 @@ def test_what_needs_more_bands_than_there_are_is_off_the_chart_and_pending_figur
     assert curves[0].points[0][0] > at.numbers.curve.left + at.px(LABELS) + 5  # type: ignore[union-attr]
     pending = draw_overlay(replace(picture, needs=PENDING), at)
     assert "steps_sentence" not in pending.boxes
-    assert not any(isinstance(piece, Curve) and piece.name == "steps" for piece in pending.pieces)
+    assert not any(isinstance(piece, Curve) and piece.name == "steps" for piece in pieces_of(pending))
 
 
 def test_the_quantity_shown_has_its_dot() -> None:
@@ -79,6 +80,6 @@ def test_J_goes_there_and_back() -> None:
 @pytest.mark.parametrize("n_bands", [4, 16])
 def test_both_axes_are_named(n_bands: int) -> None:
     boxes = draw_overlay(prepare(state_of(by_roughness=True, n_bands=n_bands)), compose(1280, 640))
-    said = {piece.name: piece.text for piece in boxes.texts}
+    said = {piece.name: piece.text for piece in texts_of(boxes)}
     assert said["roughness_axis"] == "roughness"
     assert "16 bands" in said.values()

@@ -7,6 +7,7 @@ import pytest
 from harmonics.quantities.test_encodings import NAMES
 from helpers import frame_of, overlap
 from places import kernels
+from viewer.overlay.written import pieces_of, texts_of
 
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
@@ -49,7 +50,7 @@ def test_errors_are_the_published_ones_whichever_is_shown() -> None:
 def test_every_encoding_has_a_row_that_touches_no_other_text(width: int, height: int, view: dict[str, object]) -> None:
     picture = shown("zh3-shared", **view)
     drawn = draw_overlay(picture, frame_of(picture, width, height))
-    said = {text.name: text.text for text in drawn.texts}
+    said = {text.name: text.text for text in texts_of(drawn)}
     for name, encoding in ENCODINGS.items():
         assert said[f"stored_{name}_floats"] == str(encoding.floats)
         assert said[f"stored_{name}_error"] == share(stored_errors(picture)[name] or 0.0)
@@ -63,7 +64,7 @@ def test_every_encoding_has_a_row_that_touches_no_other_text(width: int, height:
 def test_bars_are_as_long_as_their_errors_from_zero() -> None:
     picture = shown("l2")
     drawn = draw_overlay(picture, frame_of(picture))
-    bars = [piece.box for piece in drawn.pieces if isinstance(piece, Fill) and 6 <= piece.box.height <= 10]
+    bars = [piece.box for piece in pieces_of(drawn) if isinstance(piece, Fill) and 6 <= piece.box.height <= 10]
     errors = [error or 0.0 for error in stored_errors(picture).values()]
     assert len(bars) == len(errors)
     for bar, error in zip(bars, errors, strict=True):
@@ -74,8 +75,8 @@ def test_what_an_encoding_cannot_have_is_none_and_the_numbers_stand_for_the_ener
     below = LobeLight((Lobe(Constant(), UP, -np.ones(3)),))
     dark = prepare(state_of(below, quantity="irradiance", encode="l1", n_bands=2))
     assert stored_errors(dark)["l2-deringed"] is None  # no factors take a negative mean away
-    said = {text.name: text.text for text in draw_overlay(dark, frame_of(dark)).texts}
+    said = {text.name: text.text for text in texts_of(draw_overlay(dark, frame_of(dark)))}
     assert said["stored_l2-deringed_error"] == "none"
     assert (said["numbers"], "energy" in said) == ("4", False)
     roughness = shown("l1", by_roughness=True)
-    assert "steps_sentence" in {text.name for text in draw_overlay(roughness, frame_of(roughness)).texts}
+    assert "steps_sentence" in {text.name for text in texts_of(draw_overlay(roughness, frame_of(roughness)))}
