@@ -110,8 +110,7 @@ def silhouette_error(shown: Array, true: Array) -> str:
 
 def mesh_coverage(surfaces: SurfaceRenderer, height: int) -> Array:
     """The pixels of the sphere drawn last, in the frame's pixels, top row first."""
-    assert surfaces.tile is not None
-    tones = np.frombuffer(surfaces.tile[0].read(components=1, dtype="f2"), dtype=np.float16)
+    tones = np.frombuffer(surfaces.spare[0][0].read(components=1, dtype="f2"), dtype=np.float16)
     pixels = (tones.reshape(TILE, OVERSAMPLING, TILE, OVERSAMPLING) != 0).mean(axis=(1, 3))
     frame = np.zeros((height, COMPOSITION.width))
     left, low = int(np.floor(SPHERE.x - SPHERE.radius - 1)), int(np.floor(height - SPHERE.y - SPHERE.radius - 1))

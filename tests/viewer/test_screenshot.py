@@ -35,6 +35,7 @@ from shviewer.version import __version__
 from shviewer.viewer import screenshot as screenshots
 from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl import renderer as renderers
+from shviewer.viewer.gl import surface_renderer
 from shviewer.viewer.gl import shader_source
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
@@ -460,7 +461,8 @@ def test_a_picture_drawn_in_parts_has_every_byte_of_the_one_drawn_at_once(
     frame = frame_for(picture.state.view, 401, 300)
     whole = render_rgb(renderer, picture, frame)
     monkeypatch.setattr(renderers, "FIRST_PIXELS", 1000)
-    for seconds in (0.0, 0.001):
+    monkeypatch.setattr(surface_renderer, "FIRST_TRIANGLES", 500)
+    for seconds in (0.003, 0.01) if kind == "surfaces" else (0.0, 0.001):  # no less than a part takes without triangles
         monkeypatch.setattr(screenshots, "PART_SECONDS", seconds)
         parts, shares = render_in_parts(renderer, picture, frame), []
         while True:
@@ -469,9 +471,9 @@ def test_a_picture_drawn_in_parts_has_every_byte_of_the_one_drawn_at_once(
             except StopIteration as last:
                 pixels = last.value()
                 break
-            if len(shares) % 50 == 2:
+            if len(shares) % (4 if kind == "surfaces" else 50) == 2:
                 render_rgb(renderer, other, square_frame(64))
         np.testing.assert_array_equal(pixels, whole)
         assert shares == sorted(shares)
         assert shares[-1] == 1.0
-        assert len(shares) > (100 if seconds == 0.0 and kind != "surfaces" else 2)
+        assert len(shares) > (100 if seconds == 0.0 else 9 if kind == "surfaces" else 2)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from time import perf_counter
 from typing import NamedTuple
@@ -19,7 +20,7 @@ from shviewer.viewer.gl.held import Held
 from shviewer.viewer.gl.layer_renderer import LayerRenderer
 from shviewer.viewer.gl.pane_renderer import PaneRenderer, pixel_box, shown_panes
 from shviewer.viewer.gl.shared import BACKGROUND
-from shviewer.viewer.gl.surface_renderer import SurfaceRenderer, tiles
+from shviewer.viewer.gl.surface_renderer import Steps, SurfaceRenderer, tiles
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.surface import Surface
@@ -34,7 +35,7 @@ FIRST_PIXELS = 2**14
 """Pixels of the first part of a pane, of which nobody knows how long they take."""
 
 GROWTH = 4
-"""A part has at most this many times the pixels of the one before it, however short that was."""
+"""A part has at most this many times the rows or triangles of the one before it, however short that was."""
 
 
 class Part(NamedTuple):
@@ -116,23 +117,24 @@ class Renderer:
             raise ValueError("surfaces hold no radiance")
         self._clear(target, composition, (0.0, 0.0, 0.0, 0.0) if linear else _GROUND)
         works = self._works(target, composition, picture, linear)
-        total, done = sum(work.box[2] * work.box[3] for work in works), 0
-        for (left, bottom, wide, high), draw, divisible in works:
-            top, first = bottom + high, True
-            rows = max(FIRST_PIXELS // wide, 1) if divisible and seconds is not None else high
-            while bottom < top:
-                if self.picture is not picture:
-                    self.show(picture)
-                start = perf_counter()
-                target.use()
-                rows = min(rows, top - bottom)
-                draw((left, bottom, wide, rows))
-                bottom, done = bottom + rows, done + wide * rows
-                if seconds is not None:
-                    self.context.finish()
-                    took = perf_counter() - start
-                    yield Part(done / total, took, first)
-                    first, rows = False, max(int(rows * min(GROWTH, seconds / max(took, 1e-9))), 1)
+        total, done = sum(area for area, _ in works), 0
+        for area, drawing in works:
+            with drawing as (steps, count, draw):
+                at, count = 0, count if seconds is not None else steps
+                while at < steps:
+                    if self.picture is not picture:
+                        self.show(picture)
+                    start = perf_counter()
+                    target.use()
+                    count = min(count, steps - at)
+                    draw(at, count)
+                    at += count
+                    if seconds is not None:
+                        self.context.finish()
+                        took = perf_counter() - start
+                        yield Part((done + area * at / steps) / total, took, at == count)
+                        count = max(int(count * min(GROWTH, seconds / max(took, 1e-9))), 1)
+            done += area
         target.use()
         target.viewport = (0, 0, composition.width, composition.height)
         if layers is not None and not linear:
@@ -166,39 +168,36 @@ class Renderer:
 
     def _works(
         self, target: moderngl.Framebuffer, composition: Composition, picture: Picture, linear: bool
-    ) -> list[_Work]:
-        """What is to be drawn of a picture, one after the other."""
+    ) -> list[tuple[int, AbstractContextManager[Steps]]]:
+        """What is to be drawn of a picture, one after the other: pixels, and the steps to them."""
         if isinstance(picture.drawn, Surfaces):
             turned = picture.light_from_world @ picture.world_from_view
             return [
-                _Work(box, partial(self.surfaces.draw_tile, target, sphere, composition.height, surface, turned), False)
+                (box[2] * box[3], self.surfaces.tile(target, sphere, composition.height, surface, turned, box))
                 for surface, sphere in surfaces_in(picture, composition)
                 for box in tiles(sphere, composition.height)
             ]
 
-        def draw(shown: str, pane: Pane, whole: Pixels, box: Pixels) -> None:
-            target.viewport, target.scissor = whole, box
+        def draw(shown: str, pane: Pane, whole: Pixels, row: int, rows: int) -> None:
+            left, bottom, wide, _ = target.viewport = whole
+            target.scissor = left, bottom + row, wide, rows
             self.panes.draw(picture, shown, pane, composition, linear=linear)
             target.scissor = None  # type: ignore[assignment]  # None: all of it
 
         panes = [
             (shown, pane, pixel_box(pane, composition.height)) for shown, pane in shown_panes(picture, composition)
         ]
-        return [_Work(box, partial(draw, shown, pane, box), True) for shown, pane, box in panes if box[2] and box[3]]
+        return [
+            (wide * high, nullcontext(Steps(high, max(FIRST_PIXELS // wide, 1), partial(draw, shown, pane, box))))
+            for shown, pane, box in panes
+            if (wide := box[2]) and (high := box[3])
+        ]
 
 
 def surfaces_in(picture: Picture, composition: Composition) -> list[tuple[Surface, Sphere]]:
     """The surfaces of a picture, and the spheres in whose place they are."""
     shown = picture.drawn.shown if isinstance(picture.drawn, Surfaces) else ()
     return list(zip(shown, composition.spheres, strict=False))
-
-
-class _Work(NamedTuple):
-    """Something to draw, in a box; `draw` draws what of it is in a part of that."""
-
-    box: Pixels
-    draw: Callable[[Pixels], None]
-    divisible: bool
 
 
 _GROUND = (*srgb_from_linear(np.array(BACKGROUND)).tolist(), 1.0)

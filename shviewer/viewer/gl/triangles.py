@@ -72,11 +72,15 @@ class Triangles:
         """Whether there are triangles of a surface, perhaps too coarse or too fine ones."""
         return any(surface is one for one, _ in (*self.held, *self._made))
 
-    def draw(self, program: Program, surface: Surface, radius: float) -> None:
-        """Draw a surface; while its triangles are made, with others that there are of it; else they are made now."""
+    def chosen(self, surface: Surface, radius: float) -> Key:
+        """What to draw of a surface; while its triangles are made, others that there are of it."""
         key = _key(surface, radius)
         if key not in self.held and key not in self._made and self._working:
             key = next((one for one in (*self.held, *self._made) if one[0] is surface), key)
+        return key
+
+    def array(self, program: Program, key: Key) -> moderngl.VertexArray:
+        """The triangles for a program; made now, if there are none."""
         if key not in self.held:
             while len(self.held) >= MOST_SURFACES:
                 self.held.popitem(last=False)[1].release()
@@ -86,7 +90,7 @@ class Triangles:
             array = self._context.vertex_array(program.program, content, index_buffer=triangles)
             self.held[key] = _Held(vertices, triangles, array)
         self.held.move_to_end(key)
-        self.held[key].array.render(moderngl.TRIANGLES)
+        return self.held[key].array
 
     def release(self) -> None:
         """Free everything this object made."""

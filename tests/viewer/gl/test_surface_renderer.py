@@ -51,14 +51,14 @@ class Frame:
         self.target.use()
         self.target.clear(*(EMPTY / 255), 1.0)
         for box in tiles(sphere, SIDE):
-            self.surfaces.draw_tile(self.target, sphere, SIDE, shown, light_from_view, box)
+            with self.surfaces.tile(self.target, sphere, SIDE, shown, light_from_view, box) as steps:
+                steps.draw(0, steps.total)
         pixels = np.frombuffer(self.target.read(components=3), dtype=np.uint8)
         return pixels.reshape(SIDE, SIDE, 3)[::-1].astype(int)
 
     def covered(self, sphere: Sphere = SPHERE) -> Array:
         """The share of each pixel of the frame that the surface drawn last covers, from the samples themselves."""
-        assert self.surfaces.tile is not None
-        tones = np.frombuffer(self.surfaces.tile[0].read(components=1, dtype="f2"), dtype=np.float16)
+        tones = np.frombuffer(self.surfaces.spare[0][0].read(components=1, dtype="f2"), dtype=np.float16)
         assert np.isfinite(tones).all()
         pixels = (tones.reshape(TILE, OVERSAMPLING, TILE, OVERSAMPLING) != 0).mean(axis=(1, 3))
         reach = sphere.radius + 1
@@ -328,7 +328,8 @@ def test_state_is_left_as_found(frame: Frame) -> None:
     context.enable_only(moderngl.BLEND)
     target.viewport = (3, 5, 70, 80)
     for box in tiles(SPHERE, SIDE):
-        frame.surfaces.draw_tile(target, SPHERE, SIDE, basis_surface(2, 1, 129), SKEW, box)
+        with frame.surfaces.tile(target, SPHERE, SIDE, basis_surface(2, 1, 129), SKEW, box) as steps:
+            steps.draw(0, steps.total)
     assert target.viewport == (3, 5, 70, 80)
     assert other.viewport == (0, 0, 32, 32)
     # A triangle at half strength, drawn without saying where: blended into the framebuffer that was bound, at any depth.
@@ -384,8 +385,7 @@ def test_what_is_held_is_bounded_and_all_is_released(frame: Frame) -> None:
     assert len(frame.surfaces.triangles.held) == MOST_SURFACES
     held = list(frame.surfaces.triangles.held.values())
     programs = frame.surfaces.program, frame.surfaces.resolve_program
-    tile = frame.surfaces.tile
-    assert tile is not None
+    (tile,) = frame.surfaces.spare
     frame.surfaces.release()
     assert not frame.surfaces.triangles.held
     parts = [*tile, *(program.program for program in programs), *(d.vertices for d in held)]
