@@ -18,7 +18,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.renderer import GL_VERSIONS, PART_SECONDS, Renderer
 from shviewer.viewer.overlay.directions.marks import mark_layers
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.overlay import draw_overlay
+from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_exr, write_png
 from shviewer.viewer.saving.stamp import metadata
@@ -84,7 +84,8 @@ def render_rgb(
     renderer: Renderer, picture: Picture, composition: Composition, *, overlay: bool = True, timing: bool = False
 ) -> NDArray[np.uint8]:
     """The picture as seen: (height, width, 3) uint8, top row first."""
-    layers = _layers(renderer, picture, composition, timing=timing) if overlay else ()
+    written = _written(renderer, picture, composition, timing=timing) if overlay else None
+    layers = _layers(written, picture, composition) if written is not None else ()
     renderer.show(picture)
     return read_rgb(renderer, composition, layers)
 
@@ -93,8 +94,10 @@ def render_in_parts(
     renderer: Renderer, picture: Picture, composition: Composition
 ) -> Generator[float, None, Callable[[], NDArray[np.uint8]]]:
     """Draw the same in parts of about PART_SECONDS; yields the share that is drawn, and returns what makes the pixels of it."""
-    layers = _layers(renderer, picture, composition)
-    yield 0.0
+    written = _written(renderer, picture, composition)
+    for _ in written.drawing():
+        yield 0.0
+    layers = _layers(written, picture, composition)
     with offscreen(renderer, composition) as target:
         renderer.show(picture)
         for part in renderer.parts(target, composition, layers, seconds=PART_SECONDS):
@@ -103,11 +106,12 @@ def render_in_parts(
     return lambda: _rgb(data, composition)
 
 
-def _layers(
-    renderer: Renderer, picture: Picture, composition: Composition, *, timing: bool = False
-) -> tuple[Layer, ...]:
+def _written(renderer: Renderer, picture: Picture, composition: Composition, *, timing: bool = False) -> Overlay:
+    return draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
+
+
+def _layers(written: Overlay, picture: Picture, composition: Composition) -> tuple[Layer, ...]:
     """Layers of all text and marks of a picture."""
-    written = draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
     return (*mark_layers(picture, composition, tuple(written.boxes.values())), *written.layers)
 
 

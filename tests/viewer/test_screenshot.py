@@ -35,8 +35,7 @@ from shviewer.version import __version__
 from shviewer.viewer import screenshot as screenshots
 from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl import renderer as renderers
-from shviewer.viewer.gl import surface_renderer
-from shviewer.viewer.gl import shader_source
+from shviewer.viewer.gl import shader_source, surface_renderer
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
 from shviewer.viewer.saving.reference import compare_with_reference

@@ -162,16 +162,24 @@ class Canvas:
             self.wait(self._pending or Work(UPLOADING), composition)
             self._frame = _Frame(iter(()), composition, False)
             return
-        layers = self.layers(composition, pointer)
         key = _panes_key(self._shown, composition, self._exact)
         frames = self._panes[1] + 1 if key == self._panes[0] else 1
         self._panes = key, frames
         copied = frames > PLAIN_FRAMES and not again
-        if copied:
-            parts = self._kept.parts(key, self.screen, composition, layers, PART_SECONDS)
-        else:
-            parts = self.renderer.parts(self.screen, composition, layers, seconds=PART_SECONDS)
+        parts = self._parts(composition, pointer, key if copied else None)
         self._frame = _Frame(parts, composition, alone and not copied and _choosable(self._shown))
+
+    def _parts(self, composition: Composition, pointer: Point | None, kept: object) -> Iterator[Part]:
+        """Draw a frame part by part, first what is written. kept: the key of panes that are copied."""
+        start = perf_counter()
+        for _ in self.overlay.drawing() if self.overlay is not None else ():
+            yield Part(0.0, perf_counter() - start, True)
+            start = perf_counter()
+        layers = self.layers(composition, pointer)
+        if kept is not None:
+            yield from self._kept.parts(kept, self.screen, composition, layers, PART_SECONDS)
+        else:
+            yield from self.renderer.parts(self.screen, composition, layers, seconds=PART_SECONDS)
 
     def go_on(self, seconds: float | None = None) -> bool:
         """Draw on for about so long; return whether the frame is whole. A sum that takes too long is given up."""

@@ -5,7 +5,7 @@ Equal pieces make the same layer, which is remembered: what did not change is ne
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from math import ceil, floor
 
@@ -29,6 +29,15 @@ WHITE, ZEBRA = (244, 244, 246), (40, 40, 44)
 def layer_of(pieces: tuple[Piece, ...]) -> Layer | None:
     """The layer of some pieces, the first at the bottom; None of none."""
     return draw(pieces) if pieces else None
+
+
+def lettering(pieces: Sequence[Piece]) -> Iterator[None]:
+    """Draw the texts of some pieces, one after the other: the masks are remembered, and the layer is soon made of them."""
+    for piece in pieces:
+        if isinstance(piece, Text):
+            for stroke in {piece.casing, 0.0}:
+                mask(piece.text, piece.size, piece.weight, stroke)
+            yield
 
 
 def draw(pieces: Sequence[Piece]) -> Layer:

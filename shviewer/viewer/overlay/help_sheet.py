@@ -43,7 +43,7 @@ class Type(NamedTuple):
 
 
 def help_blocks(state: State, at: Composition, foot: str, page: int = 0) -> list[list[Piece]]:
-    """The sheet, which covers the frame, and present values, each a block: turning the camera changes two of them.
+    """The sheet, which covers the frame, its columns, and present values, each a block: turning the camera changes two of them.
 
     foot: what stands under it, if there is room; page: how often PageDown was pressed.
     """
@@ -61,12 +61,13 @@ def help_blocks(state: State, at: Composition, foot: str, page: int = 0) -> list
     pieces.append(Text("help_closes", round(x), round(top), closes, 0.92 * size, FAINT))
     rule = round(top + at.px(12))
     pieces.append(Fill(Box(margin, rule, at.width - margin, rule + at.hair), RULE))
-    values, lowest = list[list[Piece]](), 0.0
+    columns, values, lowest = list[list[Piece]](), list[list[Piece]](), 0.0
     for number, column in enumerate(shown):
+        columns.append([])
         left, y = round(margin + number * pitch), rule + at.px(28)
         for row in _aligned(column, pitch - at.px(APART), size):
             said = _row(row, left, y, Type(size, step))
-            pieces += said
+            columns[-1] += said
             if said and row.binding is not None:
                 values.append(_value(row, said[-1], state, left + pitch - at.px(APART), size))
             y += max(len(row.lines), 1) * step
@@ -75,7 +76,7 @@ def help_blocks(state: State, at: Composition, foot: str, page: int = 0) -> list
     if foot and last - at.px(14) > lowest - step:
         words = shortened_to(foot, at.width - 2 * margin, at.px(12))
         pieces.append(Text("help_foot", margin, round(last), words, at.px(12), FAINT))
-    return [pieces, *values]
+    return [pieces, *columns, *values]
 
 
 def _aligned(column: list[Row], room: float, size: float) -> list[Row]:

@@ -6,7 +6,7 @@ can see that nothing overlaps.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,7 +15,7 @@ from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
-from shviewer.viewer.overlay.drawing import layer_of
+from shviewer.viewer.overlay.drawing import layer_of, lettering
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
 from shviewer.viewer.overlay.foot import (
     Work,
@@ -55,6 +55,14 @@ class Overlay:
     def layers(self) -> tuple[Layer, ...]:
         """The layers of everything written, one of each block; drawn when first asked for."""
         return tuple(found for found in map(layer_of, self.blocks) if found is not None)
+
+    def drawing(self) -> Iterator[None]:
+        """Draw the layers a little at a time; the first help takes a tenth of a second."""
+        if "layers" not in self.__dict__:
+            for block in self.blocks:
+                yield from lettering(block)
+                layer_of(block)
+                yield
 
     @cached_property
     def boxes(self) -> dict[str, Box]:

@@ -12,6 +12,7 @@ from helpers import centre, frame_of, picture_of
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.gl.renderer import Renderer
+from shviewer.viewer.overlay.lettering import mask
 from shviewer.viewer.screenshot import offscreen
 
 
@@ -66,6 +67,23 @@ def test_turning_writes_nothing_anew_and_a_band_does(canvas: Canvas) -> None:
         assert canvas.overlay is written
     canvas.show(picture_of(n_bands=6), frame_of(shown))
     assert canvas.overlay is not written
+
+
+def test_the_first_help_is_written_a_text_at_a_time(canvas: Canvas) -> None:
+    """Each go_on without time to spare draws one part; a text may be drawn with a casing, too."""
+    shown, passes, most = picture_of(help_visible=True), 0, 0
+    frame = frame_of(shown, 717, 411)  # of a size that no other test has written in
+    with offscreen(canvas.renderer, frame) as target:
+        canvas.screen = target
+        canvas.show(shown, frame)
+        canvas.begin(frame)
+        whole, last = False, mask.cache_info().misses
+        while not whole:
+            whole = canvas.go_on(0.0)
+            passes, most, last = passes + 1, max(most, mask.cache_info().misses - last), mask.cache_info().misses
+    assert canvas.overlay is not None
+    assert passes > sum(len(block) for block in canvas.overlay.blocks) > 50
+    assert 1 <= most <= 2
 
 
 CHANGES: dict[str, dict[str, Any]] = {
