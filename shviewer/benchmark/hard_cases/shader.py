@@ -78,7 +78,7 @@ def error_of(view: DrawnSum, renderer: Renderer) -> float:
     box = Box(WIDTH / 2, 0, WIDTH, HEIGHT)
     sphere = Sphere(*CENTRE, view.radius, box)
     hidden = Sphere(-9.0, -9.0, 1.0, Box(0, 0, 0, 0))
-    drawn = render_linear(renderer, picture, replace(compose(WIDTH, HEIGHT), spheres=(hidden, sphere)))
+    drawn = render_linear(renderer, picture, replace(compose(WIDTH, HEIGHT), panes=(hidden, sphere)))
     normals, inside = normals_on(sphere, np.arange(WIDTH // 2, WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
     directions = normals @ view.world_from_view.T
     wanted = in_blocks(lambda part: evaluate_basis(part, n_bands) @ view.coefficients, directions)

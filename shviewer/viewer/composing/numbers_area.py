@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import ceil
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from shviewer.viewer.composing.panes import Box
 
@@ -20,9 +20,6 @@ class Line(NamedTuple):
     right: float
     baseline: float
 
-    def scaled(self, scale: float) -> Line:
-        return Line(*(float(round(side * scale)) for side in self))
-
 
 class Cell(NamedTuple):
     """A column for a value and the label under it: its sides and the two baselines."""
@@ -32,8 +29,13 @@ class Cell(NamedTuple):
     value: float
     label: float
 
-    def scaled(self, scale: float) -> Cell:
-        return Cell(*(float(round(side * scale)) for side in self))
+
+Place = TypeVar("Place", Box, Line, Cell)
+
+
+def scaled(place: Place, scale: float) -> Place:
+    """A place in pixels of the design in whole pixels of the frame."""
+    return type(place)(*(float(round(side * scale)) for side in place))
 
 
 NARROW_COLUMN, SHORT_COLUMN, COLUMN = 66.0, 84.0, 118.0
@@ -87,6 +89,10 @@ SIDE, AROUND = 192.0, 24.0
 """Width of the column of numbers at the right, without the margin, and the space on both sides of its hairline."""
 
 
+LINES = ("curve", "legend", "foot", "exposure", "curve_head")
+"""Places of Numbers of which there is one or none."""
+
+
 @dataclass(frozen=True)
 class Numbers:
     """Places of the numbers, and the sizes of their type. What has no room is None or empty."""
@@ -112,16 +118,10 @@ class Numbers:
 
     def scaled(self, scale: float) -> Numbers:
         """The same in pixels; sizes of type stay those of the design."""
-        return replace(
-            self,
-            answers=tuple(cell.scaled(scale) for cell in self.answers),
-            figures=tuple(cell.scaled(scale) for cell in self.figures),
-            curve=self.curve and self.curve.scaled(scale),
-            legend=self.legend and self.legend.scaled(scale),
-            foot=self.foot and self.foot.scaled(scale),
-            exposure=self.exposure and self.exposure.scaled(scale),
-            curve_head=self.curve_head and self.curve_head.scaled(scale),
-        )
+        answers, figures = (tuple(scaled(cell, scale) for cell in cells) for cells in (self.answers, self.figures))
+        lines: dict[str, Any] = {name: getattr(self, name) for name in LINES}
+        lines = {name: line and scaled(line, scale) for name, line in lines.items()}
+        return replace(self, answers=answers, figures=figures, **lines)
 
 
 def fits(mode: Mode, width: float, *, compact: bool, cell: float | None) -> bool:

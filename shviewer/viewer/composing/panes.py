@@ -29,10 +29,6 @@ class Box(NamedTuple):
     def height(self) -> float:
         return self.bottom - self.top
 
-    def scaled(self, scale: float) -> Box:
-        """The box of pixels of one in pixels of the design: whole ones."""
-        return Box(*(float(round(side * scale)) for side in self))
-
     def contains(self, x: float, y: float) -> bool:
         return self.left <= x < self.right and self.top <= y < self.bottom
 
@@ -160,7 +156,7 @@ class WholeSphere(NamedTuple):
 Pane: TypeAlias = Sphere | WholeSphere
 
 
-def whole_sphere(box: Box, zoom: float = 1.0, centre: tuple[float, float] = (0.0, 0.0)) -> WholeSphere:
+def whole_sphere_in(box: Box, zoom: float = 1.0, centre: tuple[float, float] = (0.0, 0.0)) -> WholeSphere:
     """The map in a box twice as wide as high, with an azimuth and an elevation, degrees, in its middle.
 
     zoom: below 1 it is 1, since the map has no more to show; the elevation gives way so that none of the box is empty.

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from shviewer.harmonics.quadrature import column_azimuths, directions_from_angle
 from shviewer.harmonics.rotation import rotate
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
-from shviewer.viewer.composing.panes import Sphere, WholeSphere
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_exr
 from shviewer.viewer.saving.stamp import metadata
@@ -31,15 +30,6 @@ BYTES = 2 * 4 * 3 * (1 + len(LAYERS))
 BLOCK_PIXELS = 2**19
 
 
-class _Whole(NamedTuple):
-    """A frame that is all map."""
-
-    width: int
-    height: int
-    spheres: tuple[Sphere, ...] = ()
-    maps: tuple[WholeSphere, ...] = ()
-
-
 def write_sphere_map(picture: Picture, width: int, out: Path) -> None:
     """Write an EXR of `width` times half of it. LightError for too much memory, OutputError if it cannot be written."""
     height = width // 2
@@ -48,7 +38,7 @@ def write_sphere_map(picture: Picture, width: int, out: Path) -> None:
     pixels = np.empty((1 + len(LAYERS), height, width, 3), dtype=np.float32)
     for rows, values in _blocks(picture, width):
         pixels[:, rows] = values
-    text = metadata(picture, _Whole(width, height), "", overlay=False)
+    text = metadata(picture, Composition(width, height, 1.0, ()), "", overlay=False)
     write_exr(out, pixels[0], text, dict(zip(LAYERS, pixels[1:], strict=True)))
 
 

@@ -9,10 +9,9 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from shviewer.analysis.figures import Figures, Needs, Pending
 from shviewer.analysis.projections import project, way_of
@@ -24,7 +23,7 @@ from shviewer.lights.suns.sun import Sun
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.version import __version__
 from shviewer.viewer.colour.colour_maps import map_of
-from shviewer.viewer.composing.panes import Sphere, WholeSphere
+from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.file_marks import mark_of
@@ -46,23 +45,7 @@ DIGITS = 9
 """Significant digits of the coefficients in a stamp: those of float32."""
 
 
-class Frame(Protocol):
-    """The size of a picture, and where in it the light is drawn."""
-
-    @property
-    def width(self) -> int: ...
-
-    @property
-    def height(self) -> int: ...
-
-    @property
-    def spheres(self) -> Sequence[Sphere]: ...
-
-    @property
-    def maps(self) -> Sequence[WholeSphere]: ...
-
-
-def metadata(picture: Picture, composition: Frame, opengl: str, *, overlay: bool = True) -> str:
+def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
     """Everything that made the picture, and the figures that are there, as one JSON text; equal arguments give equal text."""
     state, figures, projection = picture.state, picture.figures, picture.projection
     scale, beside = picture.error_scale, picture.beside

@@ -8,12 +8,12 @@ from harmonics.independent import random_directions
 
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.viewer.camera import world_from_view
-from shviewer.viewer.composing.panes import Box, Pane, Sphere, WholeSphere, whole_sphere
+from shviewer.viewer.composing.panes import Box, Pane, Sphere, WholeSphere, whole_sphere_in
 
 SEEN_FROM = world_from_view(25.0, -40.0)
 SPHERE = Sphere(120.3, 90.8, 80.0, Box(0, 0, 240, 180))
-MAP = whole_sphere(Box(24, 46, 628, 348))
-ZOOMED = whole_sphere(Box(24, 46, 628, 348), 3.0, (170.0, 40.0))
+MAP = whole_sphere_in(Box(24, 46, 628, 348))
+ZOOMED = whole_sphere_in(Box(24, 46, 628, 348), 3.0, (170.0, 40.0))
 
 
 @pytest.mark.parametrize("pane", [SPHERE, MAP, ZOOMED], ids=["sphere", "map", "zoomed map"])
@@ -41,7 +41,7 @@ def test_the_direction_of_the_place_of_a_direction_is_the_direction(pane: WholeS
 
 def test_a_map_without_zoom_has_the_directions_of_a_lat_long_image() -> None:
     """Directions of columns and rows at texel centres, as the lights' reader counts them."""
-    pane = whole_sphere(Box(0, 0, 16, 8))
+    pane = whole_sphere_in(Box(0, 0, 16, 8))
     wanted = directions_from_angles(row_angles(8)[:, None], column_azimuths(16))
     found = [[pane.direction(x + 0.5, y + 0.5, SEEN_FROM) for x in range(16)] for y in range(8)]
     np.testing.assert_allclose(np.array(found), wanted, rtol=0, atol=1e-14)
@@ -51,7 +51,7 @@ def test_a_map_without_zoom_has_the_directions_of_a_lat_long_image() -> None:
 @pytest.mark.parametrize("centre", [(0.0, 0.0), (179.0, 89.0), (-300.0, -90.0)])
 def test_all_of_a_maps_box_has_a_direction(zoom: float, centre: tuple[float, float]) -> None:
     box = Box(10, 20, 210, 120)
-    pane = whole_sphere(box, zoom, centre)
+    pane = whole_sphere_in(box, zoom, centre)
     corners = [(x, y) for x in (10, 209.999) for y in (20, 119.999)]
     assert all(pane.direction(x, y, SEEN_FROM) is not None for x, y in corners)
     assert pane.outline == pytest.approx(box)

@@ -12,7 +12,7 @@ from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.composing.composition import Composition
-from shviewer.viewer.composing.panes import Box, Sphere, whole_sphere
+from shviewer.viewer.composing.panes import Box, Sphere, whole_sphere_in
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.picture import Picture
 
@@ -94,8 +94,8 @@ def map_frame(
 ) -> Composition:
     """Maps of the whole sphere beside each other, each `width` pixels wide."""
     boxes = (Box(number * width, 0, (number + 1) * width, width // 2) for number in range(count))
-    maps = tuple(whole_sphere(box, zoom, centre) for box in boxes)
-    return Composition(count * width, width // 2, 1.0, (), maps=maps)
+    maps = tuple(whole_sphere_in(box, zoom, centre) for box in boxes)
+    return Composition(count * width, width // 2, 1.0, maps)
 
 
 def map_directions(composition: Composition, side: int) -> tuple[slice, Array]:
