@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import NAMED_AXES, Axes
@@ -15,22 +16,30 @@ from shviewer.coefficients.programs import CONVENTIONS, OURS, READINGS
 from shviewer.harmonics.quantities.names import GLOSSY, quantity_of
 from shviewer.words import meant
 
-SHIFTED = "shifted"
-"""The modifier of a list whose mean is less by SHIFT, as 3D Gaussian splatting has it."""
+SHIFTED, SHIFT = "shifted", CONVENTIONS["3dgs"].shift
+"""The modifier of a list whose mean is less, as 3D Gaussian splatting has it, and by how much."""
 
-SHIFT = CONVENTIONS["3dgs"].shift
-
-MODIFIERS = (
-    *("phase", "no-phase", "m-swapped", SHIFTED),
-    *QUANTITIES,
-    *SCALES,
-    *list(ORDERS)[1:],
-    *NAMED_AXES,
-    *CHANNEL_ORDERS,
-    *SEQUENCES,
-)
 _TIMES = "times="
 LARGEST_FACTOR = 1e30
+
+FREE = ("axes", "quantity", "channels", "sequence", "factor")
+"""Fields in which a list may differ from what the program expects; the others are fixed but in our own convention."""
+
+_WORDS: dict[str, dict[str, object]] = {
+    "axes": {name: Axes(text) for name, text in NAMED_AXES.items()},
+    "scale": {name: name for name in SCALES},
+    "phase": {"phase": True, "no-phase": False},
+    "mirrored": {"m-swapped": True},
+    "order": {name: name for name in ORDERS if name != ACN},
+    "shift": {SHIFTED: SHIFT},
+    "quantity": {name: name for name in QUANTITIES},
+    "channels": {name: name for name in CHANNEL_ORDERS},
+    "sequence": {name: name for name in SEQUENCES},
+}
+"""Field of a convention -> the modifiers that change it, each with the value that it stands for, in the order of a text."""
+
+_LISTED = ("phase", "mirrored", "shift", "quantity", "scale", "order", "axes", "channels", "sequence")
+MODIFIERS = tuple(word for name in _LISTED for word in _WORDS[name])
 
 
 def parse_convention(text: str) -> Convention:
@@ -49,50 +58,33 @@ def parse_convention(text: str) -> Convention:
         raise ValueError(f"convention {name!r}: {_advice(name, text)}")
     convention, said = CONVENTIONS[name], dict[str, str]()
     for modifier in modifiers:
-        kind, convention = _modified(convention, modifier)
-        if said.setdefault(kind, modifier) != modifier:
-            raise ValueError(f"convention {text!r}: {said[kind]} and {modifier} contradict each other")
+        name, value = _change(modifier)
+        convention = _modified(convention, modifier, name, value)
+        if said.setdefault(name, modifier) != modifier:
+            raise ValueError(f"convention {text!r}: {said[name]} and {modifier} contradict each other")
     return convention
 
 
 def _advice(name: str, text: str) -> str:
     """What to write in place of a name that no convention has; a modifier wants a name before it."""
     try:
-        _modified(OURS, name)
+        _change(name)
     except ValueError:
         return meant(name, CONVENTIONS)
     return f"that differs from a convention, whose name comes first: {OURS.name},{text}"
 
 
-def _modified(convention: Convention, modifier: str) -> tuple[str, Convention]:
-    """The aspect that the modifier changes, and the convention changed."""
-    if modifier in QUANTITIES or modifier.startswith(GLOSSY):
-        modifier = modifier if modifier in QUANTITIES else quantity_of(modifier)
-        fixed = CONVENTIONS[convention.name].quantity
-        if fixed not in (None, modifier):
-            raise ValueError(f"{modifier} contradicts {convention.name}, which takes {fixed}")
-        return "quantity", replace(convention, quantity=modifier)
-    if modifier in NAMED_AXES or modifier[:1] in ("+", "-"):
-        return "axes", replace(convention, axes=Axes.named(modifier))
-    if modifier in CHANNEL_ORDERS:
-        return "channels", replace(convention, channels=modifier)
-    if modifier in SEQUENCES:
-        return "sequence", replace(convention, sequence=modifier)
+def _change(modifier: str) -> tuple[str, object]:
+    """The field that a modifier changes, and its new value. ValueError for a word that is none."""
+    for name, words in _WORDS.items():
+        if modifier in words:
+            return name, words[modifier]
+    if modifier.startswith(GLOSSY):
+        return "quantity", quantity_of(modifier)
+    if modifier[:1] in ("+", "-"):
+        return "axes", Axes(modifier)
     if modifier.startswith(_TIMES):
-        return "factor", replace(convention, factor=_factor(modifier))
-    if modifier in ("phase", "no-phase"):
-        return "phase", _if_free(convention, modifier, replace(convention, phase=modifier == "phase"))
-    if modifier == "m-swapped":
-        return "sign of m", _if_free(convention, modifier, replace(convention, mirrored=True))
-    if modifier == SHIFTED:
-        return "shift", _if_free(convention, modifier, replace(convention, shift=SHIFT))
-    if modifier in ORDERS and modifier != ACN:
-        return "order", _if_free(convention, modifier, replace(convention, order=modifier))
-    if modifier in SCALES:
-        changed = replace(convention, scale=modifier)
-        if modifier == "polynomial":
-            changed = replace(changed, most_bands=POLYNOMIAL_BANDS, phase=False)
-        return "scale", _if_free(convention, modifier, changed)
+        return "factor", _factor(modifier)
     rule = f"it must be one of {', '.join(MODIFIERS)}, times=2 or another factor, or axes such as +x+z-y"
     raise ValueError(f"convention modifier {modifier!r}: {meant(modifier, MODIFIERS, rule)}")
 
@@ -107,9 +99,15 @@ def _factor(modifier: str) -> float:
     return factor
 
 
-def _if_free(convention: Convention, modifier: str, changed: Convention) -> Convention:
-    """Our own convention changed. ValueError for another program's, which is fixed."""
-    if convention.name != OURS.name and changed != convention:
+def _modified(convention: Convention, modifier: str, name: str, value: Any) -> Convention:
+    """The convention with another value of a field. ValueError if that contradicts the program."""
+    changes = {name: value}
+    if value == "polynomial":
+        changes |= {"most_bands": POLYNOMIAL_BANDS, "phase": False}
+    changed, fixed = replace(convention, **changes), CONVENTIONS[convention.name].quantity
+    if name == "quantity" and fixed not in (None, value):
+        raise ValueError(f"{value} contradicts {convention.name}, which takes {fixed}")
+    if name not in FREE and convention.name != OURS.name and changed != convention:
         raise ValueError(
             f"{modifier} contradicts {convention.name}: it would not be what that program expects; numbers that differ from its"
             f" own so are {in_our_terms(changed)}"
@@ -124,28 +122,14 @@ def in_our_terms(convention: Convention) -> str:
 
 def convention_text(convention: Convention) -> str:
     """The text that `parse_convention` turns into this convention again."""
-    base = CONVENTIONS[convention.name]
-    parts = [convention.name]
-    if convention.axes != base.axes:
-        parts.append(
-            next((name for name, text in NAMED_AXES.items() if text == convention.axes.text), convention.axes.text)
-        )
-    if convention.scale != base.scale:
-        parts.append(convention.scale)
-    if convention.phase != base.phase and convention.scale != "polynomial":
-        parts.append("phase" if convention.phase else "no-phase")
-    if convention.mirrored != base.mirrored:
-        parts.append("m-swapped")
-    if convention.order != base.order:
-        parts.append(convention.order)
-    if convention.shift != base.shift:
-        parts.append(SHIFTED)
-    if convention.quantity != base.quantity and convention.quantity:
-        parts.append(convention.quantity)
-    if convention.channels != base.channels:
-        parts.append(convention.channels)
-    if convention.sequence != base.sequence and convention.sequence in SEQUENCES:
-        parts.append(convention.sequence)
+    base, parts = CONVENTIONS[convention.name], [convention.name]
+    for name, words in _WORDS.items():
+        value = getattr(convention, name)
+        if value == getattr(base, name) or (name == "phase" and convention.scale == "polynomial"):
+            continue
+        own = value.text if name == "axes" else value if name == "quantity" else None
+        word = next((word for word, stands_for in words.items() if stands_for == value), own)
+        parts += [word] if word else []
     if convention.factor != base.factor:
         parts.append(f"{_TIMES}{convention.factor!r}".removesuffix(".0"))
     return ",".join(parts)
