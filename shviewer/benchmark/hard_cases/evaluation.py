@@ -6,14 +6,14 @@ unless another is named.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from decimal import Decimal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from shviewer.benchmark.hard_cases import exact
-from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.outcome import Case, largest, worst
 from shviewer.benchmark.hard_cases.shader import SEED, factorial_views, pole_views, seam_views
 from shviewer.harmonics.basis import MAX_BANDS, Array, evaluate_basis, index, normalisation
 
@@ -54,18 +54,17 @@ def towards(theta: ArrayLike, phi: ArrayLike) -> Array:
     return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
 
+@worst
 def against_exact(
     evaluate: Evaluate, directions: Array, n_bands: int, orders: Iterable[int], degrees: Sequence[int] | None = None
-) -> float:
+) -> Iterator[Array]:
     """The largest |Y - exact| over some orders and some degrees, or all below `n_bands`."""
     values = np.asarray(evaluate(directions, n_bands))
-    worst = 0.0
     for m in orders:
         l = np.arange(abs(m), n_bands)
         wanted = np.array([exact.harmonics(direction, m, n_bands) for direction in directions.tolist()], np.float64)
         error = values[:, l * (l + 1) + m] - wanted
-        worst = max(worst, largest(error if degrees is None else error[:, np.isin(l, degrees)]))
-    return worst
+        yield error if degrees is None else error[:, np.isin(l, degrees)]
 
 
 def factorials(evaluate: Evaluate = evaluate_basis) -> float:
@@ -76,17 +75,16 @@ def factorials(evaluate: Evaluate = evaluate_basis) -> float:
     return against_exact(evaluate, generic(3), 151, range(-150, 151), (86, 87, 150))
 
 
-def double_factorials(evaluate: Evaluate = evaluate_basis) -> float:
+@worst
+def double_factorials(evaluate: Evaluate = evaluate_basis) -> Iterator[Array]:
     """Y(m, +-m) next to the equator: (2m-1)!! leaves float32 at m = 29 and float64 at m = 151."""
     directions = generic(4)
     directions[:, 2] *= 1e-3  # elsewhere sin^m makes them too small to see
     values = np.asarray(evaluate(directions, 513))
-    worst = 0.0
     for m in (11, 18, 29, 150, 151, 152, 300, 512):
         for signed in (m, -m):
             wanted = [float(exact.harmonics(direction, signed, m + 1)[0]) for direction in directions.tolist()]
-            worst = max(worst, largest(values[:, index(m, signed)] - wanted))
-    return worst
+            yield values[:, index(m, signed)] - wanted
 
 
 def pole_growth(normalise: Callable[[int], Array] = normalisation) -> float:
@@ -146,15 +144,14 @@ def exact_poles(n_bands: int) -> float:
     return largest(evaluate_basis(directions, n_bands) - wanted)
 
 
-def seam(evaluate: Evaluate = evaluate_basis) -> float:
+@worst
+def seam(evaluate: Evaluate = evaluate_basis) -> Iterator[Array]:
     """phi = pi against -pi, and 0 against -0, at several heights: the same function value. Bound: 0, not one bit."""
     z = np.array([-0.8, -1e-9, 0.0, 0.3, 0.999])
     x = np.sqrt(1 - z**2)
-    worst = 0.0
     for sign in (1, -1):
         above, below = (np.stack([sign * x, np.full(5, zero), z], axis=-1) for zero in (0.0, -0.0))
-        worst = max(worst, largest(np.asarray(evaluate(above, 129)) - np.asarray(evaluate(below, 129))))
-    return worst
+        yield np.asarray(evaluate(above, 129)) - np.asarray(evaluate(below, 129))
 
 
 def seam_values() -> float:

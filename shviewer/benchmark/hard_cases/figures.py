@@ -5,15 +5,17 @@ The light is a + b x times a colour, x = direction . axis: its mean square is a^
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import log10, pi, sqrt
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from shviewer.analysis.figures import Figures, figures_of
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Shown
 from shviewer.benchmark.hard_cases.evaluation import generic
-from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.outcome import Case, largest, worst
 from shviewer.benchmark.hard_cases.shader import SUN_AXIS
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count, split_half_estimate
@@ -42,7 +44,8 @@ def shown_as(light: Light, n_bands: int, muted: tuple[int, ...] = ()) -> Figures
     return figures_of(light, project(light, BEST, 32), Shown(n_bands, muted))
 
 
-def error_figures() -> float:
+@worst
+def error_figures() -> Iterator[ArrayLike]:
     """Relative L2 errors, their two parts, PSNR, largest error and minimum; one band shown, or two of which one is muted.
 
     Bound: 1e-6, what the search for extremes and the difference of squares leave together.
@@ -50,7 +53,6 @@ def error_figures() -> float:
     a, b = 2.0, 1.5
     light = two_bands(a, b, SUN_AXIS)
     share = sqrt(b * b / 3 / (a * a + b * b / 3))
-    worst = 0.0
     squares = {"all": float((COLOUR**2).mean()), "green": COLOUR[1] ** 2, "luminance": float(LUMINANCE @ COLOUR) ** 2}
     for n_bands, muted, parts in ((1, (), (share, 0.0)), (2, (1,), (0.0, share))):
         figures = shown_as(light, n_bands, muted)
@@ -58,49 +60,45 @@ def error_figures() -> float:
         for name, square in squares.items():
             found = figures.channels[name]
             decibels = 10 * log10((extremes.peak / b) ** 2 * 3 / square)
-            wanted = share, *parts, decibels
             shown = found.relative_l2, found.left_out, found.added, found.psnr
-            worst = max(worst, largest(np.subtract(shown, wanted)))
-        lit, kept = COLOUR.max(), COLOUR.min()
-        worst = max(worst, abs(extremes.max_error / (b * lit) - 1), abs(extremes.minimum / (a * kept) - 1))
-        worst = max(worst, abs(abs(np.dot(extremes.max_error_direction, SUN_AXIS)) - 1))
-        worst = max(worst, largest(np.subtract(figures.energy_share[:2], (1 - share**2, share**2))))
+            yield np.subtract(shown, (share, *parts, decibels))
+        yield extremes.max_error / (b * COLOUR.max()) - 1, extremes.minimum / (a * COLOUR.min()) - 1
+        yield abs(np.dot(extremes.max_error_direction, SUN_AXIS)) - 1
+        yield np.subtract(figures.energy_share[:2], (1 - share**2, share**2))
         factor = 2 / 3  # A(1)/A(0) of irradiance
         shaded = sqrt((factor * b) ** 2 / 3 / (a * a + (factor * b) ** 2 / 3))
-        worst = max(worst, abs(figures.irradiance_relative_l2 - shaded))
-    return worst
+        yield figures.irradiance_relative_l2 - shaded
 
 
-def below_zero() -> float:
+@worst
+def below_zero() -> Iterator[ArrayLike]:
     """The share of the sphere where a + x < 0, (1 - a)/2, and of the energy there, (1 - a)^3 / 6 (a^2 + 1/3).
 
     Bound: 4e-3, cells that the border crosses; rows that do not count by their solid angle are off by 0.1.
     """
-    worst = 0.0
     for axis in (NORTH, SUN_AXIS):
         for edge in (0.9, 0.2, -0.5):
             extremes = shown_as(two_bands(edge, 1.0, axis), 2).extremes
             area = (1 - edge) / 2
             energy = (1 - edge) ** 3 / 6 / (edge * edge + 1 / 3)
-            worst = max(worst, abs(extremes.negative_area - area), abs(extremes.negative_energy - energy))
-    return worst
+            yield extremes.negative_area - area, extremes.negative_energy - energy
 
 
-def point_lights(bands: int = POINT_BANDS) -> float:
+@worst
+def point_lights(bands: int = POINT_BANDS) -> Iterator[ArrayLike]:
     """A hole: minus a point light, whose minimum is -n^2/4pi, in 24 directions; and its error at its axis.
 
     Bound: 1e-4 of it, which the search leaves; the nearest point of the grid alone is off by up to 0.03.
     """
-    worst = 0.0
     for direction in generic(24):
         hole = CoefficientLight(-np.repeat(evaluate_basis(direction, bands)[:, None], 3, axis=1))
         depth = bands**2 / (4 * pi)
         extremes = shown_as(hole, bands).extremes
-        worst = max(worst, abs(extremes.minimum / -depth - 1), 1 - float(np.dot(extremes.minimum_direction, direction)))
-    return worst
+        yield extremes.minimum / -depth - 1, 1 - float(np.dot(extremes.minimum_direction, direction))
 
 
-def band_counts() -> float:
+@worst
+def band_counts() -> Iterator[ArrayLike]:
     """Errors by band count of c(l, 0) = 2^-l, geometric sums; the first count within a tolerance; and the noise of halves.
 
     Two halves with independent errors estimate what is left out without bias; their own squares would not. Bound: 1e-7,
@@ -112,18 +110,18 @@ def band_counts() -> float:
     exact[l * (l + 1)] = (0.5**l)[:, None]
     products = np.eye(3) * (4 / 3)  # the sum of 4^-l for ever
     errors = errors_by_band_count(products, exact, exact)
-    worst = largest(errors - 0.5 ** (l + 1.0))
-    halved = errors_by_band_count(products, exact, exact / 2)
-    worst = max(worst, largest(halved - np.sqrt(0.25 + 0.75 * 0.25 ** (l + 1.0))))
+    yield errors - 0.5 ** (l + 1.0)
+    yield errors_by_band_count(products, exact, exact / 2) - np.sqrt(0.25 + 0.75 * 0.25 ** (l + 1.0))
     counts = [smallest_band_count(errors, tolerance) or 0 for tolerance in (0.0626, 0.0624)]
-    worst = max(worst, largest(np.subtract(counts, (4, 5))))
+    yield np.subtract(counts, (4, 5))
     noise = np.random.default_rng(7).normal(size=(2, n * n, 3)) * 0.02 * (exact == 0)  # its squares pass for band 4
     halves = exact + noise
     estimate = split_half_estimate(halves[0], halves[1], 4.0, 1e-4, 0.05)
-    return max(worst, float(estimate.likely != 5))
+    yield estimate.likely != 5
 
 
-def products_of_lobes() -> float:
+@worst
+def products_of_lobes() -> Iterator[ArrayLike]:
     """Integrals of products of channels: discs and clamped cosines with themselves and with each other, in closed form.
 
     A disc has its solid angle; a clamped cosine 2 pi/3; a disc above the horizon of a cosine pi sin(a)^2 cos(angle); two
@@ -142,10 +140,10 @@ def products_of_lobes() -> float:
         (Gaussian(k), Gaussian(k), pi, 4 * pi * np.exp(-2 * k)),
         (Gaussian(k), Disc(pi / 2), 0.0, 2 * pi * (1 - np.exp(-k)) / k),
     ]
-    worst = max(largest(inner_product(first, second, angle) - wanted) for first, second, angle, wanted in cases)
+    yield from (inner_product(first, second, angle) - wanted for first, second, angle, wanted in cases)
     lobes = tuple(Lobe(Disc(0.3), np.array(axis), COLOUR * f) for axis, f in ((NORTH, 1.0), ((1.0, 0.0, 0.0), 2.0)))
     squares = 5 * 4 * pi * np.sin(0.15) ** 2 * np.outer(COLOUR, COLOUR)
-    return max(worst, largest(LobeLight(lobes).products() - squares))
+    yield LobeLight(lobes).products() - squares
 
 
 def lit_from_a_disc() -> float:

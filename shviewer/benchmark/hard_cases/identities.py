@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
 from functools import partial
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from shviewer.benchmark.hard_cases import exact
 from shviewer.benchmark.hard_cases.evaluation import NEAR, Evaluate, generic, rounding
-from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.outcome import Case, largest, worst
 from shviewer.benchmark.hard_cases.shader import noise_views
-from shviewer.harmonics.basis import evaluate_basis
+from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.quadrature import DirectionSet, gauss_legendre
 
 
@@ -28,7 +28,8 @@ def not_unit(evaluate: Evaluate = evaluate_basis) -> float:
     return max(addition_theorem(65, stretched(length)) for length in (1.001, 1 + 1e-7, 0.3))
 
 
-def addition_theorem(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float:
+@worst
+def addition_theorem(n_bands: int, evaluate: Evaluate = evaluate_basis) -> Iterator[Array]:
     """Sum over m of Y(l, m)^2 = (2l+1)/4pi, relative, everywhere.
 
     Bound: rounding(129) to l = 128; 2.1e-13 to l = 1024 (measured; the plain recurrence has 5e-11).
@@ -36,12 +37,10 @@ def addition_theorem(n_bands: int, evaluate: Evaluate = evaluate_basis) -> float
     count = max(8, 2**22 // n_bands**2)
     near = np.array([[theta, -theta / 3, z] for theta in NEAR for z in (1, -1)])
     directions = np.concatenate([generic(count), near[: count // 2]])
-    worst = 0.0
     for start in range(0, len(directions), count // 4):
         values = np.asarray(evaluate(directions[start : start + count // 4], n_bands))
         sums = np.add.reduceat(values**2, np.arange(n_bands) ** 2, axis=1)
-        worst = max(worst, largest(sums * (4 * np.pi / (2 * np.arange(n_bands) + 1)) - 1))
-    return worst
+        yield sums * (4 * np.pi / (2 * np.arange(n_bands) + 1)) - 1
 
 
 def two_directions() -> float:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import wraps
+from typing import ParamSpec
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from shviewer.benchmark.hard_cases.shader import DrawnSum
+
+P = ParamSpec("P")
 
 
 @dataclass(frozen=True)
@@ -53,3 +57,13 @@ def largest(values: ArrayLike) -> float:
     """The largest magnitude; infinity if a value is NaN."""
     found = float(np.abs(np.asarray(values, dtype=np.float64)).max(initial=0.0))
     return found if np.isfinite(found) else float("inf")
+
+
+def worst(errors: Callable[P, Iterable[ArrayLike]]) -> Callable[P, float]:
+    """Decorator: the largest magnitude of all errors that the function yields; infinity if one is NaN."""
+
+    @wraps(errors)
+    def measured(*arguments: P.args, **options: P.kwargs) -> float:
+        return max(map(largest, errors(*arguments, **options)), default=0.0)
+
+    return measured

@@ -6,12 +6,12 @@ nothing here comes from coefficients/ or harmonics/ but the conversion under tes
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import pi, sqrt
 
 import numpy as np
 
-from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.outcome import Case, worst
 from shviewer.benchmark.hard_cases.shader import SEED
 from shviewer.coefficients.texts import parse_convention
 from shviewer.harmonics.basis import Array
@@ -61,7 +61,8 @@ PROGRAMS: dict[str, tuple[Callable[[Array, Array, Array], Array], Array]] = {
 """Convention -> the program's functions of a direction in our axes, and the factors from radiance to what it holds."""
 
 
-def conventions() -> float:
+@worst
+def conventions() -> Iterator[Array]:
     """Random lights of three bands in 40 random directions, in every convention and back, relative to the largest value.
 
     Bound: 1e-14, a rotation of three bands and sums of nine products.
@@ -70,15 +71,13 @@ def conventions() -> float:
     coefficients, directions = random.normal(size=(9, 3)), random.normal(size=(40, 3))
     x, y, z = (directions / np.linalg.norm(directions, axis=1, keepdims=True)).T
     ours = polynomials(x, y, z) * CONSTANTS * PHASE
-    worst = 0.0
     for text, (functions, factors) in PROGRAMS.items():
         convention = parse_convention(text)
         wanted = ours @ (factors[:, None] * coefficients)
         numbers = np.asarray(convention.from_ours(coefficients), np.complex128)
-        worst = max(worst, largest(np.abs(functions(x, y, z) @ numbers - wanted)) / float(np.abs(wanted).max()))
+        yield np.abs(functions(x, y, z) @ numbers - wanted) / float(np.abs(wanted).max())
         held = LAMBERT[:, None] if convention.quantity in ("irradiance", "irradiance-over-pi") else 1.0
-        worst = max(worst, largest(convention.to_ours(convention.from_ours(coefficients)) - held * coefficients))
-    return worst
+        yield convention.to_ours(convention.from_ours(coefficients)) - held * coefficients
 
 
 CASES = (Case("numbers for other programs and back", "their own basis functions", 1e-14, conventions),)

@@ -6,13 +6,13 @@ Each function returns the error of the code under test, or of other code that a 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.benchmark.hard_cases import exact
-from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.outcome import Case, largest, worst
 from shviewer.benchmark.hard_cases.shader import SEED, SKY, SUN, cancelling_views, sun_views
 from shviewer.harmonics.basis import Array, evaluate_basis, index
 from shviewer.harmonics.projection import project_image
@@ -36,18 +36,17 @@ Zonal = Callable[[float, int], Array]
 """Half angle in radians and bands -> lambda(l)."""
 
 
-def constant_image(project: ProjectImage = project_image) -> float:
+@worst
+def constant_image(project: ProjectImage = project_image) -> Iterator[Array]:
     """Radiance 1 on images of any size: c(0, 0) = sqrt(4 pi), all others 0, relative to the first, in 8 bands.
 
     Bound: 1e-14, three times what rounding leaves of exactly integrated texels (two kernels of OpenBLAS tried); point
     weights are off by up to 2.5.
     """
-    worst = 0.0
     for height, width in ANY_SIZE:
         coefficients = project(np.ones((height, width, 3), dtype=np.float32), 8) / np.sqrt(4 * np.pi)
         coefficients[0] -= 1
-        worst = max(worst, largest(coefficients))
-    return worst
+        yield coefficients
 
 
 def image_error(
@@ -146,17 +145,16 @@ def _many_samples_north() -> DirectionSet:
     return DirectionSet(np.broadcast_to(north, (MANY, 3)), np.broadcast_to(weight, (MANY,)))
 
 
-def suns(degrees: Sequence[float], zonal: Zonal = lambda angle, n: Disc(angle).zonal(n)) -> float:
+@worst
+def suns(degrees: Sequence[float], zonal: Zonal = lambda angle, n: Disc(angle).zonal(n)) -> Iterator[Array]:
     """Coefficients of discs to l = 31, each relative to itself.
 
     Bound: l steps of the recurrence of four roundings each, 32 * 4 * 2^-53 = 1.4e-14. The usual P(l-1) - P(l+1) loses
     twelve bits at 0.265 degrees and all of them at 1e-6.
     """
-    worst = 0.0
     for half_angle in np.radians(degrees).tolist():
         wanted = np.array(exact.disc(half_angle, 32), dtype=np.float64)
-        worst = max(worst, largest(np.asarray(zonal(half_angle, 32)) / wanted - 1))
-    return worst
+        yield np.asarray(zonal(half_angle, 32)) / wanted - 1
 
 
 DISC, FSUM = "60-digit decimal, relative", "exactly rounded sums"

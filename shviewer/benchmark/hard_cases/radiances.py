@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from shviewer.benchmark.hard_cases.figures import shown_as
-from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.outcome import Case, largest, worst
 from shviewer.benchmark.hard_cases.shader import SEED, SUN_AXIS
 from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
@@ -61,18 +61,17 @@ def magnitudes() -> float:
     return max(largest(np.ldexp(project_image(np.ldexp(image, k), 8), -k) - plain) for k in (-900, -500, 500, 664, 900))
 
 
-def subnormal_image() -> float:
+@worst
+def subnormal_image() -> Iterator[Array]:
     """A constant image of 5e-324 to 1e-310, in units of 5e-324.
 
     Bound: each of 4 x 8 texel products may be rounded to a whole unit, once more per row and order: 64 units.
     """
-    worst = 0.0
     for radiance in (5e-324, 1e-320, 1e-310):
         found = project_image(np.full((4, 8, 3), radiance), 4)
         wanted = np.zeros((16, 3))
         wanted[0] = radiance * np.sqrt(4 * np.pi)
-        worst = max(worst, largest((found - wanted) / 5e-324))
-    return worst
+        yield (found - wanted) / 5e-324
 
 
 def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] = figures_of) -> float:

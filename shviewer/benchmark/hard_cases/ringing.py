@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from math import comb, pi, sqrt
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from shviewer.benchmark.hard_cases.outcome import Case, largest
+from shviewer.benchmark.hard_cases.outcome import Case, worst
 from shviewer.benchmark.hard_cases.radiances import figures_of
 from shviewer.benchmark.hard_cases.shader import SUN_AXIS
 from shviewer.harmonics.basis import Array
@@ -45,19 +46,18 @@ def meridian(coefficients: Array, theta: Array) -> Array:
     return Synthesis(coefficients).on_rows(theta, 2)[:, 0, 0]
 
 
-def gibbs(reconstruct: Reconstruct = meridian) -> float:
+@worst
+def gibbs(reconstruct: Reconstruct = meridian) -> Iterator[float]:
     """The overshoot of a hemisphere in 2 to 64 bands against OVERSHOOT.
 
     Bound: two grids find a minimum to (pi/4000/1000)^2 n^2 / 4, 6e-10 at 64 bands; the known figures have 5e-4.
     """
-    worst = 0.0
     for n_bands, wanted in OVERSHOOT.items():
         coefficients = hemisphere(n_bands)
         coarse = np.linspace(0, pi, 4001)
         place = coarse[reconstruct(coefficients, coarse).argmin()]
         fine = np.clip(place + np.linspace(-1, 1, 2001) * pi / 4000, 0, pi)
-        worst = max(worst, largest(-reconstruct(coefficients, fine).min() - wanted))
-    return worst
+        yield -reconstruct(coefficients, fine).min() - wanted
 
 
 def deringed(factors: Callable[[Array], Array] = lambda coefficients: dering(coefficients).factors) -> float:
@@ -75,25 +75,26 @@ def deringed(factors: Callable[[Array], Array] = lambda coefficients: dering(coe
     return worst
 
 
-def irradiance(factors: Callable[[int], Array] = irradiance_factors) -> float:
+@worst
+def irradiance(factors: Callable[[int], Array] = irradiance_factors) -> Iterator[ArrayLike]:
     """A(l) to l = 1000, relative; the odd ones above 1 are 0, relative to pi.
 
     Closed form 2 pi (-1)^(l/2-1) / ((l+2)(l-1)) l!/(2^l (l/2)!^2), exact as a fraction of 2 pi. Bound: 1000 steps of
     two roundings, 1000 * 2 * 2^-53 = 2.2e-13.
     """
     ours = np.asarray(factors(1001), dtype=np.float64)
-    worst = max(largest(ours[1] * 3 / (2 * pi) - 1), largest(ours[3::2] / pi))
+    yield ours[1] * 3 / (2 * pi) - 1
+    yield ours[3::2] / pi
     for l in range(0, 1001, 2):
         share = Fraction((-1) ** (l // 2 - 1 if l else 1) * comb(l, l // 2), 2**l * (l + 2) * (l - 1))
-        worst = max(worst, largest(ours[l] / (2 * pi * float(share)) - 1))
-    return worst
+        yield ours[l] / (2 * pi * float(share)) - 1
 
 
-def green_figures() -> float:
+@worst
+def green_figures() -> Iterator[float]:
     """The energy of the first bands of Green's light in the figures. Bound: 1e-13, sums of a hundred squares."""
-    light = find_light("green")
-    shares = np.cumsum(figures_of(light)[1:])
-    return max(largest(1 - shares[n - 1] - float(Fraction(text))) for n, text in GREEN_LEFT_OUT.items())
+    shares = np.cumsum(figures_of(find_light("green"))[1:])
+    yield from (1 - shares[n - 1] - float(Fraction(text)) for n, text in GREEN_LEFT_OUT.items())
 
 
 def band_limited() -> float:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from helpers import unavailable
 from places import hard_cases
 
 from shviewer.benchmark.hard_cases import evaluation as ev
-from shviewer.benchmark.hard_cases import exact, identities, projecting, radiances, ringing, rotating, sampling
+from shviewer.benchmark.hard_cases import exact, figures, identities, projecting, radiances, ringing, rotating, sampling
 from shviewer.benchmark.hard_cases.outcome import Case, Outcome
 from shviewer.benchmark.hard_cases.shader import renderer_or_reason
 from shviewer.benchmark.hard_cases.table import CASES, as_json, as_markdown, as_text, from_json, measure
@@ -60,6 +61,12 @@ def test_the_shader_stays_within_a_millionth_of_the_peak_per_band(
         unavailable("no OpenGL without display")
     assert row["shader_bound"] == pytest.approx(32e-6)
     assert 0 < row["shader_error"] <= row["shader_bound"], "0 would mean that nothing was drawn"
+
+
+def test_a_figure_that_is_nan_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    lost = SimpleNamespace(extremes=SimpleNamespace(negative_area=np.nan, negative_energy=np.nan))
+    monkeypatch.setattr(figures, "shown_as", lambda *_: lost)
+    assert figures.below_zero() == np.inf
 
 
 def test_no_two_cases_share_a_name() -> None:
