@@ -97,6 +97,8 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
             "np.roll(before, 2, axis=0) + np.roll(before, 2, axis=1)",
             "np.roll(before, 2, axis=0)",
         ),
+        ("rows of monomials times Y, not over its factor", "(factor * SQUARED**q)", "SQUARED**q"),
+        ("x^2 in one monomial too few", "(old[-q:], y, new[count:-1])", "(old[:q], y, new[count:-1])"),
     ),
     "harmonics/evaluation/products.py": (
         ("T(k) of |z| in the south", "chebyshev[1::2] *= self.waves.south()", "pass"),

@@ -3,9 +3,7 @@
 Every figure is the CPU time of one thread, the least of interleaved runs, since other programs can only add to it. Both start
 from directions, weights and the values of three channels and end with the coefficients. sphericart is run twice: on all
 samples at once, and in blocks that fit the cache; the ratio is to the faster of the two. "ns" is per sample and function.
-The basis alone is beside sphericart's own, and beside two bounds of numpy, as ratios to it, too: "write", every value written
-once by one multiplication; "passes", the same in blocks within the cache, after directions are laid out by coordinate and every
-function of z and of the azimuth is made by a single multiplication. Where that is above 1.5, numpy cannot reach the goal.
+The basis alone is beside sphericart's own, as a ratio to it; "write" is that of writing every value by one multiplication.
 
 Goals: a ratio of at most 1 to sphericart for 3 to 32 bands and 10 000 to a million samples, and of 1.5 for the basis alone; at
 most 200 MiB beside a million samples at 16 bands; 10 000 evaluations projected by Gauss-Legendre within 0.5 ms up to 32 bands,
@@ -83,37 +81,13 @@ def sphericart_peer(samples: DirectionSet, values: np.ndarray, n_bands: int, blo
     return project
 
 
-def passes(directions: np.ndarray, n_bands: int) -> Callable[[], object]:
-    """The least that the basis can be made with, on numbers that mean nothing: (n**2, k)."""
-    size = min(10_000, len(directions))
-    coordinates, azimuth, height = np.ones((3, size)), np.ones((2, n_bands, size)), np.ones((n_bands, size))
-
-    def work() -> np.ndarray:
-        table = np.empty((n_bands**2, len(directions)))
-        for start in range(0, len(directions), size):
-            block = slice(start, start + size)
-            used = slice(0, len(directions[block]))
-            coordinates[:, used] = directions[block].T
-            x, _, z = coordinates[:, used]
-            for l in range(n_bands):
-                if l:
-                    np.multiply(azimuth[:, l - 1, used], x, out=azimuth[:, l, used])
-                    np.multiply(height[:l, used], z, out=height[:l, used])
-                middle = l * (l + 1)
-                np.multiply(height[: l + 1, used], azimuth[0, : l + 1, used], out=table[middle : middle + l + 1, block])
-                np.multiply(height[:l, used], azimuth[1, 1 : l + 1, used], out=table[l * l : middle, block])
-        return table
-
-    return work
-
-
 def against_sphericart(count: int, repeats: int) -> None:
     samples = jittered(count, 0)
     values = np.random.default_rng(0).random((len(samples.weights), 3))
     print(f"\n{len(values)} samples; least of {repeats}")
     print(
         "bands   ours ms     ns   sphericart ms     ns   in blocks ms     ns   ratio to the faster",
-        "   basis: ns ratio write passes",
+        "   basis: ns ratio write",
     )
     for n_bands in BANDS:
         if len(values) * n_bands**2 > MOST_VALUES:
@@ -121,7 +95,6 @@ def against_sphericart(count: int, repeats: int) -> None:
         candidates: dict[str, Callable[[], object]] = {
             "ours": lambda n_bands=n_bands: project_samples(recorded(values), samples, n_bands),
             "basis": lambda n_bands=n_bands: evaluate_basis(samples.directions, n_bands),
-            "passes": passes(samples.directions, n_bands),
             "bound": lambda n_bands=n_bands: np.multiply(
                 samples.weights, samples.weights, out=np.empty((n_bands**2, len(values)))
             ),
@@ -142,7 +115,7 @@ def against_sphericart(count: int, repeats: int) -> None:
             whole, blocks = times["whole"], times["blocks"]
             line += f" {whole:15.2f} {whole * per_value:6.2f} {blocks:14.2f} {blocks * per_value:6.2f}"
             line += f"{times['ours'] / min(whole, blocks):22.2f} {times['basis'] * per_value:12.2f}"
-            line += "".join(f"{times[name] / times['their basis']:6.2f}" for name in ("basis", "bound", "passes"))
+            line += "".join(f"{times[name] / times['their basis']:6.2f}" for name in ("basis", "bound"))
         print(line, flush=True)
 
 

@@ -1,21 +1,30 @@
-"""The basis of few bands as polynomials: Y of degree l is a sum of the monomials x^a y^b z^c with a + b + c = l.
+"""The basis of few bands as polynomials: Y of degree l is a homogeneous one of x, y and z.
 
-Y is even in z for even l - m and odd for odd l - m. So a degree is two small matrix products with its monomials, and each of
-these one multiplication of one of the degree before: less than functions of the azimuth and of z take.
+It is even or odd in each of the three: a polynomial of x^2, y^2 and z^2 times 1, x, y, z, xy, xz, yz or xyz, which are rows of
+the table themselves but for a factor. So the monomials of the squares serve all degrees and orders, by a small matrix product
+for each of their own degrees, and a multiplication a value remains: less than functions of azimuth and z take.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 
-from shviewer.harmonics.evaluation.indices import Array, normalise
+from shviewer.harmonics.evaluation.indices import Array, Indices, normalise
 from shviewer.harmonics.evaluation.recurrence import UNIT, normalisation
 
-MONOMIAL_BANDS = 6
-"""The most bands for which this is the fastest way; it is as exact as the others, to 1e-15 of the largest value."""
+MONOMIAL_BANDS = 8
+"""The most bands for which this is the fastest way; it is as exact as the others, to 2e-15 of the largest value."""
+
+NORMS = normalisation(4)
+SQUARED = float(2 * NORMS[2, 2])
+SCALES = np.sqrt(SQUARED) * np.array([[-1], [-1], [1]])
+"""The scales of x, y and z, so that the product of two of them is a function of degree 2; and their square."""
+
+Part = tuple[int, slice, Array]
+"""A row of the table, the rows that are it times polynomials of squares, and the factors of these, (rows, monomials)."""
 
 
 class MonomialProducts:
@@ -23,57 +32,64 @@ class MonomialProducts:
 
     def __init__(self, n_bands: int, length: int) -> None:
         self.points, self.norms = np.empty((3, length)), np.empty(length)
-        (self.constant, self.linear), *tables = _tables(n_bands)
-        self.degrees = []
-        """For each degree from 2 on: how its monomials are multiplied, and the products that give its part of the basis."""
-        x, y, z = self.points
-        even, odd = self.points[:2], self.points[2:]  # powers of z, in the order of `_powers`
-        for l, (for_even, for_odd) in enumerate(tables, start=2):
-            new, new_odd = np.empty((l + 1 + len(odd), length)), np.empty((len(even), length))
-            multiplied = (even[:l], x, new[:l]), (even[l - 1], y, new[l]), (odd, z, new[l + 1 :]), (even, z, new_odd)
-            first, last = l * l, (l + 1) ** 2
-            summed = (for_even, new, slice(first, last, 2)), (for_odd, new_odd, slice(first + 1, last, 2))
-            self.degrees.append((multiplied, summed))
-            even, odd = new, new_odd
+        squares = [np.empty((len(_powers(q)), length)) for q in range((n_bands + 1) // 2)]
+        self.squares = x, y, z = squares[1]
+        self.multiplied: list[tuple[Array, Array, Array]] = []
+        """Two factors and where their product goes: the monomials of the squares from degree 2 on."""
+        for q in range(2, len(squares)):
+            old, new, count = squares[q - 1], squares[q], len(squares[q - 1])
+            self.multiplied += (old, x, new[:count]), (old[-q:], y, new[count:-1]), (old[-1], z, new[-1])
+        memory = np.empty((n_bands**2, length))  # what is not used of it is never fetched
+        self.even, self.odd = [], []
+        for monomials, (even, *parts) in zip(squares[1:], _tables(n_bands), strict=True):
+            self.even.append((even[2], monomials, even[1]))
+            if parts:
+                factors = np.concatenate([part[2] for part in parts])
+                sums = memory[: len(factors)]
+                each = np.split(sums, np.cumsum([len(part[2]) for part in parts[:-1]]))
+                places = [(some, row, rows) for some, (row, rows, _) in zip(each, parts, strict=True)]
+                self.odd.append((factors, monomials, sums, places))
 
     def fill(self, directions: Array, table: Array) -> None:
         """Write Y(l, m) at index l(l+1) + m of `table`, (n_bands**2, length), for directions (length, 3)."""
         if not self._take(directions):
             self._take(normalise(directions))
-        table[0] = self.constant
-        np.matmul(self.linear, self.points, out=table[1:4])
-        for l, (multiplied, summed) in enumerate(self.degrees, start=2):
-            if l > 2:
-                _multiply(multiplied)
-            for factors, monomials, rows in summed:
-                np.matmul(factors, monomials, out=table[rows])
+        x, y, z = self.points
+        table[0] = NORMS[0, 0]
+        np.multiply(self.points[1:], NORMS[1, 0] / SCALES[2], out=table[1:3])
+        np.multiply(x, NORMS[1, 0] / SCALES[2], out=table[3])
+        np.multiply(y, self.points[::2], out=table[4:6])
+        np.multiply(x, z, out=table[7])
+        if len(table) > 9:
+            np.multiply(table[2], NORMS[3, 2] / (NORMS[2, 2] * NORMS[1, 0]), out=self.norms)
+            np.multiply(table[4], self.norms, out=table[10])
+        for one, other, both in self.multiplied:
+            np.multiply(one, other, out=both)
+        for factors, monomials, rows in self.even:
+            np.matmul(factors, monomials, out=table[rows])
+        for factors, monomials, sums, places in self.odd:
+            np.matmul(factors, monomials, out=sums)
+            for some, row, rows in places:
+                np.multiply(some, table[row], out=table[rows])
 
     def _take(self, directions: Array) -> bool:
-        """Fill in the monomials of degree 1 and 2; whether all directions are unit to rounding."""
-        self.points[...] = directions.T
-        multiplied, ((_, (xx, _, yy, zz), _), _) = self.degrees[0]
-        with np.errstate(over="ignore", invalid="ignore"):
-            _multiply(multiplied)
-        norms = np.add(xx, yy, out=self.norms)
-        norms += zz
-        return bool(norms.min() > 1 - UNIT and norms.max() < 1 + UNIT)  # NaN is not
+        """Take -x, -y and z, scaled, and their squares; whether all directions are unit to rounding."""
+        with np.errstate(over="ignore"):
+            np.multiply(directions.T, SCALES, out=self.points)
+            np.multiply(self.points, self.points, out=self.squares)
+        norms = np.add(self.squares[0], self.squares[1], out=self.norms)
+        norms += self.squares[2]
+        return bool(norms.min() > SQUARED * (1 - UNIT) and norms.max() < SQUARED * (1 + UNIT))  # NaN is not
 
 
-def _multiply(rows: Iterable[tuple[Array, Array, Array]]) -> None:
-    """Fill the last of each three with the product of the others."""
-    for one, other, product in rows:
-        np.multiply(one, other, out=product)
-
-
-def _powers(l: int, parity: int) -> tuple[list[int], list[int]]:
-    """The powers of y and of z in the monomials of degree l with even (0) or odd (1) powers of z."""
-    pairs = [(b, c) for c in range(parity, l + 1, 2) for b in range(l - c + 1)]
-    return [b for b, _ in pairs], [c for _, c in pairs]
+def _powers(q: int) -> Indices:
+    """The powers of y^2 and z^2 in the monomials of degree q of squares, (monomials, 2): x^2 in all but the last q + 1."""
+    return np.array([(some - z, z) for some in range(q + 1) for z in range(some + 1)])
 
 
 @lru_cache(maxsize=MONOMIAL_BANDS)
-def _tables(n_bands: int) -> tuple[tuple[Array, Array], ...]:
-    """The factors of x, y, z in Y(1, m) beside Y(0, 0), then of the monomials of each degree for even and for odd l - m.
+def _tables(n_bands: int) -> list[list[Part]]:
+    """For each degree of monomials from 1 on: what they make, first the rows that are even in x, y and z.
 
     By the recurrence of recurrence.py, times powers of x^2 + y^2 + z^2 = 1: G(l) = q z G(l-1) - (q-1) G(l-2).
     """
@@ -91,9 +107,17 @@ def _tables(n_bands: int) -> tuple[tuple[Array, Array], ...]:
             bands[l][l - m] = norms[l, m] * polynomial.imag
             bands[l][l + m] = norms[l, m] * polynomial.real
         azimuth = azimuth + 1j * np.roll(azimuth, 1, axis=0)
-    linear = bands[1][:, [0, 1, 0], [0, 0, 1]]
-    tables = [(normalisation(1)[0, 0], linear)]
-    for l, band in enumerate(bands[2:], start=2):
-        even, odd = (band[parity::2][(slice(None), *_powers(l, parity))] for parity in (0, 1))
-        tables.append((np.ascontiguousarray(even), np.ascontiguousarray(odd)))
-    return tuple(tables)
+    tables: list[list[Part]] = [[] for _ in range((n_bands + 1) // 2)]
+    odd: dict[tuple[int, int, int], tuple[int, float]] = {(0, 0, 0): (0, 1.0)}
+    for l, band in enumerate(bands):
+        for y, z in product((0, 1), repeat=2):
+            x = (l - y - z) % 2
+            q = (l - x - y - z) // 2
+            if q >= 0:
+                some = slice(z, l - x, 2) if y else slice(l + x, 2 * l + 1 - z, 2)
+                rows = slice(l * l + some.start, l * l + some.stop, 2)
+                powers = 2 * _powers(q) + [y, z]
+                factors = band[some, powers[:, 0], powers[:, 1]]
+                row, factor = odd.setdefault((x, y, z), (rows.start, factors[0, 0]))
+                tables[q].append((row, rows, factors / (factor * SQUARED**q)))
+    return tables[1:]

@@ -18,8 +18,8 @@ FEWEST_BANDS, MOST_BANDS = 3, 32
 FEWEST_DIRECTIONS = 1000
 """The fewest directions for which they are, and which make up for the tables."""
 
-BLOCK, BLOCK_WAVES = 10_000, 120_000
-"""The most directions in a block, and the most values of T(k)(z): large, as there are few rows, but within the caches."""
+BLOCK, BLOCK_WAVES = 20_000, 120_000
+"""The most directions in a block, and the most values of T(k)(z): large, for few calls, but within the caches."""
 
 KEPT_BANDS = 16
 """The most bands whose memory, up to 12 MiB, is kept for the next call."""
