@@ -186,13 +186,7 @@ def _reports() -> dict[str, bytes]:
 def _stamps() -> dict[str, bytes]:
     plain, busy = picture_of(), picture_of(error="relative", error_range=0.2, muted=frozenset({1}), basis=(2, 1))
     texts = {name: metadata(picture, frame_of(picture), "GL") for name, picture in (("plain", plain), ("busy", busy))}
-    old = {
-        name: value for name, value in json.loads(texts["busy"]).items() if name not in ("schema", "state", "figures")
-    }
-    return {
-        **{f"stamp/{name}.json": text.encode() for name, text in texts.items()},
-        "stamp/before-schemas.json": json.dumps(old).encode(),
-    }
+    return {f"stamp/{name}.json": text.encode() for name, text in texts.items()}
 
 
 def _references() -> dict[str, bytes]:

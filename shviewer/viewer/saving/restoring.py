@@ -109,9 +109,7 @@ def _restored(text: str, said: dict[str, Any], path: Path, limits: Limits, light
 
 def _names(said: dict[str, Any]) -> dict[str, Any]:
     """The part of a stamp that names the light and what it is compared with; empty where there is none."""
-    if "state" not in said:
-        return {"light": said.get("light_argument"), "compare": said.get("compare")}
-    state = said["state"]
+    state = said.get("state")
     recipe = state.get("recipe") if isinstance(state, dict) else None
     return recipe if isinstance(recipe, dict) else {}
 

@@ -1,7 +1,6 @@
 """The stamp of a picture: everything that made it, and its figures, as one JSON text. stamp_reading.py reads it.
 
-Schema 1: `state` holds every field of recipe and view, by its name. Older stamps have no schema and no `state`; they are
-read as far as they go. Keys are added and never change their meaning.
+Schema 1: `state` holds every field of recipe and view, by its name. Keys are added and never change their meaning.
 """
 
 from __future__ import annotations

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
@@ -33,27 +32,6 @@ BESIDE: dict[str, Kind] = {
 }
 """Fields of the view that are no options, and their kinds."""
 
-BEFORE_SCHEMAS: dict[str, tuple[str, Callable[[Any], Any]]] = {
-    "bands": ("n_bands", int),
-    "muted": ("muted", frozenset),
-    "quantity": ("quantity", str),
-    "split_sun": ("split_sun", bool),
-    "window": ("window", str),
-    "window_width": ("window_width", float),
-    "method": ("method", str),
-    "samples_asked": ("samples", int),
-    "seed": ("seed", int),
-    "exposure_stops": ("exposure_stops", float),
-    "tone": ("tone", str),
-    "error": ("error", lambda error: error["kind"]),
-    "marks": ("marks", bool),
-    "lobe_view": ("lobe_view", bool),
-    "basis": ("basis", tuple),
-    "camera_degrees": ("camera", tuple),
-    "zoom": ("zoom", float),
-}
-"""Keys of a stamp without a schema: the field that each of them tells, and how."""
-
 
 def state_of_stamp(text: str, light: str | Light | None = None, compare: CoefficientLight | None = None) -> State:
     """The state that a stamp tells. `light` and `compare` give what no text can hold: a light object and coefficients.
@@ -62,10 +40,10 @@ def state_of_stamp(text: str, light: str | Light | None = None, compare: Coeffic
     """
     try:
         said = json.loads(text)
-        if said.get("schema", 0) > SCHEMA:
+        if said["schema"] > SCHEMA:
             raise UsageError(f"a picture of schema {said['schema']}: this version reads {SCHEMA}; update shviewer")
-        recipe, view = _told(said["state"]) if "state" in said else _told_before_schemas(said)
-        given = (said["state"]["recipe"] if "state" in said else said).get("compare")
+        recipe, view = _told(said["state"])
+        given = said["state"]["recipe"].get("compare")
         compared = str(given["name"]) if given else ""
     except (ArithmeticError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
         raise UsageError(f"no stamp of a picture ({error}): save the picture again") from error
@@ -93,8 +71,6 @@ def _told(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     if recipe.get("turn") is not None:
         recipe["turn"] = turn_of(view["light_rotation"])
     view["trace"] = tuple(map(_change, view.get("trace", ())))
-    if view["sheet"] == "convergence":  # its curve is always there by now
-        view["sheet"] = ""
     for name, kind in BESIDE.items():
         if name in view and (view[name] is not None or name != "sweep_to"):
             view[name] = kind.taken(name, view[name])
@@ -128,13 +104,3 @@ def _change(said: Any) -> float:
     if not (is_number(said) and said >= 0):
         raise ValueError(f"a share of {said!r}")
     return float(said)
-
-
-def _told_before_schemas(said: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    told = {name: make(said[key]) for key, (name, make) in BEFORE_SCHEMAS.items() if said.get(key) is not None}
-    recipe, view = taken(told, Recipe), taken(told, View)
-    reading = Reading(sanitize=bool(said.get("sanitize", False)), layout=str(said.get("layout", "auto")))
-    light = said.get("light_argument")
-    if not isinstance(light, str | None) or reading.layout not in LAYOUT_CHOICES:
-        raise ValueError("a light or a layout that there is not")
-    return {"light": light, "reading": reading, **recipe}, view
