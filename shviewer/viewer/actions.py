@@ -63,7 +63,7 @@ def next_choice(state: State, name: str) -> State:
     """Give an option of recipe or view the choice after the present one; after the last comes the first."""
     kind = OPTIONS[name].kind
     assert isinstance(kind, Choice)
-    return changed(state, **{name: _after(_held(state, name), kind.choices)})
+    return changed(state, **{name: _after(held(state, name), kind.choices)})
 
 
 def next_encoding(state: State) -> State:
@@ -110,7 +110,7 @@ def next_third(state: State) -> State:
 
 def toggle(state: State, name: str) -> State:
     """Make a field of recipe or view False if it is True, and True if it is False."""
-    return changed(state, **{name: not _held(state, name)})
+    return changed(state, **{name: not held(state, name)})
 
 
 def more_bands(state: State, count: int) -> State:
@@ -215,9 +215,9 @@ def auto_exposure(state: State) -> State:
     return changed(state, exposure_stops=None, exposure_offset=0.0)
 
 
-def toggle_sheet(state: State, sheet: str) -> State:
-    """Plot that in place of the curve, or the curve again."""
-    return changed(state, sheet="" if state.view.sheet == sheet else sheet)
+def toggle_plane(state: State) -> State:
+    """Plot time against error in place of the curve, or the curve again."""
+    return changed(state, sheet="" if state.view.sheet else "plane")
 
 
 def toggle_lobe_view(state: State) -> State:
@@ -285,7 +285,8 @@ def escape(state: State) -> State | Command:
     return changed(state, sweep_to=None, turning="") if playing else Command.LEAVE
 
 
-def _held(state: State, name: str) -> Any:
+def held(state: State, name: str) -> Any:
+    """The value of a field of recipe or view."""
     return getattr(state.recipe if name in IN_RECIPE else state.view, name)
 
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
-from shviewer.analysis.figures import Sums
-from shviewer.analysis.projections import Projection
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import Reconstruction, values_at
 from shviewer.harmonics.basis import Array
@@ -15,25 +14,15 @@ from shviewer.viewer.view import BESIDES
 from shviewer.words import grouped
 
 
-@dataclass(frozen=True, eq=False)
-class Beside:
-    """The second reconstruction of a picture, drawn as the first."""
+class Beside(NamedTuple):
+    """The second reconstruction of a picture, and how it is drawn."""
 
-    recipe: Recipe
-    projection: Projection
-    coefficients: Array
-    """Those shown, (n_bands**2, 3)."""
-    figures: Sums
+    found: Reconstruction
     drawn: Drawn
-
-    @classmethod
-    def of(cls, found: Reconstruction, drawn: Drawn) -> Beside:
-        """The second reconstruction, drawn in some way."""
-        return cls(found.recipe, found.projection, found.coefficients, found.sums, drawn)
 
     def values_at(self, directions: Array) -> Array:
         """Its radiance, without suns, in unit directions of the light (k, 3): (k, 3) float64."""
-        return values_at(directions, self.coefficients, self.projection.stored_as(self.figures.factors))
+        return values_at(directions, self.found.coefficients, self.found.stored)
 
 
 def recipe_beside(recipe: Recipe, beside: str) -> Recipe:

@@ -1,4 +1,4 @@
-"""Things derived from a projection for drawing, each computed once: map, surfaces, scale of the error, exposure."""
+"""Things derived from a light for drawing, each computed once: exposure, camera, peak, map, scale of the error."""
 
 from __future__ import annotations
 
@@ -11,31 +11,17 @@ from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import error_grid, grid_rows, sums
 from shviewer.analysis.projections import BEST, Projection, project
 from shviewer.analysis.recipe import Shown
-from shviewer.analysis.reconstruction import Reconstruction
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
 from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import directions_from_angles
-from shviewer.harmonics.quantities.encodings import Stored
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 from shviewer.limits import DIMMEST
 from shviewer.viewer import camera
 from shviewer.viewer.colour.error_scale import NOISE, ErrorScale, automatic_range, error_values
 from shviewer.viewer.colour.tone import exposed_for
-from shviewer.viewer.surface import (
-    LIGHT_ROWS,
-    Floats,
-    Surface,
-    basis_surface,
-    rows_for,
-    sample_light,
-    sample_reconstruction,
-    sample_stored,
-    surface,
-    unit_radius,
-)
 from shviewer.viewer.view import TONES, View
 
 WHITE_PERCENTILE = 0.99
@@ -57,9 +43,6 @@ LEVEL = 0.012
 
 PEAK = 20.0
 """How many times brighter than the mean of its light a peak has to be to be marked."""
-
-SURFACE_RADIUS = 222.0
-"""The radius in pixels, at zoom 1, for which surfaces are fine enough: that of the 1280 x 640 design."""
 
 
 def exposure_stops(view: View, light: Light) -> float:
@@ -115,52 +98,12 @@ def peak(light: Light) -> Peak | None:
     return found if found.radiance > PEAK * abs(mean) else None
 
 
-def surfaces(
-    view: View, light: Light, projection: Projection, shown: Shown, other: Reconstruction | None = None
-) -> tuple[Surface, ...]:
-    """The surfaces of the light, of its reconstruction (or a basis function in its place), and perhaps of the error.
-
-    other: a second reconstruction, in place of the error.
-    """
-    radius = SURFACE_RADIUS * view.zoom
-    rows = max(LIGHT_ROWS, rows_for(shown.n_bands, radius))
-    original, reconstruction, error, unit = _compared_surfaces(light, projection, shown, rows)
-    if other is not None:
-        error = surface(_sampled(other.coefficients, other.stored, rows), unit, root=True)
-    if view.basis is not None:
-        l, m = view.basis
-        reconstruction = basis_surface(l, m, rows_for(l + 1, radius))
-    return (original, reconstruction, error)[: view.n_spheres]
-
-
 @remember(most=2, doing="drawing the map")
 def reconstruction_map(
     light: Light, projection: Projection, shown: Shown, size: tuple[int, int]
 ) -> NDArray[np.float32]:
     """The map of the reconstruction with (rows, columns) `size`: spline coefficients (rows, columns, 4)."""
     return Synthesis(sums(light, projection, shown)[0]).spline_map(*size)
-
-
-@remember(most=4, doing="making surfaces")
-def _compared_surfaces(
-    light: Light,
-    projection: Projection,
-    shown: Shown,
-    rows: int,
-) -> tuple[Surface, Surface, Surface, float]:
-    coefficients, figures = sums(light, projection, shown)
-    stored = projection.stored_as(figures.factors)
-    original, reconstruction = sample_light(light, rows), _sampled(coefficients, stored, rows)
-    unit = unit_radius(original, reconstruction)
-    first, second, third = (
-        surface(values, unit, root=True) for values in (original, reconstruction, reconstruction - original)
-    )
-    return first, second, third, unit
-
-
-def _sampled(coefficients: Array, stored: Stored | None, rows: int) -> Floats:
-    """Luminance of a reconstruction on the grid of a surface."""
-    return sample_reconstruction(coefficients, rows) if stored is None else sample_stored(stored, rows)
 
 
 @remember(most=16)

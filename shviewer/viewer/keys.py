@@ -50,6 +50,14 @@ def _each(action: Callable[[State, T], State], values: Mapping[str, T]) -> dict[
     return {key: with_value(value) for key, value in values.items()}
 
 
+def _switch(
+    key: str, help: str, name: str, words: tuple[str, str], action: Callable[[State], State] | None = None
+) -> Binding:
+    """The row of a key that turns something off and on, with a word for each. name: the field of recipe or view."""
+    turn = action or partial(do.toggle, name=name)
+    return Binding(key, help, {key: turn}, lambda state: words[bool(do.held(state, name))])
+
+
 BINDINGS: dict[str, tuple[Binding, ...]] = {
     "Bands": (
         Binding(
@@ -99,24 +107,9 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         ),
         Binding("I", "radiance, irradiance or glossy", {"I": do.next_quantity}, lambda s: in_words(s.recipe.quantity)),
         Binding("K / Shift+K", "rougher, smoother surface", _each(do.rougher, {"K": ROUGHER, "Shift+K": -ROUGHER})),
-        Binding(
-            "C",
-            "irradiance as engines store it",
-            {"C": do.next_encoding},
-            lambda s: s.view.encode or "bands",
-        ),
-        Binding(
-            "J",
-            "bands against roughness",
-            _each(do.toggle, {"J": "by_roughness"}),
-            lambda s: "shown" if s.view.by_roughness else "hidden",
-        ),
-        Binding(
-            "U",
-            "sun as a disc of its own",
-            _each(do.toggle, {"U": "split_sun"}),
-            lambda s: "split" if s.recipe.split_sun else "whole",
-        ),
+        Binding("C", "irradiance as engines store it", {"C": do.next_encoding}, lambda s: s.view.encode or "bands"),
+        _switch("J", "bands against roughness", "by_roughness", ("hidden", "shown")),
+        _switch("U", "sun as a disc of its own", "split_sun", ("whole", "split")),
         Binding("M", "projection method", {"M": do.next_method}, lambda s: s.recipe.method),
         Binding(
             "S / Shift+S",
@@ -143,19 +136,9 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
             {"D": do.next_third},
             lambda s: s.view.error if s.view.beside == "off" else s.view.beside,
         ),
-        Binding(
-            "X",
-            "mark minimum, largest error",
-            _each(do.toggle, {"X": "marks"}),
-            lambda s: "marked" if s.view.marks else "not marked",
-        ),
+        _switch("X", "mark minimum, largest error", "marks", ("not marked", "marked")),
         Binding("Y", "look at the next mark", {"Y": Command.FACE_MARK}),
-        Binding(
-            "B",
-            "time against error so far",
-            _each(do.toggle_sheet, {"B": "plane"}),
-            lambda s: "shown" if s.view.sheet == "plane" else "hidden",
-        ),
+        _switch("B", "time against error so far", "sheet", ("hidden", "shown"), do.toggle_plane),
         Binding("mouse over", "values in that direction", {}),
     ),
     "Picture": (
@@ -167,18 +150,8 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         ),
         Binding("N", "exposure from the light", {"N": do.auto_exposure}),
         Binding("O", "tone curve", _each(do.next_choice, {"O": "tone"}), lambda s: s.view.tone),
-        Binding(
-            "V",
-            "surfaces: radius shows magnitude",
-            {"V": do.toggle_lobe_view},
-            lambda s: "surfaces" if s.view.lobe_view else "spheres",
-        ),
-        Binding(
-            "G",
-            "the whole sphere as a map",
-            {"G": do.toggle_whole_sphere},
-            lambda s: "map" if s.view.whole_sphere else "spheres",
-        ),
+        _switch("V", "surfaces: radius shows magnitude", "lobe_view", ("spheres", "surfaces"), do.toggle_lobe_view),
+        _switch("G", "the whole sphere as a map", "whole_sphere", ("spheres", "map"), do.toggle_whole_sphere),
         Binding(
             "Tab / Shift+Tab",
             "basis function after, before",

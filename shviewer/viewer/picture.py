@@ -28,9 +28,10 @@ from shviewer.viewer import camera
 from shviewer.viewer.beside import Beside, recipe_beside
 from shviewer.viewer.colour.error_scale import ErrorScale
 from shviewer.viewer.colour.tone import steepest
-from shviewer.viewer.derived import Peak, camera_of, error_scale, exposure_stops, peak, reconstruction_map, surfaces
+from shviewer.viewer.derived import Peak, camera_of, error_scale, exposure_stops, peak, reconstruction_map
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces, map_size
 from shviewer.viewer.state import FRONT, State, changed
+from shviewer.viewer.surface import surfaces
 
 LIVE = (
     *("camera", "light_rotation", "zoom", "pan", "whole_sphere", "map_centre", "marks", "cursor", "cursor_visible"),
@@ -223,7 +224,7 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
         light_from_world=camera.light_from_world(view.light_rotation),
         exposure_stops=stops,
         error_scale=scale,
-        beside=Beside.of(other, drawn if view.lobe_view else drawn_as(other)) if other is not None else None,
+        beside=Beside(other, drawn if view.lobe_view else drawn_as(other)) if other is not None else None,
         projection=projection,
         figures=found.sums,
         peak=peak(whole),

@@ -15,12 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.analysis.cache import remember
+from shviewer.analysis.figures import sums
+from shviewer.analysis.projections import Projection
+from shviewer.analysis.recipe import Shown
+from shviewer.analysis.reconstruction import Reconstruction
 from shviewer.harmonics.basis import Array, count_bands, index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths, directions_from_angles
 from shviewer.harmonics.quantities.encodings import Stored
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
+from shviewer.viewer.view import View
 
 Floats = NDArray[np.float32]
 
@@ -38,6 +43,9 @@ ASIDE = 1e-7
 
 BLOCK_ROWS = 64
 
+RADIUS = 222.0
+"""The radius in pixels, at zoom 1, for which surfaces are fine enough: that of the 1280 x 640 design."""
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -46,6 +54,38 @@ class Surface:
     values: Floats
     clipped: bool
     """Whether larger magnitudes were cut off at radius 1."""
+
+
+def surfaces(
+    view: View, light: Light, projection: Projection, shown: Shown, other: Reconstruction | None = None
+) -> tuple[Surface, ...]:
+    """The surfaces of the light, of its reconstruction (or a basis function in its place), and perhaps of the error.
+
+    other: a second reconstruction, in place of the error.
+    """
+    radius = RADIUS * view.zoom
+    rows = max(LIGHT_ROWS, rows_for(shown.n_bands, radius))
+    original, reconstruction, error, unit = _compared_surfaces(light, projection, shown, rows)
+    if other is not None:
+        error = surface(sample_reconstruction(other.coefficients, rows, other.stored), unit, root=True)
+    if view.basis is not None:
+        l, m = view.basis
+        reconstruction = basis_surface(l, m, rows_for(l + 1, radius))
+    return (original, reconstruction, error)[: view.n_spheres]
+
+
+@remember(most=4, doing="making surfaces")
+def _compared_surfaces(
+    light: Light, projection: Projection, shown: Shown, rows: int
+) -> tuple[Surface, Surface, Surface, float]:
+    coefficients, figures = sums(light, projection, shown)
+    stored = projection.stored_as(figures.factors)
+    original, reconstruction = sample_light(light, rows), sample_reconstruction(coefficients, rows, stored)
+    unit = unit_radius(original, reconstruction)
+    first, second, third = (
+        surface(values, unit, root=True) for values in (original, reconstruction, reconstruction - original)
+    )
+    return first, second, third, unit
 
 
 def rows_for(n_bands: int, radius: float) -> int:
@@ -58,9 +98,9 @@ def rows_for(n_bands: int, radius: float) -> int:
     return max(FEWEST_ROWS, min(int(2 ** ceil(log2(max(intervals, 1.0)))) + 1, MOST_ROWS))
 
 
-def sample_reconstruction(coefficients: Array, rows: int) -> Floats:
-    """Rec. 709 luminance of the sum with coefficients (n**2, 3) on the grid, (rows, 2 (rows - 1))."""
-    return _synthesise(coefficients @ LUMINANCE, rows)
+def sample_reconstruction(coefficients: Array, rows: int, stored: Stored | None = None) -> Floats:
+    """Rec. 709 luminance on the grid, (rows, 2 (rows - 1)): of the sum with coefficients (n**2, 3), or of an encoding."""
+    return _synthesise(coefficients @ LUMINANCE, rows) if stored is None else _sampled(stored.irradiance, rows)
 
 
 def sample_basis(l: int, m: int, rows: int) -> Floats:
@@ -70,11 +110,6 @@ def sample_basis(l: int, m: int, rows: int) -> Floats:
     coefficients = np.zeros((l + 1) ** 2)
     coefficients[index(l, m)] = 1
     return _synthesise(coefficients, rows)
-
-
-def sample_stored(stored: Stored, rows: int) -> Floats:
-    """The same of an irradiance that an encoding keeps."""
-    return _sampled(stored.irradiance, rows)
 
 
 @remember(most=2)

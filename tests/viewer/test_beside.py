@@ -69,7 +69,7 @@ def test_of_radiance_the_third_pane_of_an_exr_is_the_second_reconstruction(rende
     assert picture.beside is not None
     plain = picture_of(error="signed")
     np.testing.assert_array_equal(pixels[y, x], render_linear(renderer, plain, frame)[y, round(frame.spheres[1].x)])
-    assert picture.beside.figures.relative_l2 == plain.figures.relative_l2
+    assert picture.beside.found.sums.relative_l2 == plain.figures.relative_l2
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,10 @@ class PaneRenderer:
         beside = picture.beside if shown == "ERROR" else None
         self._held.bind(picture, shown, beside=beside is not None)
         if beside is not None:
-            picture, shown = replace(picture, coefficients=beside.coefficients, drawn=beside.drawn), "RECONSTRUCTION"
+            picture, shown = (
+                replace(picture, coefficients=beside.found.coefficients, drawn=beside.drawn),
+                "RECONSTRUCTION",
+            )
         ends = np.cumsum([0, len(picture.original.lobes), len(picture.compared.lobes), len(picture.suns)]).tolist()
         source, lobes, suns = picture.original, tuple(ends[0:2]), tuple(ends[2:4])
         if shown == "ERROR":  # the error of what is left without the suns, if there are any

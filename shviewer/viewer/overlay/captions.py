@@ -217,8 +217,8 @@ def _error_words(picture: Picture) -> tuple[str, list[Part]]:
 
 def _beside_words(picture: Picture, second: Beside) -> tuple[str, list[Part]]:
     """Another reconstruction in place of the error: which, and how far it is from the light."""
-    reached = share(second.figures.relative_l2, floor=second.figures.floor)
-    what = words_of(picture.state.view.beside, second.recipe)
+    reached = share(second.found.sums.relative_l2, floor=second.found.sums.floor)
+    what = words_of(picture.state.view.beside, second.found.recipe)
     return f"{what[0].lower()}{what[1:]}", [(f"relative L2 error {reached}", f"error {reached}")]
 
 

@@ -90,8 +90,8 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "beside": beside
         and {
             "kind": state.view.beside,
-            "method_words": beside.projection.method,
-            "relative_l2": beside.figures.relative_l2,
+            "method_words": beside.found.projection.method,
+            "relative_l2": beside.found.sums.relative_l2,
         },
         "overlay": overlay,
         "marks": state.view.marks,
