@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import Axes, turn
 from shviewer.coefficients.programs import OURS
-from shviewer.coefficients.source_code import Row, glsl_table, identifier
+from shviewer.coefficients.shader_code import glsl_table
+from shviewer.coefficients.table import Row, Table
 from shviewer.coefficients.texts import convention_text
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import LUMINANCE
@@ -130,12 +131,12 @@ def stored_rows(encoding: Encoding, numbers: NDArray[np.generic]) -> list[Row]:
     return [Row((("number", place),), [repr(value) for value in row]) for place, row in places]
 
 
-def glsl_decoder(name: str, function: str, comments: Sequence[str], rows: Sequence[Row], formula: str) -> str:
+def glsl_decoder(table: Table) -> str:
     """The numbers, and the function of a normal that decodes them, GLSL 3.30 and later, without a #version line."""
-    symbol = identifier(name)
+    assert table.stored is not None
     head = [
         "// n: unit normal, in the axes named above; the irradiance there, not divided by pi",
-        f"vec3 {function}(vec3 n) {{",
+        f"vec3 {table.function}(vec3 n) {{",
     ]
-    body = [line.replace("{s}", symbol) for line in GLSL[formula]]
-    return "\n".join([*comments, "", *glsl_table(symbol, rows), "", *head, *body, "}", ""])
+    body = [line.replace("{s}", table.symbol) for line in GLSL[table.stored.encoding.formula]]
+    return "\n".join([*glsl_table(table), *head, *body, "}", ""])

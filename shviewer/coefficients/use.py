@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.stamp import Value
+from shviewer.coefficients.table import Table
 from shviewer.harmonics.basis import count_bands
 
 
@@ -135,24 +136,12 @@ def unity_vectors(numbers: NDArray[np.generic]) -> dict[str, tuple[float, float,
     return found | {"unity_SHC": (float(sh[0, 8]), float(sh[1, 8]), float(sh[2, 8]), 1.0)}
 
 
-def with_use(
-    stamp: dict[str, Value], numbers: NDArray[np.generic], convention: Convention, kind: str, names: tuple[str, str]
-) -> dict[str, Value]:
-    """The stamp with what to type after `layout`, and for Unity its vectors.
-
-    numbers: (n**2, 3), as they are written; names: symbol and function, as for `use_of`.
-    """
+def with_use(table: Table, kind: str) -> Table:
+    """A table of coefficients with what to type after `layout`, and for Unity its vectors."""
     added: dict[str, Value] = {}
-    if line := use_of(convention, kind, count_bands(numbers), *names):
+    if line := use_of(table.convention, kind, count_bands(table.numbers), table.symbol, table.function):
         added["use"] = line
-    if convention.name == "unity":
-        vectors = unity_vectors(numbers).items()
+    if table.convention.name == "unity":
+        vectors = unity_vectors(table.numbers).items()
         added["unity-vectors"] = "; ".join(f"{name} = ({', '.join(map(repr, vector))})" for name, vector in vectors)
-    return with_keys(stamp, added)
-
-
-def with_keys(stamp: dict[str, Value], added: dict[str, Value]) -> dict[str, Value]:
-    """The stamp with more keys after `layout`."""
-    items = list(stamp.items())
-    place = [*stamp].index("layout") + 1 if "layout" in stamp else len(items)
-    return dict([*items[:place], *added.items(), *items[place:]])
+    return table.with_keys(added)

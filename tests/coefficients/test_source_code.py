@@ -18,7 +18,7 @@ import shviewer
 from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.coefficients.programs import CONVENTIONS
-from shviewer.coefficients.source_code import identifier
+from shviewer.coefficients.table import identifier
 from shviewer.coefficients.texts import parse_convention
 from shviewer.coefficients.writing import real_columns
 from shviewer.errors import UsageError
