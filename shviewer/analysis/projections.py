@@ -119,7 +119,7 @@ def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
 
 
 def _known(light: Light, n_bands: int) -> OrderedDict[Way, Measurement]:
-    known: OrderedDict[Any, Measurement] = MEMORY.results(light, (Measurement, light.quantity, n_bands))
+    known: OrderedDict[Any, Measurement] = MEMORY.results(light, (Measurement, light, n_bands))
     return known
 
 
