@@ -148,7 +148,9 @@ def solo_band(state: State, band: int) -> State:
 def move_cursor(state: State, step: int) -> State:
     """Move the cursor along the band bars; the first press only shows where it is."""
     moved = (state.view.cursor + step) % state.recipe.n_bands if state.view.cursor_visible else state.view.cursor
-    return changed(state, cursor=moved, cursor_visible=True)
+    unseen = state.view.sheet or state.view.by_roughness or state.view.encode
+    said = f"band {moved}: Enter mutes it or brings it back" if unseen else ""
+    return changed(state, cursor=moved, cursor_visible=True, message=said)
 
 
 def toggle_cursor(state: State) -> State:
@@ -213,6 +215,11 @@ def expose(state: State, step: float) -> State:
 
 def auto_exposure(state: State) -> State:
     return changed(state, exposure_stops=None, exposure_offset=0.0)
+
+
+def toggle_by_roughness(state: State) -> State:
+    """Plot bands against roughness in place of whatever is plotted, or the curve again."""
+    return changed(state, by_roughness=bool(state.view.sheet) or not state.view.by_roughness, sheet="")
 
 
 def toggle_plane(state: State) -> State:

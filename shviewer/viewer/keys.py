@@ -24,6 +24,7 @@ from shviewer.viewer.state import (
     describe_muted,
     describe_sanitizing,
 )
+from shviewer.viewer.unchanged import as_it_was, not_there
 from shviewer.words import grouped
 
 ROUGHER = 0.05
@@ -108,7 +109,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding("I", "radiance, irradiance or glossy", {"I": do.next_quantity}, lambda s: in_words(s.recipe.quantity)),
         Binding("K / Shift+K", "rougher, smoother surface", _each(do.rougher, {"K": ROUGHER, "Shift+K": -ROUGHER})),
         Binding("C", "irradiance as engines store it", {"C": do.next_encoding}, lambda s: s.view.encode or "bands"),
-        _switch("J", "bands against roughness", "by_roughness", ("hidden", "shown")),
+        _switch("J", "bands against roughness", "by_roughness", ("hidden", "shown"), do.toggle_by_roughness),
         _switch("U", "sun as a disc of its own", "split_sun", ("whole", "split")),
         Binding("M", "projection method", {"M": do.next_method}, lambda s: s.recipe.method),
         Binding(
@@ -197,14 +198,19 @@ HELP_PAGES = {"PageDown": 1, "PageUp": -1}
 def press(state: State, key: str) -> State | Command:
     """The state after `key`, or what the key asks the session for; a key without a binding changes nothing.
 
-    Any bound key takes a message away.
+    Any bound key takes a message away, and says why it changes nothing else.
     """
     if state.view.help_visible and key in HELP_PAGES:
         return changed(state, help_page=max(state.view.help_page + HELP_PAGES[key], 0))
-    action = ACTIONS.get(key)
+    action, asked = ACTIONS.get(key), changed(state, message="")
     if action is None:
         return state
-    return action if isinstance(action, Command) else action(changed(state, message=""))
+    if isinstance(action, Command):
+        return action
+    if words := not_there(asked, key):
+        return changed(asked, message=words)
+    done = action(asked)
+    return changed(asked, message=as_it_was(asked, key)) if done == asked else done
 
 
 def key_table() -> str:

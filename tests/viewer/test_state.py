@@ -97,6 +97,36 @@ def test_a_key_without_a_binding_changes_nothing() -> None:
         assert press(state, key) is state
 
 
+MODES = ((), ("V",), ("I", "C"), ("J",), ("B",), ("G", "D"), ("M",), ("Home",), ("PageUp",) * 40, ("K",) * 30)
+
+
+@pytest.mark.parametrize("mode", MODES, ids=lambda keys: " ".join(keys[:2]))
+def test_a_key_that_changes_nothing_says_so(mode: tuple[str, ...]) -> None:
+    state = changed(pressed(START, *mode), message="")
+    for key in ACTIONS:
+        assert press(state, key) != state, key
+
+
+@pytest.mark.parametrize("key", ["E", "Shift+E", "N", "O", "X"])
+def test_what_only_spheres_have_is_left_alone_while_surfaces_are_shown_which_is_said(key: str) -> None:
+    surfaces = pressed(START, "E", "V")
+    found = pressed(surfaces, key)
+    assert "surfaces have no" in found.view.message
+    assert changed(found, message="") == surfaces
+
+
+@pytest.mark.parametrize("keys", ["I C", "J", "B"])
+def test_a_cursor_that_nobody_sees_is_said(keys: str) -> None:
+    assert pressed(START, *keys.split(), ".").view.message == "band 0: Enter mutes it or brings it back"
+
+
+def test_j_under_b_takes_its_place() -> None:
+    found = pressed(START, "B", "J")
+    assert (found.view.sheet, found.view.by_roughness) == ("", True)
+    assert pressed(START, "J", "B", "J") == found
+    assert not pressed(found, "J").view.by_roughness
+
+
 def test_I_goes_round_the_quantities_and_comes_back_to_the_roughness_shown_last() -> None:
     shown = [pressed(START, *keys.split()).recipe.quantity for keys in ("I", "I I", "I I I", "K", "K K", "K Shift+K")]
     assert shown == ["irradiance", "glossy:0.5", "radiance", "glossy:0.5", "glossy:0.55", "glossy:0.45"]
@@ -279,7 +309,8 @@ def test_reset_goes_back_to_what_was_asked_for_in_everything_but_the_light() -> 
         assert [item.name for item in fields(held) if getattr(held, item.name) == item.default] == []
     assert press(replace(other, start=asked.start), "R") == changed(asked, light="sun-sky", message="")
     assert press(other, "R") == state_of(*LIGHTS, light="sun-sky")  # where nothing was asked for
-    assert pressed(changed(asked, light="studio"), "L", "Z", "R") == changed(asked, light="studio", message="")
+    again = pressed(changed(asked, light="studio"), "L", "Z", "R")
+    assert changed(again, message="") == changed(asked, light="studio", message="")
 
 
 @pytest.mark.parametrize(

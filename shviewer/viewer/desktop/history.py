@@ -64,6 +64,14 @@ class History:
         self._done.append(step)
         return self._moved(state, step.before, step.after)
 
+    def back(self, state: State) -> None:
+        """Take a state that is shown again, as what was asked for since could not be: steps away from it were none."""
+        kept = [number for number, step in enumerate(self._done, 1) if not _differ(step.after, state, placed=False)]
+        if kept or (self._done and not _differ(self._done[0].before, state, placed=False)):
+            del self._done[kept[-1] if kept else 0 :]
+        self._undone.clear()
+        self._known = state
+
     def _moved(self, state: State, here: State, there: State) -> State:
         names = _differ(here, there, placed=True)
         values: dict[str, Any] = {name: _value(there, name) for name in names}

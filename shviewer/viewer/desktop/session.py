@@ -160,6 +160,10 @@ class Session(Showing):
             self.opening.end()
             self.back_to(self.picture, f"stopped {what}".rstrip())
 
+    def back_to(self, picture: Picture, message: str = "") -> None:
+        super().back_to(picture, message)
+        self._history.back(self.state)
+
     def drop(self, *paths: str) -> None:
         """Open files, which may have been edited since they were last opened, and what folders hold; never code.
 

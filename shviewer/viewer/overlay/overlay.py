@@ -41,7 +41,7 @@ from shviewer.viewer.overlay.plots.trace import trace_pieces
 from shviewer.viewer.picture import Picture
 
 NOT_TIMED = "nothing was projected that could be timed; M changes the method"
-NO_ROOM = "no room for time against error: enlarge the window, or B"
+NO_ROOM = "no room for {}: enlarge the window; {} closes it"
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +94,7 @@ def draw_overlay(
     heads, feet, unsaid = caption_blocks(picture, at, timing)
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]
     plane = plane_of(picture, at) if state.view.sheet == "plane" else None
-    missing = state.view.sheet == "plane" and plane is None
-    said = said_of(picture, (NO_ROOM if measured(picture) else NOT_TIMED) if missing else "")
+    said = said_of(picture, _missing(picture, at, plane))
     exposure = exposure_pieces(picture, at, numbers.exposure, unsaid) if numbers.exposure else []
     turning = bool(numbers.foot and state.view.turning and not said and work is None)
     if turning:
@@ -128,6 +127,14 @@ def draw_overlay(
             size = at.px(12.0 if at.compact else 15.0)
             blocks.append([Text("curve_head", head.left, head.baseline, head_words, size, INK, SEMIBOLD)])
     return _overlay(blocks, bars)
+
+
+def _missing(picture: Picture, at: Composition, plane: Plane | None) -> str:
+    """Why what was asked for in place of the curve is not there; "" if it is, or if nothing was."""
+    view = picture.state.view
+    if view.sheet == "plane":
+        return "" if plane else NO_ROOM.format("time against error", "B") if measured(picture) else NOT_TIMED
+    return NO_ROOM.format("bands against roughness", "J") if view.by_roughness and at.numbers.curve is None else ""
 
 
 def _plotted(

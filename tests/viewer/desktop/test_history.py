@@ -85,6 +85,20 @@ def test_messages_help_and_the_cursor_make_no_steps_and_an_undone_sweep_stops() 
     assert (session.state.recipe.n_bands, session.state.view.sweep_to) == (5, None)
 
 
+def test_what_could_not_be_is_no_step() -> None:
+    """A layout that the image cannot have was shown by Ctrl+Z as a refusal, again and again."""
+    session = Session(state_of("venice_sunset"))
+    before = pressed(session, "W")
+    while not session.state.view.message.startswith("venice_sunset"):
+        pressed(session, "L")
+    layout = session.state.recipe.reading.layout
+    assert layout == "lat-long"
+    pressed(session, "Ctrl+Z")
+    assert (told(session.state), session.state.recipe.reading.layout) == (before, "auto")
+    assert session.state.view.message.startswith("undone")
+    assert pressed(session, "Ctrl+Z")["window"] == "none"
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_any_keys_are_undone_to_the_beginning(seed: int) -> None:
     """Without a picture, so that hundreds are tried: all that keys make of a state is a step or passes."""
