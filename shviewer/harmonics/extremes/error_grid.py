@@ -19,7 +19,13 @@ from shviewer.harmonics.extremes.raster_error import Search
 from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.metrics import LUMINANCE
-from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, evaluate_rows, row_angles
+from shviewer.harmonics.quadrature import (
+    column_azimuths,
+    directions_from_angles,
+    evaluate_rows,
+    row_angles,
+    share_below_zero,
+)
 from shviewer.harmonics.synthesis import Synthesis
 
 TOLERANCE = 8e-4
@@ -155,7 +161,7 @@ class ErrorGrid:
             minimum=lowest.value,
             minimum_bound=min(lowest.value, lowest.bound),
             minimum_direction=triple(lowest.direction),
-            negative_area=float(np.count_nonzero(luminance < 0, axis=1) @ self.row_share),
+            negative_area=share_below_zero(luminance, self.theta),
             negative_energy=self._negative_energy(seen.values, seen.shown),
         )
 
