@@ -5,6 +5,7 @@ In a page of assets/guide/ they stand between two comments, <!-- generated: WHAT
     keys                    the table of keys
     usage                   the modes and their arguments
     exit codes
+    info keys               what shviewer info --json writes
     found images            which program writes what
     found lists             the same of coefficients
     bands needed            how many bands the lights of assets/report/ need
@@ -17,9 +18,15 @@ assets/report/ gets the page and the plots that the rows of its report.json make
 from __future__ import annotations
 
 import argparse
+import ast
+import inspect
 import re
+from collections.abc import Iterator
+from dataclasses import is_dataclass
+from itertools import pairwise, starmap
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import get_args, get_origin, get_type_hints
 
 from clients.measured import rendered
 from clients.measured import table as programs
@@ -29,6 +36,7 @@ from lights.found_images import table as found_images
 from places import ROOT
 from shell_files import write_shell_files
 
+from shviewer.analysis.information import Information
 from shviewer.benchmark.measuring.bands import BANDS_KEY
 from shviewer.benchmark.page import plots
 from shviewer.benchmark.page.bands_page import needed_table
@@ -67,8 +75,31 @@ def generated(what: str) -> str:
         return "\n".join(["", *needed_table(found), "", ""])
     if what == "found lists":
         return found_lists()
+    if what == "info keys":
+        return "\n".join(
+            ["", "| key | what it is |", "|---|---|", *starmap("| `{}` | {} |".format, said_of(Information)), "", ""]
+        )
     texts = {"keys": key_table(), "usage": usage(), "exit codes": exit_codes()}
     return f"\n```text\n{texts[what]}\n```\n\n"
+
+
+def said_of(holder: type, before: str = "", told: tuple[type, ...] = ()) -> Iterator[tuple[str, str]]:
+    """The keys of a dataclass as JSON, those within [] of a list, and what its source says of them; of each class once."""
+    body = ast.parse(inspect.getsource(holder)).body[0].body  # type: ignore[attr-defined]
+    texts = {
+        first.target.id: str(second.value.value)
+        for first, second in pairwise(body)
+        if isinstance(first, ast.AnnAssign) and isinstance(second, ast.Expr)
+    }
+    for name, kind in get_type_hints(holder).items():
+        held = [each for each in (kind, *get_args(kind)) if is_dataclass(each)]
+        text = texts.get(name) or inspect.cleandoc(held[0].__doc__ or "")
+        key = f"{before}{name}{'[]' * (get_origin(kind) is tuple and bool(held))}"
+        yield key, " ".join(text.split()).removesuffix(".").replace("None", "null").replace("|", "\\|")
+        for each in held:
+            if each not in told:
+                yield from said_of(each, f"{key}.", told)
+        told = (*told, *held)
 
 
 def usage() -> str:

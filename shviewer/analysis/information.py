@@ -33,9 +33,13 @@ class BandsNeeded:
     """The smallest numbers of bands whose relative L2 error is within the tolerance; None if none up to `searched` is."""
 
     tolerance: float
+    """The relative L2 error that is allowed, as a share."""
     radiance: int | None
+    """The fewest bands that show the light so well; None if none up to `searched` do."""
     irradiance: int | None
+    """The same of its irradiance."""
     searched: int
+    """The most bands that were tried."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +47,11 @@ class RoughnessServed:
     """What glossy surfaces so many bands serve, within 5 %."""
 
     bands: int
+    """How many."""
     ranges: tuple[tuple[float, float], ...]
     """Ranges of roughness, of 0.1 to 1, each from its least to its most; none if they serve no roughness."""
     words: str
+    """The ranges in words."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +59,13 @@ class SunInformation:
     """A compact source, as a disc."""
 
     direction: Triple
+    """Where its centre is."""
     theta_phi_degrees: tuple[float, float]
+    """The same as the angle from +z and the azimuth from +x towards +y."""
     width_degrees: float
+    """The angle that it is wide."""
     radiance: Triple
+    """The radiance of the disc."""
     irradiance: Triple
     """The irradiance of a surface that faces it."""
     share_of_flux: float
@@ -69,15 +79,23 @@ class CoefficientInformation:
     """The convention and the origin of the numbers in a file."""
 
     bands: int
+    """How many it has."""
     quantity: str
     """The quantity in the file: radiance, irradiance or irradiance-over-pi."""
     convention: str
+    """What --convention takes."""
     program: str
+    """The program whose convention it is."""
     basis: str
+    """The functions, in words."""
     phase: str
+    """Whether they keep the Condon-Shortley phase, in words."""
     index: str
+    """The order of the rows."""
     axes: str
+    """Its axes in ours, in words."""
     normalisation: str
+    """The normalisation of the functions."""
     stamped: bool
     """Whether the file itself names its convention."""
     implied: bool
@@ -91,29 +109,40 @@ class Information:
     """Everything that `shviewer info` says about one LIGHT."""
 
     light_argument: str
+    """LIGHT as it was given."""
     light: str
+    """The name of the light."""
     description: str
+    """What kind of light it is."""
     file: str
+    """The file, or where a built-in light comes from."""
     file_bytes: int
+    """Its size in bytes; 0 if it is not known."""
     encoding: str | None
+    """How an image is stored."""
     size: tuple[int, int] | None
     """Width and height of an image as it is stored."""
     layout: str | None
+    """The layout that the image is read in."""
     refused: str | None
     """Why the viewer refuses the image unless it is repaired; the fields below then describe the repaired image."""
     notes: tuple[str, ...]
+    """What was assumed of the file, and what was done to its values."""
     values: Values
     mean: Triple
     """The mean radiance, weighted by solid angle."""
     mean_luminance: float
+    """The Rec. 709 luminance of the mean."""
     peak: float
     """The radiance that is largest in magnitude in any channel, with its sign."""
     peak_direction: Triple
     """The direction of the peak, in the light's own frame like all directions here."""
     peak_theta_phi_degrees: tuple[float, float]
+    """The same as the angle from +z and the azimuth from +x towards +y."""
     irradiance_up: Triple
     """The irradiance of a surface that faces +z."""
     method: str
+    """How the coefficients were computed."""
     energy_share: tuple[float, ...]
     """The share of the light's energy in each band."""
     bands_needed: tuple[BandsNeeded, ...]

@@ -27,15 +27,19 @@ class Values:
     """The values of the linear radiance over the sphere; a value is one channel in one place."""
 
     minimum: float
+    """The smallest in any channel."""
     maximum: float
+    """The largest in any channel."""
     negative_values: int
+    """How many are below 0."""
     negative_or_black_area: float
     """The share of the sphere with a Rec. 709 luminance not above 0."""
     darkest: float | None
-    """The DARK_PERCENTILE of luminance over the part of the sphere where it is above 0; None if there is no such part."""
+    """The luminance that the darkest 1 % of the sphere are below, where it is above 0; None if it is nowhere above 0."""
     brightest_luminance: float
+    """The largest luminance."""
     dynamic_range_stops: float | None
-    """The range from `darkest` to `brightest_luminance`, in stops."""
+    """The range from `darkest` to `brightest_luminance`, in stops; None without a `darkest`."""
     source: str
     """Where the values were taken: "texels", or the size of a grid."""
 

@@ -59,11 +59,11 @@ def project_batch(
                 if isinstance(projected, ShviewerError):
                     raise projected
                 with failing_alone(light):
-                    print_notes_on(projected, convention.axes)
+                    print_notes_on(projected, convention.axes, light)
                     path = _free(folder, file_stem(projected.name), kind, {row.file for row in rows})
                     replacing.check(path)
                     write_atomically(path, projected.encode(convention, kind))
-                    warn_below_zero(projected)
+                    warn_below_zero(projected, light)
             except ShviewerError as error:
                 rows.append(SummaryRow(light))
                 if line:

@@ -24,6 +24,9 @@ from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.extremes.error_grid import Triple
 from shviewer.words import counted, one_line
 
+SCHEMA = {"schema": 1}
+"""In every JSON object: which keys there are. Keys are added, but none goes or changes its meaning under the same number."""
+
 FIGURES = {"relative-l2": "relative L2 error", "max-error": "largest error", "minimum": "minimum"}
 """Figures of the stamp of a coefficient file, in words."""
 
@@ -42,10 +45,10 @@ def run(options: argparse.Namespace) -> int:
             found = next(described)
         if isinstance(found, ShviewerError):
             refused, code = str(found), found.exit_code
-            objects.append({"light_argument": text, "error": refused})
+            objects.append({**SCHEMA, "light_argument": text, "error": refused})
         else:
             refused, code = found.refused, LightError.exit_code
-            objects.append(asdict(found))
+            objects.append(SCHEMA | asdict(found))
             told.append(found)
             if not options.json:
                 print(("\n" if number else "") + as_text(found), flush=True)

@@ -5,6 +5,7 @@ A process that is killed, perhaps for want of memory, takes only the light with 
 
 from __future__ import annotations
 
+import io
 import multiprocessing
 import os
 import signal
@@ -13,7 +14,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from functools import partial
 from time import perf_counter
 from typing import TypeVar
@@ -88,15 +89,16 @@ def _pool(work: Callable[[str], T], lights: deque[str], jobs: int) -> Generator[
     """Take lights from the left as their results come; those that are left when a process is killed stay."""
     context = multiprocessing.get_context("spawn")
     executor = ProcessPoolExecutor(jobs, context, _begin, (jobs,))
-    given: deque[Future[T]] = deque()
+    given: deque[Future[tuple[T, str]]] = deque()
     try:
         while lights:
             while len(given) < min(AHEAD * jobs, len(lights)):
                 with _no_interrupt():
-                    given.append(executor.submit(work, lights[len(given)]))
-            found = given[0].result()
+                    given.append(executor.submit(_heard, work, lights[len(given)]))
+            found, said = given[0].result()
             given.popleft()
             lights.popleft()
+            sys.stderr.write(said)
             yield found
     except BrokenProcessPool:
         return
@@ -105,6 +107,12 @@ def _pool(work: Callable[[str], T], lights: deque[str], jobs: int) -> Generator[
         executor.shutdown(wait=not lights, cancel_futures=True)
         for process in processes:
             process.kill()
+
+
+def _heard(work: Callable[[str], T], light: str) -> tuple[T, str]:
+    """work(light), and what it said on stderr, which is said in the order of the lights, whole lines at a time."""
+    with redirect_stderr(io.StringIO()) as said:
+        return work(light), said.getvalue()
 
 
 @contextmanager

@@ -30,6 +30,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if arguments[:1] == ["help"]:
             return int(import_module("shviewer.cli.help").run(arguments[1:]))
         _check_first(arguments)
+        arguments = _with_names(arguments)
         mode, rest = (arguments[0], arguments[1:]) if arguments[:1] and arguments[0] in MODES else ("view", arguments)
         options = PARSERS[mode]().parse_intermixed_args(rest)
         import_module("shviewer.memory").keep_freed()
@@ -61,6 +62,15 @@ STDOUT_FAILS = (errno.ENOSPC, errno.EIO, errno.EFBIG)
 def _silence_stdout() -> None:
     """Point stdout nowhere, so that what it still holds troubles nobody at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _with_names(arguments: list[str]) -> list[str]:
+    """The arguments, those after -- as names even if they begin with -. UsageError for another that names a file so."""
+    at = arguments.index("--") if "--" in arguments else len(arguments)
+    for text in arguments[:at]:
+        if len(text) > 2 and text[0] == "-" != text[1] and os.path.exists(text):
+            raise UsageError(f"{text}: a name that begins like an option; write ./{text}")
+    return arguments[:at] + [f"./{text}" if text.startswith("-") else text for text in arguments[at + 1 :]]
 
 
 def _check_first(arguments: list[str]) -> None:

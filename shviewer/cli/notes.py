@@ -27,17 +27,17 @@ def print_notes(recipe: Recipe) -> None:
         _say(note)
 
 
-def print_notes_on(projected: Projected, axes: Axes) -> None:
-    """Print the notes on a light that was projected, and what was left out of it. axes: those of the file."""
+def print_notes_on(projected: Projected, axes: Axes, light: str) -> None:
+    """Print the notes on a light that was projected, and what was left out of it. axes: those of the file; light: its name."""
     for note in (*projected.notes, *(sun_left_out(sun.directional_light, axes) for sun in projected.suns)):
-        named = note.startswith(f"{projected.name} ")  # "sky has no sun: ..." says it itself
-        _say(f"note: {note}" if named else f"note: {projected.name}: {note}")
+        own = note.removeprefix(f"{projected.name} ")  # "sky has no sun: ..." names it itself
+        _say(f"note: {light}{': ' if own == note else ' '}{own}")
 
 
-def warn_below_zero(projected: Projected) -> None:
-    """Print what of the numbers that were written is shown below zero."""
+def warn_below_zero(projected: Projected, light: str) -> None:
+    """Print what of the numbers that were written is shown below zero. light: its name."""
     if projected.below_zero:
-        _say(f"note: {projected.name}: {projected.below_zero}")
+        _say(f"note: {light}: {projected.below_zero}")
 
 
 def say_written(out: Path, what: str) -> None:

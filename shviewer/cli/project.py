@@ -19,7 +19,7 @@ from shviewer.cli.batch import error_in_percent, make_folder, project_batch
 from shviewer.cli.below_zero import below_zero, encoded_below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.options.inputs import lights_of, lights_within, replacing_of
-from shviewer.cli.options.recipes import check_effects, recipe_from
+from shviewer.cli.options.recipes import check_effects, check_for_any_light, recipe_from
 from shviewer.cli.options.states import turn_from
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.convention import Convention
@@ -54,6 +54,10 @@ def run(options: argparse.Namespace) -> int:
     if kind is not None and kind not in FORMATS:
         raise UsageError(f"format {kind!r}: {meant(kind, FORMATS)}")
     projected_of, replacing = partial(_projected_of, options, convention), replacing_of(options)
+    check_for_any_light(options)
+    if options.n_bands is not None:
+        with refused_as(UsageError):
+            convention.check_bands(options.n_bands)
     if lights == given and len(lights) == 1:
         _project_one(lights[0], out, kind, convention, projected_of, replacing)
         return 0
@@ -135,7 +139,7 @@ def _project_one(
     def noted() -> Projected:
         with speaking():
             projected = projected_of(light)
-        print_notes_on(projected, convention.axes)
+        print_notes_on(projected, convention.axes, projected.name)
         return projected
 
     if out == STDOUT:
@@ -146,7 +150,7 @@ def _project_one(
             raise OutputError("-o -: stdout is closed; name a file")
         sys.stdout.buffer.write(projected.encode(convention, kind))
         sys.stdout.buffer.flush()
-        warn_below_zero(projected)
+        warn_below_zero(projected, projected.name)
         return
     path = Path(out)
     if os.path.isdir(path) or out.endswith(("/", os.sep)):
@@ -162,7 +166,7 @@ def _project_one(
     first, *others = ((in_words(of), error_in_percent(projected, of)) for of in projected.relative_l2_as)
     as_others = "".join(f", as {of} {error}" for of, error in others)
     print(f"wrote {path}: {projected.extent}, {first[0]} within {first[1].removeprefix('< ')}{as_others}")
-    warn_below_zero(projected)
+    warn_below_zero(projected, projected.name)
 
 
 def _kind_of(path: Path, kind: str | None) -> str:

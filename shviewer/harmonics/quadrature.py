@@ -229,10 +229,10 @@ def share_below_zero(values: Array, theta: Array) -> float:
     Each column stands for a lune, exact but where the border of what is below zero bends between rows and columns.
     """
     below, z = values < 0, np.cos(theta)
-    length = np.count_nonzero(below[:-1] & below[1:], axis=1) @ (z[:-1] - z[1:])
-    length += np.count_nonzero(below[0]) * (1 - z[0]) + np.count_nonzero(below[-1]) * (1 + z[-1])
+    length = float(np.count_nonzero(below[:-1] & below[1:], axis=1) @ (z[:-1] - z[1:]))
+    length += float(np.count_nonzero(below[0]) * (1 - z[0]) + np.count_nonzero(below[-1]) * (1 + z[-1]))
     rows, columns = np.nonzero(below[:-1] != below[1:])
     first, second = values[rows, columns], values[rows + 1, columns]
     border = np.cos(theta[rows] + (theta[rows + 1] - theta[rows]) * first / (first - second))
-    length += np.where(below[rows, columns], z[rows] - border, border - z[rows + 1]).sum()
-    return min(1.0, float(length) / (2 * values.shape[1]))
+    length += float(np.where(below[rows, columns], z[rows] - border, border - z[rows + 1]).sum())
+    return min(1.0, length / float(2 * values.shape[1]))

@@ -781,3 +781,31 @@ def test_of_several_lights_it_is_said_how_many_bands_shade_them_all(capsys: pyte
     ]
     assert main(["info", "green"]) == 0
     assert "serve all" not in capsys.readouterr().out
+
+
+INFO_KEYS = """
+    schema light_argument light description file file_bytes encoding size layout refused notes values mean mean_luminance peak
+    peak_direction peak_theta_phi_degrees irradiance_up method energy_share bands_needed roughness_served suns no_sun
+    bands_needed_without_suns coefficients
+"""
+"""What programs may rely on under schema 1: keys may be added here, and none may go."""
+
+
+def test_the_keys_of_info_are_those_of_their_schema(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info", "--json", "green", "nothing.hdr"]) == 3
+    green, missing = json.loads(capsys.readouterr().out)
+    assert green["schema"] == missing["schema"] == 1
+    assert set(green) == set(INFO_KEYS.split())
+    assert set(missing) == {"schema", "light_argument", "error"}
+    assert {"tolerance", "radiance", "irradiance", "searched"} == set(green["bands_needed"][1])
+
+
+def test_a_file_whose_name_begins_with_a_dash_is_a_light(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_exr(tmp_path / "-white.exr", np.ones((4, 8, 3)))
+    monkeypatch.chdir(tmp_path)
+    assert main(["info", "--json", "--", "-white.exr", "green"]) == 0
+    assert [about["light"] for about in json.loads(capsys.readouterr().out)] == ["-white", "green"]
+    assert main(["info", "-white.exr"]) == 2
+    assert capsys.readouterr().err == "shviewer: -white.exr: a name that begins like an option; write ./-white.exr\n"

@@ -30,6 +30,15 @@ def deadly(directions):
 
 def slow(directions):
     time.sleep(600)
+
+def late(directions):
+    time.sleep(0.01)
+    print("late")
+    return even(directions)
+
+def soon(directions):
+    print("soon")
+    return even(directions)
 """
 
 
@@ -84,13 +93,15 @@ def test_a_batch_that_is_soon_done_starts_no_process(monkeypatch: pytest.MonkeyP
 
 
 def test_files_and_summary_do_not_depend_on_the_number_of_processes(folder: Path) -> None:
-    lights = ["green", "hemisphere", "gone.hdr", "lights.py:even", "studio"]
-    one, two = (shviewer(folder, "project", *lights, "-o", name, "--jobs", name) for name in "12")
+    lights = ["green", "hemisphere", "gone.hdr", "lights.py:late", "studio", "lights.py:soon"]
+    options = ("--tolerance", "5%", "--for", "irradiance")
+    one, two = (shviewer(folder, "project", *lights, *options, "-o", name, "--jobs", name) for name in "12")
     assert one.returncode == two.returncode == 1
     assert one.stdout.replace("1/", "2/") == two.stdout
+    assert one.stderr.count("bands within 5 %") == 5
     assert one.stderr == two.stderr
     files = sorted(path.name for path in (folder / "1").iterdir())
-    assert len(files) == 4
+    assert len(files) == 5
     for name in files:
         assert (folder / "1" / name).read_bytes() == (folder / "2" / name).read_bytes()
 

@@ -461,6 +461,38 @@ def test_a_folder_that_ends_in_a_slash_is_made_for_one_light_as_for_several(tmp_
     assert held(tmp_path / "new" / "folder" / "green.json").given.shape == (25, 3)
 
 
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--bands", "0"),
+        ("--bands", "5", "--convention", "unity"),
+        ("--samples", "10"),
+        ("--window", "hann:-3"),
+        ("--bands", "4", "--mute", "7"),
+        ("--layout", "spiral"),
+    ],
+)
+def test_an_option_that_is_wrong_for_any_light_is_said_once_before_one_is_read(
+    options: tuple[str, ...], tmp_path: Path, capsys: Capture
+) -> None:
+    assert project("green", "nothing.hdr", "studio", *options, "-o", tmp_path / "new") == 2
+    said = capsys.readouterr()
+    assert (len(said.err.splitlines()), said.out) == (1, "")
+    assert not (tmp_path / "new").exists()
+
+
+def test_notes_of_a_batch_tell_lights_of_the_same_name_apart(tmp_path: Path, capsys: Capture) -> None:
+    for folder in "ab":
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "key.toml").write_text((ASSETS / "scenes/green.toml").read_text())
+    lights = [str(tmp_path / folder / "key.toml") for folder in "ab"]
+    assert project(*lights, "--tolerance", "20%", "--split-sun", "-o", tmp_path / "out") == 0
+    told = capsys.readouterr().err.splitlines()
+    for light in lights:
+        starts = [line.partition(light)[0] for line in told if light in line]
+        assert starts == ["shviewer: ", "shviewer: note: ", "shviewer: note: "]  # bands, no sun, below zero
+
+
 def test_notes_of_a_batch_name_their_light_once(tmp_path: Path, capsys: Capture) -> None:
     options = ["--tolerance", "5%", "--for", "irradiance", "--split-sun"]
     assert project("green", "studio", *options, "-o", tmp_path) == 0

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from shviewer.analysis.options import options_of
-from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, light_name, what_it_needs
+from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
 from shviewer.cli.options.inputs import reading_from
 from shviewer.cli.options.values import number_of
 from shviewer.errors import UsageError
@@ -37,14 +37,7 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
     from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
     from shviewer.lights.find import split_light
 
-    chosen = chosen_of(options, Recipe)
-    if "window" in chosen:
-        window, separator, width = chosen["window"].partition(":")
-        if separator and window in ("none", "dering"):
-            raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
-        chosen |= {"window": window, "window_width": number_of(width, "window width") if separator else None}
-    recipe = replace(start, light=light, reading=reading_from(options, start.reading), **chosen)
-    recipe.check()
+    recipe = _asked(options, light, start)
     compared, said = vars(options).get("compare"), ""
     if compared:
         from shviewer.analysis.comparing.compared_files import compared_with
@@ -67,7 +60,29 @@ def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe =
         recipe, said = as_the_file_holds(recipe, quantity=options.quantity is None, bands=any_bands)
     fits = options.tolerance is not None and options.n_bands is None
     several = len(vars(options).get("lights") or ()) > 1
-    return (_fitted(recipe, light_name(light) if several else "") if fits else recipe), said
+    called = light if isinstance(light, str) else light.name
+    return (_fitted(recipe, called if several else "") if fits else recipe), said
+
+
+def _asked(options: argparse.Namespace, light: str | Light, start: Recipe) -> Recipe:
+    """The recipe as the options say, before the light is read. UsageError for one out of range."""
+    chosen = chosen_of(options, Recipe)
+    if "window" in chosen:
+        window, separator, width = chosen["window"].partition(":")
+        if separator and window in ("none", "dering"):
+            raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
+        chosen |= {"window": window, "window_width": number_of(width, "window width") if separator else None}
+    recipe = replace(start, light=light, reading=reading_from(options, start.reading), **chosen)
+    recipe.check()
+    return recipe
+
+
+def check_for_any_light(options: argparse.Namespace) -> None:
+    """UsageError for an option that is wrong, or has no effect, whatever the light is: once, and before any is read."""
+    recipe = _asked(options, START.light, START)
+    if options.n_bands is None:  # how many there are depends on the light
+        recipe = replace(recipe, muted=frozenset())
+    check_effects(options, recipe)
 
 
 def check_effects(options: argparse.Namespace, recipe: Recipe, beside: str = "off") -> None:
