@@ -44,6 +44,7 @@ def run(options: argparse.Namespace) -> int:
     from shviewer.viewer.desktop.behind.task import Task
     from shviewer.viewer.desktop.glfw_window import NoDisplayError
     from shviewer.viewer.desktop.last_size import keep_size, last_size
+    from shviewer.viewer.desktop.showing import Settings
     from shviewer.viewer.picture import completed
     from shviewer.viewer.saving.picture_files import write_numbered
     from shviewer.viewer.screenshot import save_picture
@@ -53,9 +54,7 @@ def run(options: argparse.Namespace) -> int:
     state, others = _opened(options)
     first = Task(lambda: [_announced(state, others, options.as_image)])
     try:
-        closed = window.run(
-            first, options.size, verbose=options.verbose, watch=options.watch, as_image=options.as_image
-        )
+        closed = window.run(first, options.size, Settings(options.verbose, options.watch, options.as_image))
         if options.last_size and closed is not None:
             keep_size(closed)
     except NoDisplayError as error:

@@ -105,6 +105,12 @@ class Picture:
         """The light that the figures are computed for."""
         return self.subject.light
 
+    def suits(self, by_map: bool) -> bool:
+        """Whether the reconstruction is drawn as asked for, where there is a choice: from a map, or summed per pixel."""
+        state = self.state
+        given = state.view.evaluate != "auto" or state.recipe.n_bands > MAX_DIRECT_BANDS
+        return given or not isinstance(self.drawn, DirectSum if by_map else SplineMap)
+
     def seen(self, state: State) -> Picture:
         """The same picture with the live parts and the exposure of another state: at once, whatever the light is."""
         last, view = self.state.view, state.view

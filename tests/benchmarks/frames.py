@@ -276,7 +276,7 @@ def windows() -> None:
                 width, height = glfw.get_framebuffer_size(handle)
                 print(f"\na window of {width} x {height}: longest pass, own / drawn, ms\n")
                 print("| mode | entered | turned | saved with P |\n|---|---:|---:|---:|")
-                shown = Window(handle, canvas_of(handle), prepare(state_of("green", "venice_sunset")), False)
+                shown = Window(handle, canvas_of(handle), prepare(state_of("green", "venice_sunset")))
                 passes(shown)
                 plain = shown.session.state
                 for name, changes in MODES.items():

@@ -202,7 +202,7 @@ def window(paths: list[Path]) -> None:
             for path in paths:
                 green = path.with_name("plain.toml")
                 green.write_text((resource_folder("assets") / "scenes" / "green.toml").read_text())
-                shown = Window(handle, canvas_of(handle), prepare(state_of("green")), False)
+                shown = Window(handle, canvas_of(handle), prepare(state_of("green")))
                 print(f"{path.name}: before the drop {said([frame(shown, turn) for turn in range(BEFORE)])}")
                 for _ in range(2):
                     first, complete, meanwhile = opened(shown, str(path), path.stem)

@@ -152,7 +152,7 @@ class Frames:
     def _report(self) -> None:
         """Say that a frame is whole, to whoever wants to hear it."""
         session, at = self.session, self._begun
-        if session.verbose:
+        if session.settings.verbose:
             said = session.status or self.canvas.pending
             print(
                 f"{'frame' if self._ready else 'meanwhile'} {self.frame_count}: {session.picture.light.name}, "

@@ -12,15 +12,14 @@ from shviewer.errors import ShviewerError
 from shviewer.lights.several import several
 from shviewer.viewer.actions import Command, open_light, step_sweep
 from shviewer.viewer.animation.animation import wants_range
-from shviewer.viewer.animation.metronome import Metronome
+from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_SECONDS, Metronome
 from shviewer.viewer.animation.turning import step_turn
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.behind.opening import MOST_DROPPED
 from shviewer.viewer.desktop.behind.saving import Saving, Written, save_coefficients
 from shviewer.viewer.desktop.history import History
-from shviewer.viewer.desktop.showing import Showing
-from shviewer.viewer.desktop.turning import Turning
+from shviewer.viewer.desktop.showing import PLAIN, Settings, Showing
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
@@ -43,18 +42,14 @@ class Session(Showing):
         self,
         state: State,
         first: Picture | None = None,
-        *,
-        verbose: bool = False,
-        watch: bool = False,
-        as_image: bool = False,
+        settings: Settings = PLAIN,
         wake: Callable[[], None] | None = None,
     ) -> None:
-        """As for `Showing`. watch: read the light's file again when it changes."""
-        super().__init__(state, first, verbose=verbose, as_image=as_image, wake=wake)
+        """As for `Showing`."""
+        super().__init__(state, first, settings, wake)
         self.metronome = Metronome()
-        self.turn = Turning()
         self.saving = Saving(wake, self._written, self._failed)
-        self._watch = Watch() if watch else None
+        self._watch = Watch() if settings.watch else None
         self._marks_faced = 0
         self._later: list[Callable[[], object]] = []
         """Commands that wait for the picture and all its figures."""
@@ -133,7 +128,7 @@ class Session(Showing):
     @property
     def pace(self) -> float | None:
         """Frames a second of a light that turns, where it cannot keep up; None as long as it does, or is not known."""
-        return self.turn.pace if self.state.view.turning else None
+        return self.metronome.pace if self.state.view.turning else None
 
     @property
     def status(self) -> str:
@@ -187,15 +182,19 @@ class Session(Showing):
         self._said = self.work
         if self._message.over(self.state.view.message, now):
             self.state = changed(self.state, message="")
-        settled = not (self.making.working or wants_range(self.state))
-        if settled and self.metronome.beats(self.state.view.sweep_to is not None, now):
-            self.state = step_sweep(self.state)
-        ready = self.shown and not self.making.working and not self._later
-        if self.turn.beats(bool(self.state.view.turning), now, ready=ready):
-            self.state = step_turn(self.placed)  # from where the camera is, or it would go round with the light
+        self._play(now)
         if self._watch is not None and self._watch.due(now):
             self._look(self._watch)
         return self.making.news or self.state is not last or self.reading is not reading or self._said != said
+
+    def _play(self, now: float) -> None:
+        """Take the next step of a sweep or of a light that turns, if it is due and the last one is there."""
+        view, ready = self.state.view, not (self.making.working or wants_range(self.state))
+        if view.turning:
+            if self.metronome.beats(TURN_SECONDS, now, ready=ready and self.shown and not self._later):
+                self.state = step_turn(self.placed)  # from where the camera is, or it would go round with the light
+        elif self.metronome.beats(None if view.sweep_to is None else SWEEP_SECONDS, now, ready=ready):
+            self.state = step_sweep(self.state)
 
     def _look(self, watch: Watch) -> None:
         """Look at the watched file: read it again if it has changed, and say once that it is gone."""
@@ -213,7 +212,7 @@ class Session(Showing):
         if self.making.working or self._later:
             return min(most, STATUS_SECONDS)
         most = min(most, STATUS_SECONDS) if self.working else most
-        return self.turn.wait(now, self.metronome.wait(now, most))
+        return self.metronome.wait(now, most)
 
     def prepare(self, by_map: bool = False, patience: float | None = None) -> bool:
         """Make the picture of the state; return whether it is complete. For a state that cannot be shown, keep the last one.

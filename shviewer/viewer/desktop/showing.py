@@ -11,6 +11,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from threading import Event
+from typing import NamedTuple
 
 from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import keep_light
@@ -28,6 +29,20 @@ from shviewer.viewer.view import View
 from shviewer.words import one_line
 
 
+class Settings(NamedTuple):
+    """What the command line asks of a window for as long as it is open."""
+
+    verbose: bool = False
+    """Say every frame and every file in a line on stderr."""
+    watch: bool = False
+    """Read the light's file again when it changes."""
+    as_image: bool = False
+    """Take pictures that this program saved for images."""
+
+
+PLAIN = Settings()
+
+
 class Showing:
     """The state, and its picture or that of the last state that could be shown."""
 
@@ -35,14 +50,12 @@ class Showing:
         self,
         state: State,
         first: Picture | None = None,
-        *,
-        verbose: bool = False,
-        as_image: bool = False,
+        settings: Settings = PLAIN,
         wake: Callable[[], None] | None = None,
     ) -> None:
         """first: the picture of the state; without it, it is made here: LightError or UsageError if that is impossible.
 
-        as_image: take pictures that this program saved for images. wake: called from another thread when a task has ended.
+        wake: called from another thread when a task has ended.
         """
         first = first or prepare(state)
         reading = state.recipe.reading  # from now on no pipe is waited for: it was read where the command line named it
@@ -50,13 +63,12 @@ class Showing:
         self.state = started(changed(state, reading=isolated))
         self.state = changed(self.state, message=state.view.message or notes_of(first.light))
         self.picture: Picture = replace(first, state=self.state)
-        self.by_map = False
-        self.verbose = verbose
+        self.settings = settings
         self.reading: Event | None = None
         """The wish to read the light's file again, set once it has been read; None if there is no such wish."""
         self.refused: str | Light | None = None
         """The light that could not be read just now: the next key may say how to read it."""
-        self.opening = Opening(wake, as_image=as_image)
+        self.opening = Opening(wake, as_image=settings.as_image)
         self.making = Making(wake)
         self.enough: State | None = None
         """The still part of the state whose figures are not wanted any more: the search was stopped, or failed."""
@@ -86,6 +98,11 @@ class Showing:
         return self.reading is None and same and not wants_range(self.state)
 
     @property
+    def by_map(self) -> bool:
+        """Whether the picture is drawn from a map although it could be summed."""
+        return not self.picture.suits(by_map=False)
+
+    @property
     def stepping(self) -> bool:
         """Whether what is being made is the next frame of a light that turns."""
         state, last = self.state, self.picture.state
@@ -111,21 +128,21 @@ class Showing:
     def make(self, by_map: bool, patience: float | None) -> bool:
         """Make the picture; return whether it has all figures that are wanted. by_map, patience: as in `Session.prepare`."""
         last, state, reading = self.picture, self.state, self.reading
-        if self.shown and by_map == self.by_map and (last.complete or still(state) == self.enough):
+        if self.shown and last.suits(by_map) and (last.complete or still(state) == self.enough):
             self.making.end()
             self.picture = last if last.state == state else last.seen(state)
             return True
         self.making.want(state, by_map, reading)
         if not self.making.wait(patience):
             if (latest := self.making.latest()) is not None:
-                self._take(*latest)
+                self._take(latest)
             elif last.state.view != state.view:
                 self.picture = last.seen(state)
             return False
         self.reading = None
         try:
             with within_memory(light_name(state.recipe.light)):
-                picture, made_by_map = self.making.result()
+                picture = self.making.result()
         except ShviewerError as error:
             if not self.opening.more:
                 self.keep(error)
@@ -141,10 +158,10 @@ class Showing:
             return True
         self.refused = None
         self.opening.end()
-        self._take(picture, made_by_map, again=reading is not None)
-        return made_by_map == by_map or self.make(by_map, patience)
+        self._take(picture, again=reading is not None)
+        return picture.suits(by_map) or self.make(by_map, patience)
 
-    def _take(self, made: Picture, by_map: bool, again: bool | None = None) -> None:
+    def _take(self, made: Picture, again: bool | None = None) -> None:
         """Show a picture that was made for the state. again: whether its light was read again."""
         last, state = self.picture, self.state
         if state.view.turning and made.light is last.light and is_next(last.state.recipe, made.state.recipe):
@@ -161,7 +178,7 @@ class Showing:
                 message = Message(message, WARNING if picture.light.notes else "")
                 self.state = changed(state, message=message)
                 picture = replace(picture, state=self.state)
-        self.picture, self.by_map = picture, by_map
+        self.picture = picture
 
     def keep(self, error: ShviewerError, picture: Picture | None = None) -> None:
         """Stay with the picture there is, or go back to another one, and say why; what plays ends."""
@@ -182,7 +199,7 @@ class Showing:
         self.enough = still(self.state)
 
     def log(self, text: str) -> None:
-        if self.verbose:
+        if self.settings.verbose:
             print(text, file=sys.stderr, flush=True)
 
     def _news(self, light: Light, *, again: bool) -> str:

@@ -19,6 +19,7 @@ from shviewer.viewer.desktop.clipboard import named_files
 from shviewer.viewer.desktop.frames import Frames
 from shviewer.viewer.desktop.glfw_window import key_name, open_window, scale_of, side_context
 from shviewer.viewer.desktop.session import PATIENCE, Session
+from shviewer.viewer.desktop.showing import PLAIN, Settings
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.message import DONE, WARNING
@@ -32,13 +33,10 @@ OUTSIDE = (-1.0, -1.0)
 """The place of a mouse that has left the window."""
 
 
-def run(
-    first: Task[Picture], size: tuple[int, int], *, verbose: bool = False, watch: bool = False, as_image: bool = False
-) -> tuple[int, int] | None:
+def run(first: Task[Picture], size: tuple[int, int], settings: Settings = PLAIN) -> tuple[int, int] | None:
     """Open a window of `size` screen coordinates, show the first picture when it is there, and stay until it is closed.
 
-    NoDisplayError without a display, GraphicsError without OpenGL 3.3, and what the first picture raises. verbose: one line
-    on stderr per frame. watch: read the light's file again when it changes. as_image: take pictures of this program for images.
+    NoDisplayError without a display, GraphicsError without OpenGL 3.3, and what the first picture raises.
     Return the size that it had at the end, if it showed anything.
     """
     if first.wait(PATIENCE):
@@ -47,7 +45,7 @@ def run(
         canvas = canvas_of(handle)
         try:
             if _wait_for(first, handle, canvas):
-                shown = Window(handle, canvas, first.result(), verbose, watch, as_image)
+                shown = Window(handle, canvas, first.result(), settings)
                 shown.loop()
                 size = shown.size_in_points()
                 glfw.hide_window(handle)
@@ -84,21 +82,8 @@ def _wait_for(first: Task[Picture], handle: Any, canvas: Canvas) -> bool:
 class Window(Frames):
     """One window: its events, and what only a window can do."""
 
-    def __init__(
-        self,
-        handle: Any,
-        canvas: Canvas,
-        first: Picture,
-        verbose: bool,
-        watch: bool = False,
-        as_image: bool = False,
-    ) -> None:
-        wake = glfw.post_empty_event
-        super().__init__(
-            handle,
-            canvas,
-            Session(first.state, first, verbose=verbose, watch=watch, as_image=as_image, wake=wake),
-        )
+    def __init__(self, handle: Any, canvas: Canvas, first: Picture, settings: Settings = PLAIN) -> None:
+        super().__init__(handle, canvas, Session(first.state, first, settings, glfw.post_empty_event))
         self.band: int | None = None
         """The band under the mouse."""
         self.done_by_key = False

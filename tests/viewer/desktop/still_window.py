@@ -16,4 +16,4 @@ frames.PATIENCE = None  # type: ignore[assignment]
 
 def window_of(handle: Any, state: State) -> window.Window:
     """A window with the picture of a state, on a handle of GLFW."""
-    return window.Window(handle, Canvas(moderngl.create_context(require=330)), prepare(state), False)
+    return window.Window(handle, Canvas(moderngl.create_context(require=330)), prepare(state))

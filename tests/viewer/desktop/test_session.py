@@ -11,6 +11,7 @@ from helpers import frame_of, picture_of
 from shviewer.errors import LightError
 from shviewer.viewer.actions import Command
 from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.desktop.showing import Settings
 from shviewer.viewer.saving.picture_files import write_png
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.state import changed, state_of
@@ -140,6 +141,6 @@ def test_a_picture_that_is_dropped_is_the_state_that_it_was_saved_from(tmp_path:
     session.prepare()
     assert "its stamp is damaged" in session.state.view.message
     assert changed(session.state, message="") == changed(state, message="")
-    image = Session(state_of(), as_image=True)
+    image = Session(state_of(), settings=Settings(as_image=True))
     image.drop(str(tmp_path / "p.png"))
     assert image.state.recipe.light == str(tmp_path / "p.png")

@@ -21,9 +21,6 @@ SHOWN: dict[str, Any] = {
 }
 """What is shown of a projection, in which a key held down changes one: it is projected once for all of them."""
 
-Made = tuple[Picture, bool]
-"""A picture, and whether it was made by map."""
-
 
 class Making:
     """The task at work. The newest wish wins: a task whose pictures nobody wants any more is ended before the next begins."""
@@ -31,14 +28,14 @@ class Making:
     def __init__(self, wake: Callable[[], None] | None) -> None:
         """wake: called from another thread when a picture has been made, and at the end."""
         self._wake = wake
-        self._task: Task[Made] | None = None
-        self._ended: Task[Made] | None = None
+        self._task: Task[Picture] | None = None
+        self._ended: Task[Picture] | None = None
         """The task before it, which may still be at its last step."""
         self._steps: tuple[object, ...] = ()
         """What its first steps depend on: what it reads, and what it projects."""
         self._wish: object = None
         """What the task makes: the still part of a state, and how it is read."""
-        self._taken: Made | None = None
+        self._taken: Picture | None = None
         """What was last taken from the task."""
 
     @property
@@ -81,13 +78,13 @@ class Making:
         assert self._task is not None
         return self._task.wait(None if patience is None else patience - self._task.seconds)
 
-    def latest(self) -> Made | None:
+    def latest(self) -> Picture | None:
         """What was made since the last time that this was asked."""
         assert self._task is not None
         last, self._taken = self._taken, self._task.latest
         return None if self._taken is last else self._taken
 
-    def result(self) -> Made:
+    def result(self) -> Picture:
         """What was made last, when all is made. Raises what the task raised."""
         task, self._task = self._task, None
         assert task is not None
@@ -100,8 +97,8 @@ class Making:
             self._ended, self._task = self._task, None
 
 
-def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[Made | None]:
-    """The pictures of a state as `stages` has them, with everything ready that their text needs; each with `by_map`.
+def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[Picture | None]:
+    """The pictures of a state as `stages` has them, with everything ready that their text needs.
 
     First nothing, when its light has been read. What plays is given the range of its error.
     """
@@ -112,4 +109,4 @@ def _pictures_of(state: State, by_map: bool, reading: Event | None) -> Iterator[
     yield None
     for picture in stages(ranged(state), by_map=by_map):
         foresee(picture)
-        yield picture, by_map
+        yield picture
