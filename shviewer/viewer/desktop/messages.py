@@ -10,22 +10,18 @@ from shviewer.viewer.message import Message, warning
 from shviewer.viewer.state import describe_sanitizing
 
 
-def with_keys(refusal: str, light: str | Light, reading: Reading) -> str:
+def with_keys(refusal: str, light: str | Light, shown: Reading) -> str:
     """A refusal of `light`, with the keys that do in the window what it recommends as an option of the command line.
 
-    Where keys follow, the file is named without its folder, so that they are not cut off.
+    Where keys stand, the file is named without its folder, so that they are not cut off. shown: how the picture was read
+    that stays.
     """
-    keys = []
-    if "--sanitize" in refusal and not reading.sanitize:
-        keys.append("Z repairs")
-    if "--layout" in refusal:
-        keys.append("L changes the layout")
-    if not keys:
-        return refusal
+    said = refusal.replace("choose another --layout", "press L for another layout")
+    said = said.replace("--sanitize repairs them", "they stay repaired" if shown.sanitize else "Z repairs them")
     path = split_light(light)[0] if isinstance(light, str) else None
-    if path is not None and refusal.startswith(f"{path}: "):
-        refusal = path.name + refusal.removeprefix(str(path))
-    return f"{refusal}; {', '.join(keys)}"
+    if said != refusal and path is not None and said.startswith(f"{path}: "):
+        said = path.name + said.removeprefix(str(path))
+    return said
 
 
 def notes_of(light: Light) -> Message:
@@ -33,10 +29,10 @@ def notes_of(light: Light) -> Message:
     return warning(f"{light.name}: {'; '.join(light.notes)}" if light.notes else "")
 
 
-def reading_news(before: Recipe, after: Recipe) -> str:
-    """A message that says how files are read from now on; "" if that did not change."""
+def reading_news(before: Recipe, after: Recipe, light: Light) -> str:
+    """A message that says how files are read from now on, and whether that is anything to `light`; "" if nothing changed."""
     if before.reading.layout != after.reading.layout:
         return f"layout {after.reading.layout}"
     if before.reading.sanitize != after.reading.sanitize:
-        return f"bad values {describe_sanitizing(after)}"
+        return f"bad values {describe_sanitizing(after)}{'' if light.notes else ': there are none'}"
     return ""

@@ -173,7 +173,7 @@ class Showing:
         if picture.light is not last.light:
             again = self.reading is not None if again is None else again
             message = self._news(picture.light, again=again and state.recipe.light == last.state.recipe.light)
-            message = "; ".join(filter(None, (reading_news(last.state.recipe, state.recipe), message)))
+            message = "; ".join(filter(None, (reading_news(last.state.recipe, state.recipe, picture.light), message)))
             if message and not state.view.message:
                 message = Message(message, WARNING if picture.light.notes else "")
                 self.state = changed(state, message=message)

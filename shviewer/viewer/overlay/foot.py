@@ -123,31 +123,32 @@ def message_line(at: Composition) -> Line | None:
 
 
 def message_pieces(line: Line, said: str, at: Composition) -> list[Piece]:
-    """A message with its mark, shortened to its line; in a compact frame over two lines if need be."""
+    """A message with its mark, on as many lines as it needs and has: a foot two, upwards; the last is shortened to its line."""
     sign, words = message.kind_of(said), str(said)
     size, ink = at.px(12.0 if at.compact else 13.0), INKS[sign]
-    left = line.left + (at.px(AFTER_MARK) if sign else 0)
-    pieces = _mark(sign, line.left, line.baseline, at.px(MARK), ink, at) if sign else []
-    shown = typeset(words)
-    lines = [shown]
-    two = line.baseline + 1.6 * size <= at.height
-    if at.compact and two and width_of(shown, size) > line.right - left:
-        lines = _two_lines(shown, line.right - left, size)
+    left, apart = line.left + (at.px(AFTER_MARK) if sign else 0), 1.25 * size
+    foot, curve = at.numbers.foot, at.numbers.curve
+    end = curve.top if curve and curve.top > line.baseline else at.height
+    most = 2 if foot else 1 + max(0, int((end - line.baseline - 0.35 * size) / apart))
+    lines = _lines(escaped(typeset(words)), line.right - left, size, most)
+    first = line.baseline - (apart * (len(lines) - 1) if foot else 0.0)
+    pieces = _mark(sign, line.left, first, at.px(MARK), ink, at) if sign else []
     for number, text in enumerate(lines):
-        text = shortened_to(text, line.right - left, size)
-        if text:
-            name = "message" if number == 0 else f"message_{number}"
-            pieces.append(Text(name, left, line.baseline + 1.25 * number * size, text, size, ink))
+        name = "message" if number == 0 else f"message_{number}"
+        pieces.append(Text(name, left, round(first + number * apart), text, size, ink))
     return pieces
 
 
-def _two_lines(text: str, room: float, size: float) -> list[str]:
-    """The text parted at the last space with which the first line has room."""
+def _lines(text: str, room: float, size: float, most: int) -> list[str]:
+    """The text parted at spaces into lines that have room, at most so many; the last is shortened in its middle."""
+    if most == 1 or width_of(text, size) <= room:
+        return [shown] if (shown := shortened_to(text, room, size)) else []
     words = text.split(" ")
     fitting = [n for n in range(1, len(words)) if width_of(" ".join(words[:n]), size) <= room]
     if not fitting:
-        return [text]
-    return [" ".join(words[: fitting[-1]]), " ".join(words[fitting[-1] :])]
+        return [shown] if (shown := shortened_to(text, room, size)) else []
+    rest = _lines(" ".join(words[fitting[-1] :]), room, size, most - 1)
+    return [" ".join(words[: fitting[-1]]), *rest]
 
 
 def work_pieces(at: Composition, work: Work) -> list[Piece]:

@@ -126,7 +126,20 @@ def draw_overlay(
             head = numbers.curve_head
             size = at.px(12.0 if at.compact else 15.0)
             blocks.append([Text("curve_head", head.left, head.baseline, head_words, size, INK, SEMIBOLD)])
-    return _overlay(blocks, bars)
+    return _overlay(_beside(blocks, foot, at), bars)
+
+
+def _beside(blocks: Sequence[Sequence[Piece]], foot: Sequence[Piece], at: Composition) -> Sequence[Sequence[Piece]]:
+    """Blocks without the texts that a message of two lines stands on or beside, such as the numbers of bands."""
+    lines = [piece.box for piece in foot if piece.name.startswith("message")]
+    if len(lines) < 2:
+        return blocks
+    taken = Box(lines[0].left, lines[0].top, at.width, lines[-1].bottom)
+
+    def stays(piece: Piece) -> bool:
+        return piece in foot or not isinstance(piece, Text) or not piece.box.overlaps(taken)
+
+    return [[piece for piece in block if stays(piece)] for block in blocks]
 
 
 def _missing(picture: Picture, at: Composition, plane: Plane | None) -> str:

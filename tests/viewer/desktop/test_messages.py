@@ -40,6 +40,16 @@ def test_what_is_done_goes_after_four_seconds_and_what_is_wrong_at_the_next_key(
     assert session.state.view.message == ""
 
 
+def test_repairs_are_not_claimed_where_nothing_is_bad() -> None:
+    session = Session(state_of("venice_sunset"))
+    said = []
+    for _ in range(2):
+        session.press("Z")
+        session.prepare()
+        said.append(session.state.view.message)
+    assert said == ["bad values repaired: there are none", "bad values as they are: there are none"]
+
+
 def test_each_thing_that_is_said_has_its_kind(tmp_path: Path) -> None:
     session = Session(state_of("green"))
     session.saving.write("writing", lambda: Written(tmp_path / "a.png"))

@@ -390,6 +390,16 @@ def test_a_long_message_takes_the_place_of_the_legend_before_it_is_cut() -> None
         assert ("legend_radiance" in drawn.boxes) == kept
 
 
+@pytest.mark.parametrize("size", [(500, 300), (700, 400), (500, 900), (400, 1200), (720, 720)], ids=str)
+@pytest.mark.parametrize("error", ["off", "signed"])
+def test_what_went_wrong_is_said_in_full_in_small_windows_too(size: tuple[int, int], error: str) -> None:
+    """It was cut in its middle, which is where the reason stands."""
+    words = "sky.hdr: 256 x 128 is not square, as angular must be: crop it to the disc or press L for another layout"
+    shown = picture_of(message=message.error(words), error=error)
+    drawn = draw_overlay(shown, frame(shown, size))
+    assert " ".join(text.text for text in texts_of(drawn) if text.name.startswith("message")) == words
+
+
 @pytest.mark.parametrize(
     ("said", "ink", "marks"),
     [(message.done("saved a.png"), INK, 1), (message.warning("2 texels repaired"), WARNING, 1), ("a note", INK, 0)],

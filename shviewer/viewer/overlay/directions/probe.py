@@ -20,7 +20,7 @@ from shviewer.viewer.overlay.setting import ended
 from shviewer.viewer.picture import Picture
 from shviewer.words import theta_phi_degrees
 
-GROUND: Ink = (14, 14, 16, 224)
+GROUND: Ink = (14, 14, 16, 255)
 AWAY = 18
 """Pixels of the design between the mouse and the numbers."""
 
