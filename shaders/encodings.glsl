@@ -4,6 +4,8 @@
 
 #if RECONSTRUCTION == RECONSTRUCTION_L2
 uniform vec3 stored[9];         // c0 ... c8 of the radiance, each of three channels
+#elif RECONSTRUCTION == RECONSTRUCTION_CUBE
+uniform vec3 stored[9];         // the faces +x, -x, +y, -y, +z, -z, and the axes x, y and z of the cube
 #elif RECONSTRUCTION == RECONSTRUCTION_ZH3 || RECONSTRUCTION == RECONSTRUCTION_ZH3_SHARED
 uniform vec3 stored[5];         // c0 ... c3, z
 #else
@@ -66,6 +68,13 @@ vec3 encoded_irradiance(vec3 n) {
     return l1_irradiance(n);
 #elif RECONSTRUCTION == RECONSTRUCTION_GEOMERICS
     return vec3(geomerics_irradiance(n, 0), geomerics_irradiance(n, 1), geomerics_irradiance(n, 2));
+#elif RECONSTRUCTION == RECONSTRUCTION_CUBE
+    vec3 sum = vec3(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        float along = dot(stored[6 + axis], n);
+        sum += along * along * stored[2 * axis + (along < 0.0 ? 1 : 0)];
+    }
+    return sum;
 #elif RECONSTRUCTION == RECONSTRUCTION_L2
     vec3 products = stored[4] * n.x * n.y - stored[5] * n.y * n.z - stored[7] * n.x * n.z;
     vec3 others = stored[6] * (3.0 * n.z * n.z - 1.0) + ROOT_3 * stored[8] * (n.x * n.x - n.y * n.y);

@@ -23,7 +23,7 @@ from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
 from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quantities.names import IRRADIANCE, STORED_BANDS
+from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE
 from shviewer.limits import check_brightness
 from shviewer.words import meant
 
@@ -217,11 +217,11 @@ def project(light: LightLike, bands: int | None = None, *, encode: str = "", **o
     if bands is not None and "tolerance" in options:
         raise UsageError(f"bands {bands} and tolerance {options['tolerance']}: give one of them")
     if encode:
-        if encode not in STORED_BANDS:
-            raise UsageError(f"encode {encode!r}: {meant(str(encode), STORED_BANDS)}")
+        if encode not in ENCODED_BANDS:
+            raise UsageError(f"encode {encode!r}: {meant(str(encode), ENCODED_BANDS)}")
         if bands is not None or "tolerance" in options:
             raise UsageError(f"encode {encode}: it takes the place of bands; leave out bands and tolerance")
-        bands, options = STORED_BANDS[encode], {"quantity": IRRADIANCE} | options
+        bands, options = ENCODED_BANDS[encode], {"quantity": IRRADIANCE} | options
     recipe = recipe_of(light, bands, options)
     found = project_recipe(recipe, encode)
     if refusal := subject(recipe).refusal:

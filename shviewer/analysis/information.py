@@ -80,6 +80,8 @@ class CoefficientInformation:
 
     bands: int
     """How many it has."""
+    encoding: str
+    """What engines store of an irradiance, by its name, where the numbers are that; else ""."""
     quantity: str
     """The quantity in the file: radiance, irradiance or irradiance-over-pi."""
     convention: str
@@ -246,6 +248,7 @@ def _coefficients(about: About) -> CoefficientInformation | None:
     keys = ("quantity", "program", "basis", "phase", "index", "axes", "normalisation")
     return CoefficientInformation(
         bands=file.n_bands,
+        encoding=file.stored.name if file.stored else "",
         convention=about.convention or "",
         stamped=bool(file.stamp),
         implied=file.implied,

@@ -72,7 +72,7 @@ class Projected(InNotebooks):
     recipe: Recipe | None = None
     """What was asked for: a notebook draws it. It may hold an image, so that it is not pickled."""
     encoding: str = ""
-    """One of STORED, whose bands the coefficients are."""
+    """One of ENCODINGS, whose bands the coefficients are."""
     stored: Stored | None = None
     """Its numbers, which are written in place of the bands; None where a window or muted bands leave it no formula."""
 
@@ -142,11 +142,10 @@ class Projected(InNotebooks):
             if self.recipe is None:
                 raise LightError(f"{self.name}: a cube that is turned is made of the light: project that again")
             still, by = project_recipe(self.recipe, self.encoding, _by_rows(whole)), whole
-        stored = still.stored
         return replace(
             still,
             coefficients=rotate(still.coefficients, by),
-            stored=stored.turned(by) if stored is not None and stored.encoding.turns else stored,
+            stored=still.stored and still.stored.turned(by),
             turn=whole,
             about=still.about | {"turned": " ".join(f"{value:.12g}" for value in whole.ravel() + 0.0)},
             suns=tuple(replace(sun, axis=by @ sun.axis) for sun in still.suns),
@@ -204,7 +203,7 @@ class Projected(InNotebooks):
 def project_recipe(recipe: Recipe, encoding: str = "", turn: tuple[float, ...] | None = None) -> Projected:
     """The coefficients that the window shows for a recipe. LightError or UsageError, as in `reconstruction_of`.
 
-    encoding: one of STORED, or "" for the bands; turn: the rotation of the light, row by row, for whose axes a cube is made.
+    encoding: one of ENCODINGS, or "" for the bands; turn: the rotation of the light, row by row, for whose axes a cube is made.
     """
     if encoding:
         check_encoding(recipe, encoding)

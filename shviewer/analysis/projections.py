@@ -173,26 +173,26 @@ def turned_exactly(light: Light, turn: tuple[float, ...], n_bands: int) -> Proje
 
 @remember(most=16, doing="encoding the irradiance")
 def encoded(light: Light, projection: Projection, name: str, turn: tuple[float, ...] | None = None) -> Projection:
-    """An irradiance as one of STORED keeps it, made of the first bands of a projection.
+    """An irradiance as one of ENCODINGS keeps it, made of the first bands of a projection, in the frame of the light.
 
-    turn: the rotation of the light, row by row, whose cube is wanted; the coefficients are turned back.
+    turn: the rotation of the light, row by row, whose cube is wanted.
     """
-    from shviewer.harmonics.quantities.encodings import STORED, Stored
+    from shviewer.harmonics.quantities.encodings import ENCODINGS, Stored
 
-    encoding, radiance = STORED[name], projection.radiance[: MAX_DIRECT_BANDS**2]
-    matrix = None if turn is None or encoding.turns else np.reshape(turn, (3, 3))
+    matrix = np.eye(3) if turn is None else np.reshape(turn, (3, 3))
+    encoding = ENCODINGS[name].standing(matrix)
     with refused_as(UsageError, f"encode {name}: "):
-        numbers = encoding.store(radiance if matrix is None else rotate(radiance, matrix))
-    made = encoding.expand(numbers)
+        numbers = encoding.store(projection.radiance[: MAX_DIRECT_BANDS**2])
     coefficients = np.zeros_like(projection.coefficients)
-    coefficients[: encoding.bands**2] = made if matrix is None else rotate(made, matrix.T)
-    return replace(projection, coefficients=coefficients, stored=Stored(name, numbers))
+    coefficients[: encoding.bands**2] = encoding.expand(numbers)
+    stored = Stored(name, numbers) if encoding.turns else Stored(name, numbers, matrix)
+    return replace(projection, coefficients=coefficients, stored=stored)
 
 
 @remember(most=8)
 def _given_projection(light: Light, given: CoefficientLight, n_bands: int) -> Projection:
-    radiance = given.coefficients(n_bands)
-    return Projection(light.from_source(radiance), f"read as {given.convention}", None, None, radiance)
+    held = given.through(light.quantity).coefficients(n_bands)
+    return Projection(held, given.read_as, None, None, given.coefficients(n_bands))
 
 
 @remember(most=32, doing="projecting")

@@ -19,7 +19,7 @@ from shviewer.analysis.options import (
     option,
 )
 from shviewer.errors import UsageError
-from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, STORED_BANDS
+from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE, RADIANCE
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS, MAX_SAMPLES
 from shviewer.words import counted
@@ -140,8 +140,8 @@ def check_encoding(recipe: Recipe, encoding: str) -> None:
         raise UsageError(f"encode {encoding}: engines store it of irradiance; give --for irradiance")
     if recipe.compare:
         raise UsageError(f"encode {encoding}: coefficients that are compared are shown as they are; leave one out")
-    if recipe.n_bands != STORED_BANDS[encoding]:
-        bands = counted(STORED_BANDS[encoding], "band")
+    if recipe.n_bands != ENCODED_BANDS[encoding]:
+        bands = counted(ENCODED_BANDS[encoding], "band")
         raise UsageError(
             f"encode {encoding}: it stands for {bands}, not {recipe.n_bands}; leave out the number of bands"
         )

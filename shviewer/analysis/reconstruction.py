@@ -54,7 +54,7 @@ def reconstruction_of(
 ) -> Reconstruction:
     """Make the reconstruction. LightError for a light that cannot be read or shown, UsageError for a recipe out of range.
 
-    encoding: one of STORED, through which an irradiance goes; turn: as in `encoded`.
+    encoding: one of ENCODINGS, through which an irradiance goes; turn: as in `encoded`.
     ahead: the number of bands that will be asked for later: an image, which keeps its coefficients, is projected only once.
     """
     recipe.check()

@@ -20,8 +20,10 @@ from shviewer.cli.jobs import in_order
 from shviewer.cli.options.inputs import lights_within, reading_from
 from shviewer.cli.status_line import speaking
 from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp
+from shviewer.coefficients.stored_code import FORMULAS
 from shviewer.errors import LightError, ShviewerError
 from shviewer.harmonics.extremes.error_grid import Triple
+from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.words import counted, one_line
 
 SCHEMA = {"schema": 1}
@@ -180,16 +182,21 @@ def _coefficients(found: CoefficientInformation) -> list[tuple[str, str]]:
     said = "as named on the command line; the file does not say"
     if found.stamped or found.implied:
         said = "as the file says" if found.stamped else "as this kind of file implies"
-    rows = [
-        (
-            "coefficients",
-            f"{counted(found.bands, 'band')}, {counted(found.bands**2, 'row')}, {found.quantity.replace('-', ' ')}",
-        ),
-        ("convention", f"{found.convention} ({found.program}), {said}"),
-        ("basis", f"{found.basis}; {found.phase}; index {found.index}"),
-        ("axes", found.axes),
-    ]
-    return rows + _origin(found.stamp)
+    held = found.quantity.replace("-", " ")
+    if found.encoding:
+        encoding = ENCODINGS[found.encoding]
+        count = counted(encoding.floats, "number")
+        rows = [
+            ("encoding", f"{count} a channel, {found.encoding}, {held}"),
+            ("formula", FORMULAS[encoding.formula]),
+        ]
+    else:
+        rows = [
+            ("coefficients", f"{counted(found.bands, 'band')}, {counted(found.bands**2, 'row')}, {held}"),
+            ("convention", f"{found.convention} ({found.program}), {said}"),
+            ("basis", f"{found.basis}; {found.phase}; index {found.index}"),
+        ]
+    return [*rows, ("axes", found.axes), *_origin(found.stamp)]
 
 
 def _origin(stamp: Stamp) -> list[tuple[str, str]]:

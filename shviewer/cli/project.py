@@ -29,7 +29,7 @@ from shviewer.coefficients.programs import CONVENTIONS, OURS
 from shviewer.coefficients.texts import convention_text, parse_convention
 from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError, refused_as
-from shviewer.harmonics.quantities.names import IRRADIANCE, STORED_BANDS, in_words
+from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE, in_words
 from shviewer.harmonics.rotation import turn
 from shviewer.outputs import Replacing, file_stem, write_atomically
 from shviewer.words import counted, meant
@@ -84,8 +84,8 @@ def _projected_of(options: argparse.Namespace, convention: Convention, light: st
 def check_encode(options: argparse.Namespace, convention: Convention) -> None:
     """Let the options be those of --encode. UsageError if they contradict it."""
     name = options.encode
-    if name not in STORED_BANDS:
-        raise UsageError(f"--encode {name!r}: {meant(name, STORED_BANDS)}")
+    if name not in ENCODED_BANDS:
+        raise UsageError(f"--encode {name!r}: {meant(name, ENCODED_BANDS)}")
     if options.n_bands is not None or options.tolerance is not None:
         raise UsageError(f"--encode {name}: it takes the place of bands; leave out --bands and --tolerance")
     if convention != replace(OURS, axes=convention.axes):
@@ -93,7 +93,7 @@ def check_encode(options: argparse.Namespace, convention: Convention) -> None:
             f"--encode {name}: its formula takes shviewer's own numbers, not those of {convention_text(convention)}; for other "
             "axes give --axes, such as --axes y-up"
         )
-    options.quantity, options.n_bands = options.quantity or IRRADIANCE, STORED_BANDS[name]
+    options.quantity, options.n_bands = options.quantity or IRRADIANCE, ENCODED_BANDS[name]
 
 
 def wanted_convention(text: str, axes: str | None, no_phase: bool, quantity: str | None) -> Convention:

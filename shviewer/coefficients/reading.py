@@ -25,14 +25,26 @@ from shviewer.coefficients.lists.text import read_list
 from shviewer.coefficients.numbers import Listed, as_table, in_sequence
 from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.parts.rows import ACN, row_order
-from shviewer.coefficients.stamp import SCHEMA_KEY, Stamp, Value, read_stamp, refuse_stored, safe
+from shviewer.coefficients.stamp import (
+    ENCODING_KEY,
+    SCHEMA_KEY,
+    TABLE_BEGINS,
+    TABLE_ENDS,
+    Stamp,
+    Value,
+    read_stamp,
+    safe,
+)
+from shviewer.coefficients.stored_code import check_stored, out_of_axes
 from shviewer.coefficients.suffixes import HOLDS
 from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError, refused_as
 from shviewer.files import decoding, naming, read_bytes
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quantities.names import RADIANCE
+from shviewer.harmonics.quantities.encodings import ENCODINGS, Stored
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.limits import DEFAULT_LIMITS, Limits
+from shviewer.words import meant
 
 MAX_FILE_BYTES = 8 * 2**20
 """The most bytes of a file. 128 bands of three complex channels, with 24 characters a number, take 3 MiB."""
@@ -40,13 +52,10 @@ MAX_FILE_BYTES = 8 * 2**20
 LARGEST = 1e100
 """The largest coefficient: beyond it, conversions and squares could leave float64. Lights that are drawn end at 1e30."""
 
-TABLE_BEGINS, TABLE_ENDS = "coefficients begin", "coefficients end"
-"""The words of two comments in source code; between them stand the numbers, and nothing else."""
-
 
 @dataclass(frozen=True, eq=False)
 class CoefficientFile:
-    """A file that was read. numbers: as it has them, (n**2, 3), float64 or complex128. coefficients: in our convention."""
+    """A file that was read. numbers: as it has them, (n**2, 3) or those of an encoding. coefficients: in our convention."""
 
     numbers: NDArray[np.generic]
     convention: Convention
@@ -59,6 +68,8 @@ class CoefficientFile:
     """Whether the convention is the one that the kind of file implies."""
     listed: Listed | None = None
     """The numbers before they were read in the convention."""
+    stored: Stored | None = None
+    """What an engine stores of an irradiance, if the numbers are that; the coefficients are then its bands."""
 
     @property
     def n_bands(self) -> int:
@@ -110,6 +121,8 @@ def interpreted(listed: Listed, named: str, *, overrule: bool = False) -> Coeffi
             "whose --help names them all; convention='three' in Python); "
             "if the light is at hand, --compare finds it out: shviewer LIGHT --compare FILE"
         )
+    if ENCODING_KEY in stamp:
+        return _stored(listed, convention, stamp, notes)
     sequence = convention.sequence if not stamp else ""
     numbers = in_sequence(listed, sequence) if sequence else listed.numbers
     table = as_table(numbers, complex_pairs=convention.complex)
@@ -127,10 +140,38 @@ def interpreted(listed: Listed, named: str, *, overrule: bool = False) -> Coeffi
             table = table[row_order(convention.order, count_bands(table))]
         except ValueError as error:
             raise LightError(f"{error}; leave {convention.order} out, its rows name their l and m") from error
-    if np.abs(table).max() > LARGEST:
-        raise LightError(f"a coefficient of {np.abs(table).max():.3g}; at most {LARGEST:g} is read: scale the light")
+    _check_size(table)
     with refused_as(LightError):
         return CoefficientFile(table, convention, convention.to_ours(table), stamp, notes, not (stamp or named), listed)
+
+
+def _stored(listed: Listed, convention: Convention, stamp: Stamp, notes: tuple[str, ...]) -> CoefficientFile:
+    """Numbers of which a formula makes irradiance, as --encode writes them. LightError if they are not those of their stamp."""
+    name, quantity = stamp[ENCODING_KEY], stamp.get("quantity")
+    if name not in ENCODINGS:
+        raise LightError(f"encoding {name!r}: {meant(str(name), ENCODINGS)}")
+    if quantity != IRRADIANCE:
+        raise LightError(f"encoding {name} is of irradiance, but quantity says {quantity}: correct one of them")
+    encoding = ENCODINGS[name]
+    if (places := stamp.get("numbers", "")) != " ".join(encoding.places):
+        raise LightError(
+            f"numbers says {places!r}; those of {name} are {' '.join(encoding.places)}: correct one of them"
+        )
+    numbers = np.asarray(listed.numbers, dtype=np.float64)
+    if not np.isfinite(numbers).all():
+        raise LightError("a number that is not finite; project the light again")
+    _check_size(numbers)
+    with refused_as(LightError):
+        check_stored(encoding, convention)
+        stored = out_of_axes(name, numbers, convention.axes)
+    return CoefficientFile(
+        numbers, convention, encoding.expand(stored.numbers), stamp, notes, listed=listed, stored=stored
+    )
+
+
+def _check_size(numbers: NDArray[np.generic]) -> None:
+    if np.abs(numbers).max() > LARGEST:
+        raise LightError(f"a coefficient of {np.abs(numbers).max():.3g}; at most {LARGEST:g} is read: scale the light")
 
 
 def _read_json(data: bytes) -> Listed:
@@ -159,7 +200,6 @@ def _read_text(data: bytes, table: bool = False) -> Listed:
     stamp, begins, ends = _comments(text), text.find(TABLE_BEGINS), text.find(TABLE_ENDS)
     if not stamp:
         return read_list(text, table=table)
-    refuse_stored(stamp)
     if begins < 0:
         return Listed(read_list(text, table=table, sort=False).numbers, stamp)
     numbers = plain_numbers(text[text.find("\n", begins) : text.rfind("\n", 0, ends)] if ends > begins else "")

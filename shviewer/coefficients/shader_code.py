@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 
 from shviewer.coefficients.parts.scales import LEADING
-from shviewer.coefficients.reading import TABLE_BEGINS, TABLE_ENDS
+from shviewer.coefficients.stamp import TABLE_BEGINS, TABLE_ENDS
 from shviewer.coefficients.table import Table
 from shviewer.harmonics.basis import Array, degree_order, index, normalisation
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.reading import TABLE_BEGINS, TABLE_ENDS
-from shviewer.coefficients.stamp import Value
+from shviewer.coefficients.stamp import TABLE_BEGINS, TABLE_ENDS, Value
 from shviewer.coefficients.table import Table
 from shviewer.coefficients.use import JAVASCRIPT, USES, unity_vectors
 

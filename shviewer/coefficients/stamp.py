@@ -10,9 +10,9 @@ Schema 1. A reader needs the first three keys; the others are for people, and mu
     use                     what to type so that the program takes them (use.py), with the rows as the file has them
     unity-vectors           the seven vectors of Unity's shaders, in a file for Unity
     bands, rows, columns    n, n^2, and the names of the columns
-    encoding                one of STORED (harmonics/quantities/encodings.py): the rows are what engines store of an irradiance,
+    encoding                one of ENCODINGS of harmonics/quantities: the rows are what engines store of an irradiance,
     numbers                 what each row is called, as in
-    formula                 which gives the irradiance in a direction; no reader takes such a file for a light
+    formula                 which gives the irradiance in a direction
     through                 the encoding that the rows have been through, which are bands, as its formula takes no window
     light, light-is, light-notes, window, muted, method, samples, seed
     turned                  the rotation of the light before it was written, if it was turned: a matrix row by row, in our axes
@@ -44,6 +44,9 @@ SCHEMA = 1
 SCHEMA_KEY = "shviewer-coefficients"
 SUNS_KEY = "suns"
 ENCODING_KEY = "encoding"
+
+TABLE_BEGINS, TABLE_ENDS = "coefficients begin", "coefficients end"
+"""The words of two comments in source code; between them stand the numbers, and nothing else."""
 
 Value = str | int | float | None
 Stamp = Mapping[str, Value]
@@ -94,21 +97,11 @@ def _is_glossy(quantity: object) -> bool:
         return False
 
 
-def refuse_stored(stamp: Stamp) -> None:
-    """LightError for what engines store of an irradiance: numbers for a formula."""
-    if ENCODING_KEY in stamp:
-        raise LightError(
-            f"holds numbers for the formula of {one_line(str(stamp[ENCODING_KEY]))}, no coefficients: give the light itself, "
-            "and --encode"
-        )
-
-
 def read_stamp(stamp: Stamp) -> Convention:
     """The convention that a stamp states, with its quantity.
 
     LightError for a later schema, a missing key or a contradiction.
     """
-    refuse_stored(stamp)
     schema = stamp.get(SCHEMA_KEY)
     if str(schema) != str(SCHEMA):
         raise LightError(

@@ -22,7 +22,7 @@ from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities.ambient_cube import FACES
 from shviewer.harmonics.quantities.decoding import LINEAR, MEAN, ZONAL
-from shviewer.harmonics.quantities.encodings import Encoding, Stored
+from shviewer.harmonics.quantities.encodings import ENCODINGS, Encoding, Stored
 
 _MIXED = " + ".join(f"{part!r} v.{channel}" for part, channel in zip(LUMINANCE.tolist(), "rgb", strict=True))
 _V = "v = (-c3, -c1, c2)"
@@ -116,9 +116,19 @@ def in_axes(stored: Stored, axes: Axes) -> Array:
     return np.concatenate([turn(numbers[:count], axes), numbers[count:]]) + 0.0
 
 
+def out_of_axes(name: str, numbers: Array, axes: Axes) -> Stored:
+    """The same irradiance in our axes, from the numbers of a program's. ValueError for as many as the encoding has not."""
+    encoding = ENCODINGS[name]
+    if numbers.shape != (encoding.floats, 3):
+        raise ValueError(
+            f"numbers of shape {numbers.shape}; {name} has {encoding.floats} rows of three: project the light again"
+        )
+    return Stored(name, in_axes(Stored(name, numbers), axes.inverse))
+
+
 def check_stored(encoding: Encoding, convention: Convention) -> None:
     """ValueError for a convention that says more than axes: the formulas take our own numbers."""
-    if convention != replace(OURS, axes=convention.axes):
+    if replace(convention, quantity=None) != replace(OURS, axes=convention.axes):
         raise ValueError(
             f"{encoding.words} takes shviewer's own numbers, not those of {convention_text(convention)}: "
             "leave --convention out, and name the axes, such as --axes y-up"

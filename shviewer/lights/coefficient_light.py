@@ -1,7 +1,8 @@
 """A light that is a coefficient file: band-limited, so that everything about it is a finite sum.
 
 A light is radiance. A file that holds irradiance becomes the radiance with just that irradiance, so that the viewer shows the
-file's own numbers as irradiance, and they can be written as either.
+file's own numbers as irradiance, and they can be written as either. One of what engines store of irradiance becomes the
+radiance of as many bands as that tells, at most three, and its irradiance what the formula decodes (decoded.py).
 """
 
 from __future__ import annotations
@@ -18,9 +19,12 @@ from shviewer.coefficients.reading import CoefficientFile, read_coefficients
 from shviewer.coefficients.stamp import SUNS_KEY
 from shviewer.coefficients.texts import convention_text
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.quantities.names import RADIANCE
+from shviewer.harmonics.quantities.encodings import Stored
+from shviewer.harmonics.quantities.kernels import kernel_of
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.convolved import ConvolvedSum, FiniteSum, RadianceLight, convolved
+from shviewer.lights.convolved import UP, ConvolvedSum, FiniteSum, RadianceLight, convolved
+from shviewer.lights.decoded import DecodedIrradiance
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import About, Light
 from shviewer.lights.reading import DEFAULT_READING, Reading
@@ -57,7 +61,10 @@ class CoefficientLight(FiniteSum, RadianceLight):
     @classmethod
     def of_file(cls, file: CoefficientFile, name: str) -> CoefficientLight:
         """The light of a file that has been read, which holds the coefficients of the light or of its irradiance."""
-        return cls(_radiance(file.coefficients, file.quantity), name, file)
+        if file.stored is None:
+            return cls(_radiance(file.coefficients, file.quantity), name, file)
+        told = file.stored.radiance
+        return cls(np.pad(told, ((0, len(file.coefficients) - len(told)), (0, 0))), name, file)
 
     @property
     def n_bands(self) -> int:
@@ -88,7 +95,19 @@ class CoefficientLight(FiniteSum, RadianceLight):
     @property
     def description(self) -> str:
         origin = self.file.stamp.get("light") if self.file else None
+        if self.stored is not None:
+            return f"{self.stored.encoding.words}{f' (of {origin})' if origin else ''}"
         return f"{counted(self.n_bands, 'band')}, {self.convention.split(',')[0]}{f', of {origin}' if origin else ''}"
+
+    @property
+    def stored(self) -> Stored | None:
+        """What an engine stores of its irradiance, where its file holds that."""
+        return self.file.stored if self.file else None
+
+    @property
+    def read_as(self) -> str:
+        """How its numbers were read, in words."""
+        return f"decoded as {self.stored.encoding.words}" if self.stored else f"read as {self.convention}"
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -99,6 +118,9 @@ class CoefficientLight(FiniteSum, RadianceLight):
             notes = (*notes, f"{suns} sun{'s' if suns != '1' else ''} left out; the file says where and how bright")
         if self.quantity == RADIANCE:
             return notes
+        if self.stored is not None:
+            told = f"its first {count_bands(self.stored.radiance)} bands"
+            return (*notes, f"holds irradiance, as {self.stored.name}; the radiance is recovered from {told}")
         lost = recovered_radiance(self.file.coefficients, self.quantity)[1]
         bands = f"band{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))}"
         unknown = f", which tells nothing of {bands}" if lost else ""
@@ -122,7 +144,12 @@ class CoefficientLight(FiniteSum, RadianceLight):
         return np.asarray(self.given.T @ self.given)
 
     def through(self, quantity: str) -> Light:
+        if self.stored is not None and quantity == IRRADIANCE:
+            return DecodedIrradiance(self, kernel_of(quantity), self.stored)
         return convolved(self, quantity, ConvolvedSum)
+
+    def irradiance_up(self) -> Array:
+        return super().irradiance_up() if self.stored is None else np.asarray(self.stored.irradiance(UP[None])[0])
 
     @property
     def most_bands(self) -> int:

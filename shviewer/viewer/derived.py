@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import error_grid, grid_rows, sums
 from shviewer.analysis.projections import BEST, Projection, project
-from shviewer.analysis.recipe import Shown
+from shviewer.analysis.recipe import Recipe, Shown
+from shviewer.analysis.reconstruction import Reconstruction, reconstruction_of
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, climb
 from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import directions_from_angles
+from shviewer.harmonics.quantities.names import CUBES
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.lights.light import Light
 from shviewer.limits import DIMMEST
@@ -74,6 +76,23 @@ def _mean_direction(light: Light) -> Array:
     """
     total, along_y, along_z, along_x = _low_bands(light) @ LUMINANCE
     return np.array([-along_x, -along_y, along_z]) / (np.sqrt(3) * total) if total > 0 else np.zeros(3)
+
+
+def reconstruction_shown(recipe: Recipe, view: View, ahead: int = 0) -> Reconstruction:
+    """What a view shows of a recipe, through its encoding. ahead, and raises: as in `reconstruction_of`."""
+    return reconstruction_of(recipe, ahead, view.encode, turn_of_cube(view))
+
+
+def turn_of_cube(view: View) -> tuple[float, ...] | None:
+    """The rotation of the light, row by row, where a cube is shown, which stands in the world; else None."""
+    if not stands(view):
+        return None
+    return tuple(camera.light_from_world(view.light_rotation).T.ravel().tolist())
+
+
+def stands(view: View) -> bool:
+    """Whether what is shown stands in the world while the light turns."""
+    return view.encode in CUBES
 
 
 class Peak(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from shviewer.analysis.comparing.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
 from shviewer.analysis.projections import Projection
-from shviewer.analysis.reconstruction import Reconstruction, reconstruction_of, values_at
+from shviewer.analysis.reconstruction import Reconstruction, values_at
 from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Extremes
@@ -28,7 +28,16 @@ from shviewer.viewer import camera
 from shviewer.viewer.beside import Beside, recipe_beside
 from shviewer.viewer.colour.error_scale import ErrorScale
 from shviewer.viewer.colour.tone import steepest
-from shviewer.viewer.derived import Peak, camera_of, error_scale, exposure_stops, peak, reconstruction_map
+from shviewer.viewer.derived import (
+    Peak,
+    camera_of,
+    error_scale,
+    exposure_stops,
+    peak,
+    reconstruction_map,
+    reconstruction_shown,
+    stands,
+)
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces, map_size
 from shviewer.viewer.state import FRONT, State, changed
 from shviewer.viewer.surface import surfaces
@@ -115,7 +124,7 @@ class Picture:
         """The same picture with the live parts and the exposure of another state: at once, whatever the light is."""
         last, view = self.state.view, state.view
         live = {name: getattr(view, name) for name in (*LIVE, *EXPOSURE)}
-        if state.recipe.turn != self.state.recipe.turn:  # it is seen where it was projected
+        if state.recipe.turn != self.state.recipe.turn or stands(last):  # it is seen where it was projected
             live["light_rotation"] = last.light_rotation
         stops = self.exposure_stops + view.exposure_offset - last.exposure_offset
         if view.exposure_stops is not None:
@@ -143,7 +152,10 @@ class Picture:
 
 def still(state: State) -> State:
     """The state without its live parts: pictures of states with equal still parts differ in what takes no time."""
-    return changed(state, **{name: getattr(FRONT, name) for name in LIVE})
+    live = {name: getattr(FRONT, name) for name in LIVE}
+    if stands(state.view):
+        del live["light_rotation"]
+    return changed(state, **live)
 
 
 def prepare(state: State, *, by_map: bool = False, written: bool = True) -> Picture:
@@ -198,13 +210,13 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
     tell("projecting")
     for part in (shown.whole, shown.light):
         _ = part.map  # first, so that whoever looks at the light in a few directions takes them from it
-    found = reconstruction_of(recipe, ahead, view.encode)
+    found = reconstruction_shown(recipe, view, ahead)
     light, whole, projection = found.subject.light, found.subject.whole, found.projection
     scale = _scale(state, light, projection)
     stops = exposure_stops(view, whole)
     other = None
     if view.beside != "off":
-        other = reconstruction_of(recipe_beside(recipe, view.beside), encoding=view.encode)
+        other = reconstruction_shown(recipe_beside(recipe, view.beside), view)
 
     def drawn_as(one: Reconstruction) -> Drawn:
         if view.lobe_view:
@@ -247,7 +259,7 @@ def _source(light: Light) -> Source:
 
 def error_end(state: State) -> float:
     """The end of the error's colours in the picture of a state, up to what the search for the largest error adds."""
-    found = reconstruction_of(state.recipe, 0, state.view.encode)
+    found = reconstruction_shown(state.recipe, state.view)
     scale = _scale(state, found.subject.light, found.projection)
     assert scale is not None, "the state shows no error"
     return scale.end

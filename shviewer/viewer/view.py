@@ -98,7 +98,7 @@ class View:
         "",
         Choice(("", *ENCODED_BANDS)),
         "show what engines store of the irradiance in few numbers, in place of bands: l1, geomerics, hallucinated, zh3, the"
-        " last two also with -shared, l2 or l2-deringed",
+        " last two also with -shared, zh3-solved, ambient-cube, ambient-cube-fitted, l2 or l2-deringed",
         "--encode NAME",
     )
     by_roughness: bool = option(

@@ -18,8 +18,8 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.coefficients.texts import parse_convention
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.quantities.encodings import STORED
-from shviewer.harmonics.quantities.names import STORED_BANDS
+from shviewer.harmonics.quantities.encodings import ENCODINGS
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
 
 DIRECTIONS = random_directions(40)
 
@@ -63,19 +63,19 @@ COEFFICIENTS = {
 }
 """Bands, quantity, convention, and its axes."""
 
-CASES = (*COEFFICIENTS, *STORED)
+CASES = (*COEFFICIENTS, *ENCODINGS)
 
 
 @cache
 def case(name: str) -> Projected:
-    if name in STORED:
-        return project_recipe(Recipe("venice_sunset", n_bands=STORED_BANDS[name], quantity="irradiance"), name)
+    if name in ENCODINGS:
+        return project_recipe(Recipe("venice_sunset", n_bands=ENCODED_BANDS[name], quantity="irradiance"), name)
     n_bands, quantity, *_ = COEFFICIENTS[name]
     return project_recipe(Recipe("venice_sunset", n_bands=n_bands, quantity=quantity))
 
 
 def source(name: str) -> str:
-    convention = "shviewer" if name in STORED else COEFFICIENTS[name][2]
+    convention = "shviewer" if name in ENCODINGS else COEFFICIENTS[name][2]
     return case(name).encode(parse_convention(convention), "hlsl").decode()
 
 
@@ -116,7 +116,7 @@ def test_the_function_gives_what_the_coefficients_hold(answers: dict[str, Array]
     np.testing.assert_allclose(answers[name], wanted, atol=1e-12 * np.abs(wanted).max())
 
 
-@pytest.mark.parametrize("name", STORED)
+@pytest.mark.parametrize("name", ENCODINGS)
 def test_what_engines_store_is_decoded(answers: dict[str, Array], name: str) -> None:
     stored = case(name).stored
     assert stored is not None

@@ -24,13 +24,12 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main
 from shviewer.coefficients.stored_code import FORMULAS
 from shviewer.coefficients.texts import parse_convention
-from shviewer.coefficients.writing import FORMATS
-from shviewer.errors import LightError, UsageError
+from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities import decoding
-from shviewer.harmonics.quantities.encodings import STORED, Stored
-from shviewer.harmonics.quantities.names import STORED_BANDS
+from shviewer.harmonics.quantities.encodings import ENCODINGS, Stored
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.viewer.gl.renderer import Renderer
 
 LEFT_HANDED = "+x+z+y"
@@ -39,7 +38,7 @@ CUT_OFF = {"geomerics": 1e-5, "ambient-cube": 5e-4, "ambient-cube-fitted": 5e-4}
 
 
 def stored(name: str, light: str = "venice_sunset") -> Projected:
-    return project_recipe(Recipe(light, n_bands=STORED_BANDS[name], quantity="irradiance"), name)
+    return project_recipe(Recipe(light, n_bands=ENCODED_BANDS[name], quantity="irradiance"), name)
 
 
 def text(projected: Projected, kind: str, convention: str = "shviewer") -> str:
@@ -63,7 +62,7 @@ def drawn(renderer: Renderer, source: str, call: str, directions: Array) -> Arra
 
 
 @pytest.mark.parametrize("axes", ["shviewer", f"shviewer,{LEFT_HANDED}"])
-@pytest.mark.parametrize("name", STORED)
+@pytest.mark.parametrize("name", ENCODINGS)
 def test_the_function_of_glsl_has_the_irradiance_in_the_axes_of_the_file(
     renderer: Renderer, name: str, axes: str
 ) -> None:
@@ -124,12 +123,12 @@ def test_every_format_has_the_numbers_their_names_and_the_formula(name: str, tmp
     read = json.loads(text(projected, "json"))
     np.testing.assert_array_equal(read["coefficients"], numbers)
     assert (read["encoding"], read["rows"], read["quantity"]) == (name, len(numbers), "irradiance")
-    assert read["formula"] == FORMULAS[STORED[name].formula]
-    assert read["numbers"].split() == [*STORED[name].places]
+    assert read["formula"] == FORMULAS[ENCODINGS[name].formula]
+    assert read["numbers"].split() == [*ENCODINGS[name].places]
     assert ("normalisation" in read) == (name != "ambient-cube")
     table = [line.split(",") for line in text(projected, "csv").splitlines() if not line.startswith("#")]
     assert table[0] == ["number", "red", "green", "blue"]
-    assert [row[0] for row in table[1:]] == [*STORED[name].places]
+    assert [row[0] for row in table[1:]] == [*ENCODINGS[name].places]
     np.testing.assert_array_equal(np.array([row[1:] for row in table[1:]], float), numbers)
     (tmp_path / "a.npz").write_bytes(projected.encode(parse_convention("shviewer"), "npz"))
     np.testing.assert_array_equal(np.load(tmp_path / "a.npz")["coefficients"], numbers)
@@ -137,7 +136,7 @@ def test_every_format_has_the_numbers_their_names_and_the_formula(name: str, tmp
     for kind in ("h", "js", "cs", "glsl"):
         source = text(projected, kind)
         assert f"// formula: {read['formula']}" in source
-        assert f"// {STORED[name].places[-1]}\n" in source
+        assert f"// {ENCODINGS[name].places[-1]}\n" in source
         assert repr(float(numbers[-1, 2])) in source
 
 
@@ -151,16 +150,6 @@ def test_the_header_compiles(tmp_path: Path) -> None:
     )
     subprocess.run([compiler, "-std=c99", "-Wall", "-Werror", "main.c", "-o", "main"], cwd=tmp_path, check=True)
     subprocess.run([tmp_path / "main"], check=True)
-
-
-@pytest.mark.parametrize("kind", FORMATS)
-def test_no_reader_takes_them_for_coefficients(kind: str, tmp_path: Path) -> None:
-    path = tmp_path / f"a.{kind}"
-    stored("l1").save(path)
-    with pytest.raises(
-        LightError, match=r"holds numbers for the formula of l1, no coefficients: give the light itself"
-    ):
-        shviewer.find_light(path)
 
 
 def test_a_window_is_in_the_numbers_of_sums_and_leaves_the_others_none() -> None:
@@ -180,14 +169,14 @@ def test_numbers_of_a_turned_light_are_those_of_the_light_as_it_stands(name: str
     still = stored(name, "green")
     turned = still.turned(first).turned(second)
     radiance = shviewer.project("green", 32).turned(second @ first).coefficients
-    wanted = STORED[name].store(radiance)
+    wanted = ENCODINGS[name].store(radiance)
     np.testing.assert_allclose(turned.stored.numbers, wanted, rtol=0, atol=1e-12)  # type: ignore[union-attr]
     seen = evaluate_basis(NORMALS, turned.n_bands) @ turned.coefficients
     by_formula = Stored(name, wanted).irradiance(NORMALS)
     np.testing.assert_allclose(seen, by_formula, rtol=0, atol=CUT_OFF.get(name, 1e-12) * np.abs(seen).max())
     stamped = np.array(str(turned.about["turned"]).split(), float).reshape(3, 3)
     np.testing.assert_allclose(stamped, second @ first, atol=1e-11)
-    assert (turned.sums.relative_l2 == still.sums.relative_l2) == STORED[name].turns
+    assert (turned.sums.relative_l2 == still.sums.relative_l2) == ENCODINGS[name].turns
     assert turned.figures.relative_l2 == turned.sums.relative_l2
 
 
@@ -219,7 +208,7 @@ def test_project_says_what_it_wrote_and_what_goes_below_zero(
     out = tmp_path / "green.json"
     assert main(["project", "green", "--encode", name, "-o", str(out), "--rotate-light", "30", "20"]) == 0
     printed = capsys.readouterr()
-    floats = STORED[name].floats
+    floats = ENCODINGS[name].floats
     assert printed.out.startswith(f"wrote {out}: {floats} numbers a channel, {name}, irradiance within ")
     assert [note for note in notes if note not in printed.err] == []
     assert len(printed.err.splitlines()) == len(notes)

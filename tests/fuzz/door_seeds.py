@@ -139,11 +139,17 @@ def _written() -> dict[str, bytes]:
         if kind not in ("glsl", "hlsl")
     }
     irradiance = replace(CONVENTIONS["shviewer"], quantity="irradiance")
+    encoded, cube = (
+        project_recipe(Recipe("green", quantity="irradiance", n_bands=n_bands), name)
+        for name, n_bands in (("zh3", 3), ("ambient-cube", 32))
+    )
     return {
         **files,
         "light/filament.json": projected.encode(CONVENTIONS["filament"], "json"),
         "light/irradiance.csv": projected.encode(irradiance, "csv"),
         "compare/written.npz": files["light/written.npz"],
+        **{f"light/zh3.{kind}": encoded.encode(CONVENTIONS["shviewer"], kind) for kind in ("json", "csv", "npz")},
+        "compare/cube.json": cube.encode(CONVENTIONS["shviewer"], "json"),
     }
 
 

@@ -17,7 +17,7 @@ from shviewer.cli.options.states import state_from
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.quantities.encodings import ENCODINGS, Stored
-from shviewer.harmonics.quantities.names import ENCODED_BANDS
+from shviewer.harmonics.quantities.names import CUBES, ENCODED_BANDS
 from shviewer.lights.find import find_light
 from shviewer.viewer.camera import towards
 from shviewer.viewer.composing.composition import compose
@@ -138,6 +138,24 @@ def test_Ctrl_E_writes_the_numbers_that_are_shown_turned_as_they_are(
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
     assert main(["project", "green", "--encode", name, "--rotate-light", "30", "20", "-o", "by-command.json"]) == 0
     assert json.loads((tmp_path / "by-command.json").read_text())["encoding"] == name
+
+
+@pytest.mark.parametrize("name", CUBES)
+def test_a_cube_is_made_anew_while_the_light_turns_and_shown_as_it_stands(name: str) -> None:
+    session = Session(encoding(name))
+    session.prepare()
+    still = session.picture
+    session.state = changed(session.state, light_rotation=towards(40.0, 30.0))
+    seen = still.seen(session.state)  # until the new one is there, the old light with its cube
+    assert seen.light_from_world is still.light_from_world or (seen.light_from_world == still.light_from_world).all()
+    session.prepare()
+    picture = session.picture
+    assert picture.state.view.light_rotation == towards(40.0, 30.0)
+    assert picture.stored is not None
+    wanted = shviewer.project("green", encode=name).turned(picture.light_from_world.T)
+    np.testing.assert_allclose(picture.stored.numbers, wanted.stored.numbers, rtol=0, atol=1e-12)  # type: ignore[union-attr]
+    assert picture.figures.relative_l2 == pytest.approx(wanted.sums.relative_l2, rel=1e-9)
+    assert picture.figures.relative_l2 != pytest.approx(still.figures.relative_l2, rel=1e-3)
 
 
 def test_Ctrl_E_writes_the_bands_that_are_shown_where_a_window_leaves_no_formula(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.analysis.cache import remember
+from shviewer.analysis.comparing.stored import verdict_on_stored
 from shviewer.analysis.comparing.suspecting import FITS, held_as, suspect
 from shviewer.analysis.projections import BEST, project
 from shviewer.analysis.recipe import Recipe
@@ -22,7 +23,7 @@ from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.lights.mistaken import mistaken
-from shviewer.limits import MAX_BANDS
+from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.words import all_of, brief_percent
 
 FAINT = 1e-3
@@ -74,6 +75,8 @@ def verdict(light: Light, given: CoefficientLight) -> str:
 
     Both are compared as what the file holds, radiance or irradiance, whatever is shown.
     """
+    if given.file is not None and given.stored is not None:
+        return verdict_on_stored(project(light, BEST, MAX_DIRECT_BANDS).coefficients, given.file, given.name)
     exact = project(light, BEST, given.n_bands).coefficients
     wanted, held = held_as(exact, given.quantity), _numbers(given)
     norm, off = float(np.linalg.norm(wanted)), float(np.linalg.norm(wanted - held))

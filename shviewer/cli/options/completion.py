@@ -11,7 +11,7 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.cli.options.modes import MODES, PARSERS
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.writing import FORMATS
-from shviewer.harmonics.quantities.names import STORED_BANDS
+from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.lights.find import built_in_lights
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.viewer.view import View
@@ -21,7 +21,7 @@ WORDS: dict[str | tuple[str, str], tuple[str, ...]] = {
     "input_convention": tuple(CONVENTIONS),
     "format": FORMATS,
     "layout": LAYOUT_CHOICES,
-    ("project", "encode"): tuple(STORED_BANDS),
+    ("project", "encode"): tuple(ENCODED_BANDS),
     "list_factors": Quantity.words[1:],
 }
 """What may be given with options that no dataclass holds, by their places, or only in a mode."""

@@ -175,8 +175,8 @@ TABLE = {
             ),
             row(
                 "--encode NAME",
-                "in place of bands what engines store of the irradiance, with the formula that decodes it: those of a picture's"
-                " --encode, zh3-solved, ambient-cube or ambient-cube-fitted",
+                "in place of bands what engines store of the irradiance, with the formula that decodes it: one of those of a"
+                " picture's --encode",
             ),
             row("--no-phase", "a basis without the Condon-Shortley phase (-1)^m"),
             NUMBERS,

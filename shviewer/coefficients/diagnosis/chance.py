@@ -37,6 +37,16 @@ def chance(errors: Array, told: NDArray[np.bool_], exact: Array) -> float:
     return float(_chances(errors[None], told[None], norms[None], np.arange(1.0, 2 * n_bands, 2), exact[None])[0])
 
 
+def share_of_directions(given: Array, wanted: Array) -> float:
+    """The probability that numbers (k, 3) of random directions are, but for a constant, as near to others as these are."""
+    sizes = float(np.linalg.norm(given) * np.linalg.norm(wanted))
+    if not sizes:
+        return 1.0
+    share = max(float((given * wanted).sum()) / sizes, 0.0)
+    channels = _channels((wanted.T @ wanted)[None])[0]
+    return float(max(np.sqrt(max(1 - share**2, 0.0)), ROUNDING) ** max(len(given) * channels - 1, 0.0) / 2)
+
+
 def chances_of_rows(given: Array, wanted: Array, told: NDArray[np.bool_]) -> Array:
     """The same of lists (k, n**2, 3) that should be `wanted`, each degree with its best constant: (k,).
 
@@ -55,12 +65,16 @@ def chances_of_rows(given: Array, wanted: Array, told: NDArray[np.bool_]) -> Arr
     return _chances(errors, (own > 0) & (power > 0), np.sqrt(own), rows, wanted)
 
 
+def _channels(products: Array) -> Array:
+    """How many channels tell something of their own, (k,), from their products (k, 3, 3)."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of lists beyond what float64 can square
+        found = products.trace(axis1=1, axis2=2) ** 2 / (products**2).sum(axis=(1, 2))
+    return np.where(np.isfinite(found), found, 1.0)
+
+
 def _chances(errors: Array, told: NDArray[np.bool_], norms: Array, rows: Array, exact: Array) -> Array:
     """The chances (k,) of lists `exact` (k, n**2, 3), by the errors, norms and telling rows of each degree, (k, n)."""
-    products = exact.transpose(0, 2, 1) @ exact
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of lists beyond what float64 can square
-        channels = products.trace(axis1=1, axis2=2) ** 2 / (products**2).sum(axis=(1, 2))
-    channels = np.where(np.isfinite(channels), channels, 1.0)
+    channels = _channels(exact.transpose(0, 2, 1) @ exact)
     counts = told & (norms > FAINT * norms.max(axis=1, keepdims=True))
     shares = np.clip(errors, ROUNDING, 1.0) ** np.maximum(rows * channels[:, None] - 1, 0.0) / 2
     return np.asarray(np.prod(np.where(counts, shares, 1.0), axis=1))

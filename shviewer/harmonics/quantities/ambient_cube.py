@@ -23,24 +23,32 @@ CUBE_BANDS = MAX_DIRECT_BANDS
 """Bands of radiance that a cube is made of, and of irradiance that stand for it: they leave some 3e-4 of its largest face."""
 
 
-def sampled(radiance: Array) -> Array:
-    """The irradiance (6, 3) of the faces' own directions, from coefficients (n**2, 3) of radiance."""
+def sampled(radiance: Array, faces: Array = FACES) -> Array:
+    """The irradiance (6, 3) in the faces' directions, from coefficients (n**2, 3) of radiance. faces: FACES, or turned."""
     irradiance = _irradiance(radiance)
-    return np.asarray(evaluate_basis(FACES, count_bands(irradiance)) @ irradiance)
+    return np.asarray(evaluate_basis(faces, count_bands(irradiance)) @ irradiance)
 
 
-def fitted(radiance: Array) -> Array:
+def fitted(radiance: Array, faces: Array = FACES) -> Array:
     """The faces (6, 3) whose cube is nearest to the irradiance in the L2 sense; some may be negative."""
     irradiance = _irradiance(radiance)
-    seen = orient(_face(count_bands(irradiance)), FACES) @ irradiance
-    one, other = 2 * np.pi / 5, np.pi / 15  # integrals of x^4 on a half and of x^2 y^2 on a quarter of the sphere
-    across = 1 - np.abs(FACES @ FACES.T)
-    return np.asarray(np.linalg.solve(one * np.eye(len(FACES)) + other * across, seen))
+    return np.asarray(np.linalg.solve(_gram(), orient(_face(count_bands(irradiance)), faces) @ irradiance))
 
 
-def bands_of_cube(faces: Array) -> Array:
-    """The first CUBE_BANDS bands of a cube, (CUBE_BANDS**2, 3)."""
-    return np.asarray(orient(_face(CUBE_BANDS), FACES).T @ faces)
+def bands_of_cube(numbers: Array, faces: Array = FACES) -> Array:
+    """The first CUBE_BANDS bands of a cube of six numbers a channel, (CUBE_BANDS**2, 3)."""
+    return np.asarray(orient(_face(CUBE_BANDS), faces).T @ numbers)
+
+
+def products_of_cube(numbers: Array) -> Array:
+    """Integrals of E_i E_j over the sphere for channels i and j of a cube, with all its bands, (3, 3)."""
+    return np.asarray(numbers.T @ _gram() @ numbers)
+
+
+def _gram() -> Array:
+    """Integrals of the products of what two faces add, (6, 6): of x^4 on a half, of x^2 y^2 on a quarter of the sphere."""
+    one, other = 2 * np.pi / 5, np.pi / 15
+    return np.asarray(one * np.eye(len(FACES)) + other * (1 - np.abs(FACES @ FACES.T)))
 
 
 def _irradiance(radiance: Array) -> Array:

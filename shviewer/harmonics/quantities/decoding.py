@@ -9,7 +9,7 @@ beyond them. v = (-c3, -c1, c2), u = v/|v|, n a unit normal; A(l) are the factor
     hallucinated  the same with z = c0 s (0.08 + 0.6 s), s = |v.u|/c0 [Roughton]
     ...-shared    u is that of the luminance, the same for all channels
     l2            the sum of A(l) c(l, m) Y(l, m) over three bands, nine numbers
-    cube          n_x^2 e(+-x) + n_y^2 e(+-y) + n_z^2 e(+-z), six numbers e(+x), e(-x), e(+y) ...; in no shader of the window
+    cube          n_x^2 e(+-x) + n_y^2 e(+-y) + n_z^2 e(+-z), six numbers e(+x), e(-x), e(+y) ...
 Where v is 0 there is no axis, and what needs one is l1; where c0 is not positive, r and s are 0.
 
 Sources

@@ -15,7 +15,7 @@ but for Geomerics', which has every band, in closed form: its first GEOMERICS_BA
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -26,7 +26,14 @@ from shviewer.harmonics.deringing import dering
 from shviewer.harmonics.extremes.climbing import climb
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient, window
 from shviewer.harmonics.quadrature import fibonacci
-from shviewer.harmonics.quantities.ambient_cube import CUBE_BANDS, bands_of_cube, fitted, sampled
+from shviewer.harmonics.quantities.ambient_cube import (
+    CUBE_BANDS,
+    FACES,
+    bands_of_cube,
+    fitted,
+    products_of_cube,
+    sampled,
+)
 from shviewer.harmonics.quantities.decoding import FORMULAS, axes, hallucination, lengths, one_sidedness, vectors
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.harmonics.rotation import rotate
@@ -49,9 +56,9 @@ class Encoding(NamedTuple):
     """Numbers that are stored for a channel."""
     bands: int
     """Bands of the irradiance that it stands for."""
-    store: Callable[[Array], Array]
+    store: Callable[..., Array]
     """Radiance (n**2, 3), n at least BANDS -> numbers (floats, 3)."""
-    expand: Callable[[Array], Array]
+    expand: Callable[..., Array]
     """Numbers (floats, 3) -> irradiance (bands**2, 3)."""
     formula: str = ""
     """The one of FORMULAS that has the irradiance in a direction; "" for what is only reported."""
@@ -60,6 +67,13 @@ class Encoding(NamedTuple):
     def turns(self) -> bool:
         """Whether it turns with the light; a cube stands in the axes of the world."""
         return self.formula != "cube"
+
+    def standing(self, turn: Array) -> Encoding:
+        """The same for a light that is turned by a rotation (3, 3), in its frame: of cubes, whose axes are not the light's."""
+        if self.turns:
+            return self
+        faces = FACES @ turn
+        return self._replace(store=partial(self.store, faces=faces), expand=partial(self.expand, faces=faces))
 
     @property
     def summed(self) -> bool:
@@ -90,17 +104,41 @@ class Stored:
     name: str
     numbers: Array
     """(floats, 3)."""
+    turn: Array = field(default_factory=lambda: np.eye(3))
+    """The rotation (3, 3) of the light, in whose frame directions are, against the axes of a cube."""
 
     @property
     def encoding(self) -> Encoding:
-        return STORED[self.name]
+        return ENCODINGS[self.name]
+
+    @property
+    def with_axes(self) -> Array:
+        """The numbers, and of a cube its axes in the frame of the light: what shaders/encodings.glsl takes, (k, 3)."""
+        return self.numbers if self.encoding.turns else np.concatenate([self.numbers, self.turn])
+
+    @property
+    def radiance(self) -> Array:
+        """The radiance that it tells of, at most (9, 3): its own coefficients, and beyond them what the irradiance has."""
+        count = min(self.encoding.bands, BANDS) ** 2
+        found = self.encoding.expand(self.numbers)[:count] / per_coefficient(irradiance_factors(round(count**0.5)))
+        found[: self.encoding.coefficients] = self.numbers[: self.encoding.coefficients]
+        return np.asarray(found)
 
     def irradiance(self, normals: Array) -> Array:
         """Irradiance in unit directions (k, 3): (k, 3)."""
-        return FORMULAS[self.encoding.formula](self.numbers, normals)
+        return FORMULAS[self.encoding.formula](self.numbers, normals @ self.turn.T)
+
+    def products(self) -> Array:
+        """Integrals of E_i E_j over the sphere for channels i and j, (3, 3); of Geomerics' those of its bands."""
+        if not self.encoding.turns:
+            return products_of_cube(self.numbers)
+        made = self.encoding.expand(self.numbers)
+        return np.asarray(made.T @ made)
 
     def turned(self, matrix: Array) -> Stored:
-        """The same of the light carried along by a rotation (3, 3). A cube is not: it is made of the turned light."""
+        """The same of the light carried along by a rotation (3, 3); a cube stays where it is."""
+        if not self.encoding.turns:
+            return replace(self, turn=self.turn @ matrix.T)
         count = self.encoding.coefficients
         return replace(self, numbers=np.concatenate([rotate(self.numbers[:count], matrix), self.numbers[count:]]))
 
@@ -214,19 +252,15 @@ ENCODINGS = {
     "zh3-shared": Encoding(
         "ZH3, shared axis", 5, BANDS, partial(five_numbers, shared=True), partial(zh3, shared=True), "zh3_shared"
     ),
-    "l2": Encoding("L2, linear", 9, BANDS, _first(9), _bands(BANDS), "l2"),
-    "l2-deringed": Encoding("L2, deringed", 9, BANDS, deringed, _bands(BANDS), "l2"),
-}
-"""Those that can be looked at, by their names on the command line."""
-
-STORED = ENCODINGS | {
     "zh3-solved": Encoding("ZH3, solved", 5, BANDS, solved, zh3, "zh3"),
     "ambient-cube": Encoding("ambient cube", 6, CUBE_BANDS, sampled, bands_of_cube, "cube"),
     "ambient-cube-fitted": Encoding("ambient cube, fitted", 6, CUBE_BANDS, fitted, bands_of_cube, "cube"),
+    "l2": Encoding("L2, linear", 9, BANDS, _first(9), _bands(BANDS), "l2"),
+    "l2-deringed": Encoding("L2, deringed", 9, BANDS, deringed, _bands(BANDS), "l2"),
 }
-"""Those that can be written: the window does not search while a light turns, nor has it axes that stay where they are."""
+"""Those that are shown, written and read, by their names on the command line."""
 
-REPORTED = STORED | {
+REPORTED = ENCODINGS | {
     "l2-hann": Encoding("L2, Hann window of 4", 9, BANDS, _windowed("hann"), _bands(BANDS), "l2"),
     "l2-lanczos": Encoding("L2, Lanczos window of 4", 9, BANDS, _windowed("lanczos"), _bands(BANDS), "l2"),
     "code-as-is": Encoding("a trap: Geomerics as in common code", 4, GEOMERICS_BANDS, _first(4), code_as_is),

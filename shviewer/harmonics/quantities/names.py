@@ -25,13 +25,16 @@ ENCODED_BANDS = {
     "hallucinated-shared": 3,
     "zh3": 3,
     "zh3-shared": 3,
+    "zh3-solved": 3,
+    "ambient-cube": 32,
+    "ambient-cube-fitted": 32,
     "l2": 3,
     "l2-deringed": 3,
 }
-"""Encodings of irradiance that can be looked at (encodings.py) -> the bands of the function that each stands for."""
+"""Encodings of irradiance (encodings.py), from few numbers to many -> the bands of the function that each stands for."""
 
-STORED_BANDS = ENCODED_BANDS | {"zh3-solved": 3, "ambient-cube": 32, "ambient-cube-fitted": 32}
-"""The same of those that can be written."""
+CUBES = ("ambient-cube", "ambient-cube-fitted")
+"""Those that stand in the axes of the world: of a light that is turned there is another."""
 
 
 def glossy(roughness: float) -> str:

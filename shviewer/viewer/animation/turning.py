@@ -12,13 +12,13 @@ from functools import partial
 import numpy as np
 
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.reconstruction import reconstruction_of
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.lights.light import Light
 from shviewer.viewer.animation.animation import MAX_FRAMES, Animation, checked, in_milliseconds, with_one_range
 from shviewer.viewer.animation.metronome import TURN_STEP
 from shviewer.viewer.camera import Quaternion, about_axis, compose, turn_of
+from shviewer.viewer.derived import reconstruction_shown
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.state import State, changed
 
@@ -67,7 +67,7 @@ class _Turn:
         """The picture of a frame, with the changes up to it."""
         while self.known < number or self.last is None:
             at = 0 if self.last is None else self.known + 1
-            found = reconstruction_of(self.states[at].recipe, encoding=self.states[at].view.encode)
+            found = reconstruction_shown(self.states[at].recipe, self.states[at].view)
             if self.last is not None:
                 state = changed(self.states[at], trace=self.states[self.known].view.trace)
                 self.states[at] = followed(state, found.subject.light, self.last, found.coefficients)

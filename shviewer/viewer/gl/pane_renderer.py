@@ -72,7 +72,7 @@ class PaneRenderer:
             original_rows_on_poles=source.map is not None and source.map.rows_on_poles,
         )
         if isinstance(picture.drawn, Encoded):
-            program.set(stored=[tuple(row) for row in picture.drawn.stored.numbers.tolist()])
+            program.set(stored=[tuple(row) for row in picture.drawn.stored.with_axes.tolist()])
         scale = picture.error_scale
         if scale is not None:
             program.set(error_kind=ERRORS.index(scale.kind) - 1, error_range=scale.end, error_floor=scale.floor)

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from typing import TypeAlias
 
 from shviewer.analysis.comparing.comparison import caption
+from shviewer.analysis.recipe import Recipe
 from shviewer.harmonics.basis import index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quantities.encodings import ENCODINGS
-from shviewer.harmonics.quantities.names import RADIANCE, in_words
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
 from shviewer.viewer.beside import Beside, words_of
 from shviewer.viewer.composing.caption import Caption
 from shviewer.viewer.composing.composition import Composition
@@ -180,10 +181,10 @@ def _reconstruction_words(picture: Picture, at: Composition) -> Words:
         coefficient = f"coefficient {radiance(value, picture.figures.peak)}"
         return typeset(describe_basis(view)), [(coefficient,), ("radius: magnitude",)], []
     changes = _changes(picture)
-    if view.encode:
-        encoding = ENCODINGS[view.encode]
+    if name := view.encode or _encoding_given(recipe):
+        encoding = ENCODINGS[name]
         return (
-            encoding.words,
+            f"{caption(recipe)}{encoding.words}",
             [(f"{encoding.floats} numbers a channel", f"{encoding.floats} numbers"), *changes],
             changes,
         )
@@ -192,6 +193,14 @@ def _reconstruction_words(picture: Picture, at: Composition) -> Words:
     count = f"{grouped(recipe.n_bands**2)} coefficient{'' if recipe.n_bands == 1 else 's'}"
     may_miss: Part = (_short(missed), _shorter(missed))
     return head, [(count,), *changes, (method,), may_miss, *_clipped(picture, 1)], [*changes, may_miss]
+
+
+def _encoding_given(recipe: Recipe) -> str:
+    """The encoding whose whole irradiance the coefficients are that are compared; "" if they are no such."""
+    given = recipe.compare
+    if given is None or given.stored is None or (recipe.quantity, recipe.n_bands) != (IRRADIANCE, given.n_bands):
+        return ""
+    return given.stored.name
 
 
 def _short(missed: str) -> str:

@@ -14,12 +14,11 @@ from shviewer.harmonics.quantities.encodings import (
     ENCODINGS,
     GEOMERICS_BANDS,
     REPORTED,
-    STORED,
     Stored,
     geomerics,
     linear,
 )
-from shviewer.harmonics.quantities.names import STORED_BANDS
+from shviewer.harmonics.quantities.names import CUBES, ENCODED_BANDS
 from shviewer.harmonics.rotation import rotate
 from shviewer.lights.find import find_light
 
@@ -42,7 +41,6 @@ NAMES = {
     "ambient-cube": "ambient cube, sampled",
     "ambient-cube-fitted": "ambient cube, least squares",
 }
-CUBES = ("ambient-cube", "ambient-cube-fitted")
 
 
 def bright(seed: int) -> np.ndarray:
@@ -169,9 +167,9 @@ def test_solving_never_makes_it_worse() -> None:
         assert (best <= plain + 1e-12).all()
 
 
-@pytest.mark.parametrize("name", [name for name in STORED if STORED[name].turns])
+@pytest.mark.parametrize("name", [name for name in ENCODINGS if ENCODINGS[name].turns])
 def test_numbers_turn_with_the_light(name: str) -> None:
-    turn, encoding = random_rotation(4), STORED[name]
+    turn, encoding = random_rotation(4), ENCODINGS[name]
     wanted = encoding.store(rotate(bright(2), turn))
     found = Stored(name, encoding.store(bright(2))).turned(turn).numbers
     assert_allclose(found, wanted, rtol=0, atol=(1e-5 if name in ("zh3-solved", "l2-deringed") else 1e-13))
@@ -184,6 +182,35 @@ def test_a_cube_does_not_turn_with_the_light(name: str) -> None:
     assert REPORTED[name].store(along).max() > 1.3 * REPORTED[name].store(between).max()
 
 
+@pytest.mark.parametrize("name", CUBES)
+def test_the_cube_of_a_turned_light_is_known_in_the_frame_of_the_light(name: str) -> None:
+    turn, normals, radiance = random_rotation(5), random_directions(60, 6), bright(3)
+    there = Stored(name, ENCODINGS[name].store(rotate(radiance, turn)))
+    standing = ENCODINGS[name].standing(turn)
+    here = Stored(name, standing.store(radiance), turn)
+    assert_allclose(here.numbers, there.numbers, rtol=0, atol=1e-13)
+    assert_allclose(here.irradiance(normals), there.irradiance(normals @ turn.T), rtol=0, atol=1e-13)
+    assert_allclose(
+        standing.expand(here.numbers), rotate(ENCODINGS[name].expand(there.numbers), turn.T), rtol=0, atol=1e-13
+    )
+    assert_allclose(here.turned(turn).irradiance(normals), there.irradiance(normals), rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("name", CUBES)
+def test_the_products_of_a_cube_are_its_integrals(name: str) -> None:
+    """By a product rule on each octant, within which a cube is a polynomial of the second degree in x, y and z."""
+    stored = Stored(name, ENCODINGS[name].store(bright(1)))
+    nodes, shares = np.polynomial.legendre.leggauss(20)
+    z, phi = (nodes + 1) / 2, np.pi / 4 * (nodes + 1)
+    height, angle = (grid.ravel() for grid in np.meshgrid(z, phi, indexing="ij"))
+    octant = np.stack([np.sqrt(1 - height**2) * np.cos(angle), np.sqrt(1 - height**2) * np.sin(angle), height], axis=1)
+    weights = np.outer(shares / 2, shares * np.pi / 4).ravel()
+    signs = np.array(np.meshgrid([1, -1], [1, -1], [1, -1])).reshape(3, -1).T
+    values = [stored.irradiance(octant * sign) for sign in signs]
+    wanted = sum(seen.T @ (weights[:, None] * seen) for seen in values)
+    assert_allclose(stored.products(), wanted, rtol=1e-13)
+
+
 def test_a_sampled_cube_is_the_irradiance_of_its_faces_and_a_fitted_one_the_nearest() -> None:
     """Nearest on the points of a quadrature, by numpy's least squares."""
     normals, weights = sphere_rule(80)
@@ -194,10 +221,10 @@ def test_a_sampled_cube_is_the_irradiance_of_its_faces_and_a_fitted_one_the_near
     root = np.sqrt(weights)[:, None]
     wanted = np.linalg.lstsq(root * looked_at, root * (evaluate_basis(normals, 12) @ irradiance), rcond=None)[0]
     # the rule does not know where a face ends: x^2 there has a kink of the second order
-    assert_allclose(STORED["ambient-cube-fitted"].store(radiance), wanted, rtol=0, atol=1e-4 * np.abs(wanted).max())
+    assert_allclose(ENCODINGS["ambient-cube-fitted"].store(radiance), wanted, rtol=0, atol=1e-4 * np.abs(wanted).max())
     faces = np.repeat(np.eye(3), 2, axis=0) * np.tile([[1], [-1]], (3, 1))
     seen = evaluate_basis(faces, 12) @ irradiance
-    assert_allclose(STORED["ambient-cube"].store(radiance), seen, rtol=0, atol=1e-13 * np.abs(seen).max())
+    assert_allclose(ENCODINGS["ambient-cube"].store(radiance), seen, rtol=0, atol=1e-13 * np.abs(seen).max())
 
 
 @pytest.mark.parametrize("name", REPORTED)
@@ -211,8 +238,7 @@ def test_without_an_axis_and_without_light_there_is_the_mean(name: str) -> None:
 
 
 def test_the_trap_is_not_offered() -> None:
-    assert set(STORED) - set(ENCODINGS) == {"zh3-solved", *CUBES}
-    assert set(REPORTED) - set(STORED) == {"code-as-is", "l2-hann", "l2-lanczos"}
-    assert {name: one.bands for name, one in STORED.items()} == STORED_BANDS
-    assert_array_equal([one.floats for one in ENCODINGS.values()], [4, 4, 4, 4, 5, 5, 9, 9])
+    assert set(REPORTED) - set(ENCODINGS) == {"code-as-is", "l2-hann", "l2-lanczos"}
+    assert {name: one.bands for name, one in ENCODINGS.items()} == ENCODED_BANDS
+    assert_array_equal([one.floats for one in ENCODINGS.values()], [4, 4, 4, 4, 5, 5, 5, 6, 6, 9, 9])
     assert per_coefficient(irradiance_factors(2)).shape == (4, 1)

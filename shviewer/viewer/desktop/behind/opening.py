@@ -7,8 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from shviewer.analysis.recipe import light_name
+from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import ShviewerError
-from shviewer.lights.find import built_in_lights, split_light
+from shviewer.harmonics.quantities.names import IRRADIANCE
+from shviewer.lights.find import built_in_lights, find_light, split_light
 from shviewer.lights.light import Light
 from shviewer.viewer.actions import show_light
 from shviewer.viewer.desktop.behind.errands import Errands
@@ -17,6 +19,9 @@ from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
 
 MOST_DROPPED = 100
+
+WRITTEN = tuple(f".{kind}" for kind in FORMATS)
+"""The suffixes of files that `shviewer project` writes."""
 
 
 def opened(state: State, *, as_image: bool) -> State:
@@ -28,6 +33,8 @@ def opened(state: State, *, as_image: bool) -> State:
     if as_image or not isinstance(light, str) or light in built_in_lights():
         return state
     path, part = split_light(light)
+    if path.suffix.lower() in WRITTEN and state.recipe.quantity != IRRADIANCE:
+        return _as_irradiance(state, light)
     picture = None if part else restored(path, state.recipe.reading.limits)
     if picture is None:
         return state
@@ -36,6 +43,16 @@ def opened(state: State, *, as_image: bool) -> State:
     message = Message(words, WARNING if picture.said else "")
     reading = replace(shown.recipe.reading, isolated=True)
     return started(changed(shown, reading=reading, sweep_to=None, turning="", message=message))
+
+
+def _as_irradiance(state: State, light: str) -> State:
+    """The state for irradiance where a file holds what engines store of it: that is its light, as the command line has it."""
+    about = find_light(light, state.recipe.reading).about
+    if about.file is None or about.file.stored is None:
+        return state
+    said = f"{light_name(light)} holds irradiance, which is shown"
+    words = "; ".join(filter(None, (state.view.message, said)))
+    return changed(state, quantity=IRRADIANCE, message=words)
 
 
 class Opening(Errands):

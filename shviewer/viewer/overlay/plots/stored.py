@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import ceil
 
 from shviewer.analysis.figures import sums
 from shviewer.analysis.projections import encoded, project, way_of
 from shviewer.analysis.recipe import Shown
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.encodings import ENCODINGS
-from shviewer.harmonics.quantities.names import ENCODED_BANDS
+from shviewer.harmonics.quantities.names import CUBES, ENCODED_BANDS
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
@@ -28,25 +29,32 @@ ROWS = {
     "hallucinated-shared": ("hallucinated, shared", "halluc. shared"),
     "zh3": ("ZH3", "ZH3"),
     "zh3-shared": ("ZH3, shared axis", "ZH3 shared"),
+    "zh3-solved": ("ZH3 solved", "ZH3 solved"),
+    "ambient-cube": ("ambient cube", "cube"),
+    "ambient-cube-fitted": ("cube, fitted", "cube fitted"),
     "l2": ("L2", "L2"),
     "l2-deringed": ("L2 deringed", "deringed"),
 }
-"""What each row is called, and where that takes more than half of its width; the first four keep four numbers a channel."""
+"""What each row is called, and where that takes more than half of its width."""
 
 LOWEST_ROW, HIGHEST_ROW, GAP = 18.0, 26.0, 28.0
 """Pixels of the design from row to row, at least of one column and at most, and those between two columns."""
+
+DENSEST = 0.85
+"""The largest size of letters over that of a row."""
 
 
 def stored_errors(picture: Picture) -> dict[str, float | None]:
     """The relative L2 error of each encoding of the picture's irradiance; None for one that it cannot have."""
     recipe, light = picture.state.recipe, picture.light
+    turn = tuple(picture.light_from_world.T.ravel().tolist())
     plain, found = project(light, way_of(recipe), recipe.projected_bands), dict[str, float | None]()
     for name, n_bands in ENCODED_BANDS.items():
         try:
             shown = (
                 recipe.shown if name == picture.state.view.encode else Shown(n_bands)
             )  # with its window and muted bands
-            figures = sums(light, encoded(light, plain, name), shown)[1]
+            figures = sums(light, encoded(light, plain, name, turn if name in CUBES else None), shown)[1]
         except UsageError:
             found[name] = None
         else:
@@ -58,10 +66,12 @@ def stored_pieces(errors: Mapping[str, float | None], picture: Picture, at: Comp
     """A row for each encoding: its numbers a channel, its name, a bar from zero, and its error; that shown stands out."""
     area = at.numbers.curve
     assert area is not None
-    size, names = at.px(11.0 if at.compact else 13.0), list(ROWS)
-    columns = [names] if area.height >= len(names) * at.px(LOWEST_ROW) else [names[:4], names[4:]]
+    names = list(ROWS)
+    rows = len(names) if area.height >= len(names) * at.px(LOWEST_ROW) else ceil(len(names) / 2)
+    columns = [names[first : first + rows] for first in range(0, len(names), rows)]
     wide = (area.width - at.px(GAP) * (len(columns) - 1)) / len(columns)
-    step = min(area.height / len(columns[0]), at.px(HIGHEST_ROW))
+    step = min(area.height / rows, at.px(HIGHEST_ROW))
+    size = min(at.px(11.0 if at.compact else 13.0), DENSEST * step)
     widest = [max(width_of(words[kind], size, MEDIUM) for words in ROWS.values()) for kind in (0, 1)]
     kind = 0 if widest[0] < 0.45 * wide else 1
     after = 1.2 * size + widest[kind] + 0.8 * size  # of a row, where its bar begins

@@ -177,7 +177,7 @@ def test_coefficients_that_a_light_has_kept_have_the_time_that_was_measured_or_n
 
 
 def test_what_a_light_leaves_without_its_sun_has_measurements_of_its_own() -> None:
-    """Of 96 % and 20 % of error, one stood for the other."""
+    """One of 96 % and 20 % of error stood for the other."""
     for split_sun in (False, True, False):
         picture = shown(light="venice_sunset", n_bands=9, method="jittered", split_sun=split_sun)
         found = next(found for found in measured(picture) if found.way.method == "jittered")
