@@ -1,11 +1,11 @@
 """What --split-sun and U promise: the sun drawn as a disc of its own, and every figure that of the rest."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from viewer.overlay.written import texts_of
 
 from shviewer.analysis.figures import needs
 from shviewer.analysis.information import describe
@@ -15,13 +15,14 @@ from shviewer.cli.info import as_text
 from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.reading import DEFAULT_READING
-from shviewer.viewer import message
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.keys import press
+from shviewer.viewer.message import WARNING, kind_of
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.saving.stamp import metadata
-from shviewer.viewer.state import changed, state_of
+from shviewer.viewer.state import state_of
 
 
 def noon():
@@ -84,20 +85,27 @@ def test_a_light_without_a_sun_is_shown_whole_with_the_reason():
     assert picture.suns == ()
     assert picture.light is prepare(state_of("green")).light
     assert "green has no sun" in picture.subject.refusal
-    assert "message" in draw_overlay(picture, compose(1280, 640)).boxes
+    drawn = draw_overlay(picture, compose(1280, 640))
+    assert any("no sun" in text.text for text in texts_of(drawn))
+    assert "message" not in drawn.boxes
 
 
-def test_the_picture_gives_the_reason_without_the_rule_and_so_uncut():
-    picture = prepare(state_of("venice_sunset", split_sun=True))
-    refusal = picture.subject.refusal
-    if not refusal:
-        picture = prepare(state_of("green", split_sun=True))
-        refusal = picture.subject.refusal
-    assert ";" in refusal
-    reason = replace(picture, state=changed(picture.state, message=message.warning(refusal.partition(";")[0])))
-    drawn, wanted = (draw_overlay(each, compose(1280, 640)).boxes["message"] for each in (picture, reason))
-    assert drawn == wanted
-    assert drawn.right < 1280 - 24
+def test_the_window_says_the_reason_without_the_rule_once_for_each_light():
+    """It stood in the foot until U was pressed again, and of a small window hid the figures."""
+    session = Session(state_of("green", lights=("green", "constant")))
+    said = []
+    for key in ("U", "Up", "Right", "U"):
+        session.press(key)
+        session.prepare()
+        said.append(session.state.view.message)
+    assert said[0].startswith("green has no sun: ")
+    assert ";" not in said[0]
+    assert said[1] == ""
+    assert said[2].startswith("constant has no sun: ")
+    assert said[3] == ""
+    assert kind_of(said[0]) == WARNING
+    started = Session(state_of("green", split_sun=True))
+    assert started.state.view.message == said[0]
 
 
 def test_the_text_of_a_picture_describes_the_sun():

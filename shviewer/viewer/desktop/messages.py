@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.subjects import Subject
 from shviewer.lights.find import split_light
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
@@ -27,6 +28,11 @@ def with_keys(refusal: str, light: str | Light, shown: Reading) -> str:
 def notes_of(light: Light) -> Message:
     """All notes of a light in one line, a warning; "" if there are none."""
     return warning(f"{light.name}: {'; '.join(light.notes)}" if light.notes else "")
+
+
+def why_whole(subject: Subject) -> Message:
+    """Why a light has no sun apart that should have one, without the rule; "" where that is not so."""
+    return warning(subject.refusal.partition(";")[0])
 
 
 def reading_news(before: Recipe, after: Recipe, light: Light) -> str:

@@ -21,7 +21,7 @@ from shviewer.viewer.animation.animation import wants_range
 from shviewer.viewer.animation.turning import followed, is_next, only_turned
 from shviewer.viewer.desktop.behind.making import Making
 from shviewer.viewer.desktop.behind.opening import Opening
-from shviewer.viewer.desktop.messages import notes_of, reading_news, with_keys
+from shviewer.viewer.desktop.messages import notes_of, reading_news, why_whole, with_keys
 from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.state import State, changed, started
@@ -61,7 +61,9 @@ class Showing:
         reading = state.recipe.reading  # from now on no pipe is waited for: it was read where the command line named it
         isolated = replace(reading, isolated=True, limits=replace(reading.limits, pipe_seconds=0))
         self.state = started(changed(state, reading=isolated))
-        self.state = changed(self.state, message=state.view.message or notes_of(first.light))
+        self.state = changed(
+            self.state, message=state.view.message or notes_of(first.light) or why_whole(first.subject)
+        )
         self.picture: Picture = replace(first, state=self.state)
         self.settings = settings
         self.reading: Event | None = None
@@ -170,14 +172,17 @@ class Showing:
             shown = made.state.view
             state = self.state = changed(state, error_range=shown.error_range, range_held=shown.range_held)
         picture = made.seen(state)
-        if picture.light is not last.light:
+        said, other = [], picture.light is not last.light
+        if other:
             again = self.reading is not None if again is None else again
-            message = self._news(picture.light, again=again and state.recipe.light == last.state.recipe.light)
-            message = "; ".join(filter(None, (reading_news(last.state.recipe, state.recipe, picture.light), message)))
-            if message and not state.view.message:
-                message = Message(message, WARNING if picture.light.notes else "")
-                self.state = changed(state, message=message)
-                picture = replace(picture, state=self.state)
+            said.append(reading_news(last.state.recipe, state.recipe, picture.light))
+            said.append(self._news(picture.light, again=again and state.recipe.light == last.state.recipe.light))
+        if other or not last.subject.refusal:
+            said.append(why_whole(picture.subject))
+        if any(said) and not state.view.message:
+            kind = WARNING if (other and picture.light.notes) or said[-1] else ""
+            self.state = changed(state, message=Message("; ".join(filter(None, said)), kind))
+            picture = replace(picture, state=self.state)
         self.picture = picture
 
     def keep(self, error: ShviewerError, picture: Picture | None = None) -> None:

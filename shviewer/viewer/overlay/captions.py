@@ -166,7 +166,7 @@ def _notes(picture: Picture) -> list[str]:
 def _changes(picture: Picture) -> list[Part]:
     """What sets the reconstruction apart from the plain sum of its bands."""
     recipe, suns = picture.state.recipe, len(picture.subject.suns)
-    apart = "" if not suns else "sun apart" if suns == 1 else f"{suns} suns apart"
+    apart = ("sun apart" if suns == 1 else f"{suns} suns apart") if suns else "no sun" * bool(picture.subject.refusal)
     muted, count = describe_muted(recipe), len(recipe.muted_shown)
     fewer = (f"{counted(count, 'band')} muted", f"{count} muted") if muted else ()
     window = describe_window(recipe)

@@ -68,14 +68,11 @@ def _moving(seconds: float) -> tuple[float, float]:
 
 
 def said_of(picture: Picture, remark: str = "") -> str:
-    """The message of a picture: what a key said, a remark, the verdict on compared coefficients, or why no sun is apart."""
+    """The message of a picture: what a key said, a remark, or the verdict on compared coefficients."""
     said = picture.state.view.message or remark
     if said:
         return said
-    if picture.verdict:
-        return picture.verdict if agrees(picture.verdict) else message.warning(picture.verdict)
-    refusal = picture.subject.refusal.partition(";")[0]
-    return message.warning(refusal) if refusal else ""
+    return picture.verdict if not picture.verdict or agrees(picture.verdict) else message.warning(picture.verdict)
 
 
 def foot_pieces(
