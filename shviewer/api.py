@@ -258,13 +258,11 @@ def report(
     force: replace files there even if shviewer did not write them. Returns the names of the files, the number of rows measured
     and the sentences of advice. LightError for a bad light, OutputError if nothing can be written there.
     """
-    from shviewer.benchmark.options import DEFAULT_BUDGET, Options
+    from shviewer.benchmark.options import Options
     from shviewer.benchmark.run import write_report
 
     several = isinstance(of, Iterable) and not isinstance(of, str | os.PathLike | np.ndarray)
     given = cast(Iterable[LightLike], of) if several else [cast(LightLike, of)]
     chosen = [os.fspath(one) if isinstance(one, str | os.PathLike) else find_light(one) for one in given]
-    wanted = Options(
-        budget=DEFAULT_BUDGET if budget is None else budget, quick=quick, force=force, command="shviewer.report(...)"
-    )
+    wanted = Options(budget=budget, quick=quick, force=force, command="shviewer.report(...)")
     return write_report(chosen, Path(folder), wanted)

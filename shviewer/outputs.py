@@ -68,6 +68,16 @@ def _write_new(path: Path, data: bytes, like: os.stat_result | None) -> None:
         os.chmod(path, stat.S_IMODE(like.st_mode))
 
 
+def make_folder(folder: Path) -> None:
+    """Make the folder, if need be. OutputError if that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"{folder}: cannot be made a folder: {error.strerror or error}; choose another place"
+        ) from error
+
+
 def check_place(path: Path) -> None:
     """OutputError if nothing can be written at `path`: a check to make before long work on what goes there."""
     try:

@@ -46,6 +46,10 @@ class Option(NamedTuple):
     def flag(self) -> str:
         return self.called.partition(" ")[0]
 
+    def may_be(self, value: Any) -> bool:
+        """Whether the value is None, as only an option that is None by default may be."""
+        return value is None and self.default is None
+
 
 def option(default: T, kind: Kind, help: str, called: str = "", const: T | None = None) -> T:
     """Declare a field of a dataclass as an option, called "--camera AZIMUTH ELEVATION"."""
@@ -65,13 +69,15 @@ def options_of(*holders: type) -> dict[str, Option]:
 
 def taken(options: dict[str, Any], holder: type) -> dict[str, Any]:
     """The options that belong to a dataclass, as it holds them. UsageError for a value of another type."""
-    return {name: row.kind.taken(name, options[name]) for name, row in options_of(holder).items() if name in options}
+    given = {name: (row, options[name]) for name, row in options_of(holder).items() if name in options}
+    return {name: None if row.may_be(value) else row.kind.taken(name, value) for name, (row, value) in given.items()}
 
 
 def check_options(held: object) -> None:
     """UsageError unless every option of a dataclass is within its range."""
     for name, row in options_of(type(held)).items():
-        row.kind.check(name, getattr(held, name))
+        if not row.may_be(value := getattr(held, name)):
+            row.kind.check(name, value)
 
 
 class Choice(NamedTuple):
@@ -123,26 +129,21 @@ class WholeOr(NamedTuple):
 
 
 class Number(NamedTuple):
-    """A finite number within bounds. closed: the bounds are allowed, too. optional: so is None."""
+    """A finite number within bounds. closed: the bounds are allowed, too."""
 
     least: float
     most: float
     rule: str
     closed: bool = True
-    optional: bool = False
     called: str = ""
     """Its name in messages, if that is not the field's."""
 
     def taken(self, name: str, value: Any) -> Any:
-        if value is None and self.optional:
-            return None
         if not is_number(value):
             raise UsageError(f"{name} {value!r}: it must be a finite number")
         return float(value)
 
     def check(self, name: str, value: Any) -> None:
-        if value is None and self.optional:
-            return
         inside = self.least <= value <= self.most if self.closed else self.least < value < self.most
         if not inside:
             raise UsageError(f"{self.called or _said(name)} {value:g}: {self.rule}")
@@ -208,11 +209,8 @@ class Pair(NamedTuple):
 
     what: str
     whole: bool = False
-    optional: bool = False
 
     def taken(self, name: str, value: Any) -> Any:
-        if value is None and self.optional:
-            return None
         if not (isinstance(value, Sequence) and len(value) == 2 and all(map(is_number, value))):
             raise UsageError(f"{name} {value!r}: it must be {self.what}")
         return tuple(whole(part, name) for part in value) if self.whole else tuple(map(float, value))

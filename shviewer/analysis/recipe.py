@@ -88,7 +88,7 @@ class Recipe:
     )
     window_width: float | None = option(
         None,
-        Number(0, float("inf"), "it must be positive and finite, in bands", closed=False, optional=True),
+        Number(0, float("inf"), "it must be positive and finite, in bands", closed=False),
         "width of the window in bands; as many as are shown unless given",
     )
     muted: frozenset[int] = option(

@@ -7,14 +7,53 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
+from typing import NamedTuple
 
 from shviewer.benchmark.measuring import experiments
+from shviewer.benchmark.measuring.measured_lights import TOLERANCES
+from shviewer.benchmark.measuring.reconstruction_rows import BANDS as RECONSTRUCTED
 from shviewer.errors import UsageError
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.words import meant
 
-DEFAULT_BUDGET, QUICK_BUDGET = 120.0, 11.0
-"""Seconds of measuring. Starting, reading lights, drawing plots and writing come on top: a quick report takes 15 s."""
+
+class Size(NamedTuple):
+    """How much a report measures."""
+
+    budget: float
+    """Seconds of measuring. Starting, reading lights, drawing plots and writing come on top: a quick report takes 15 s."""
+    lights: tuple[str, ...]
+    bands: tuple[int, ...]
+    samples: tuple[int, ...]
+    tolerances: tuple[float, ...]
+    kinds: int
+    """How many lights, each of another kind, are reconstructed."""
+    reconstructed: tuple[int, ...]
+    """The bands of these."""
+    repeats: int
+    """The least repeats of what a user waits for."""
+
+
+FULL = Size(
+    budget=120.0,
+    lights=("green", "hemisphere", "sun-sky", "film_studio", "venice_sunset"),  # edges, a small source, photographs
+    bands=(3, 5, 9, 16, 32),
+    samples=(100, 1_000, 10_000, 100_000, 1_000_000),
+    tolerances=TOLERANCES,
+    kinds=2,
+    reconstructed=RECONSTRUCTED,
+    repeats=5,
+)
+QUICK = Size(
+    budget=11.0,
+    lights=("green", "film_studio"),
+    bands=(3, 9),
+    samples=(100, 10_000),
+    tolerances=(0.05,),
+    kinds=1,
+    reconstructed=(3, 16),
+    repeats=3,
+)
 
 STABILITY_SECONDS = 15.0
 """The time of the hard cases, which comes on top of the budget: all of them are always run."""
@@ -33,8 +72,8 @@ Progress = Callable[[float, float, str], object]
 class Options:
     """The options of one report. UsageError for a value out of its range."""
 
-    budget: float = DEFAULT_BUDGET
-    """Seconds of measuring."""
+    budget: float | None = None
+    """Seconds of measuring; None for those of the size."""
     quick: bool = False
     against: Path | None = None
     stability: bool = False
@@ -55,7 +94,7 @@ class Options:
     """The command line; if empty, made from the arguments of the process."""
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.budget) and self.budget > 0):
+        if self.budget is not None and not (math.isfinite(self.budget) and self.budget > 0):
             raise UsageError(f"budget {self.budget:g}: it must be a number of seconds above 0, such as 120")
         if self.seed < 0:
             raise UsageError(f"seed {self.seed}: it must be at least 0")
@@ -65,13 +104,18 @@ class Options:
             if name not in SECTIONS:
                 raise UsageError(f"section {name!r}: {meant(name, SECTIONS)}")
 
+    @property
+    def size(self) -> Size:
+        return QUICK if self.quick else FULL
+
     def seconds(self) -> dict[str, float]:
         """The seconds of every section that is wanted; projection gets the shares of those that are not."""
         wanted = (*self.sections, "peers") if self.peers else self.sections
         shares = {name: share for name, share in SHARES.items() if name in wanted}
         if "projection" in shares:
             shares["projection"] += 1 - sum(shares.values())
-        budget = min(self.budget, QUICK_BUDGET) if self.quick else self.budget
+        budget = self.size.budget if self.budget is None else self.budget
+        budget = min(budget, QUICK.budget) if self.quick else budget
         seconds = {name: budget * share / sum(shares.values()) for name, share in shares.items()}
         if self.moving:
             seconds["moving"] = min(MOVING_SECONDS, budget)

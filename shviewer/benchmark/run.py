@@ -15,20 +15,14 @@ from shviewer.benchmark.measuring import (
     bands,
     encodings,
     end_to_end,
-    experiments,
     moving,
     moving_texels,
     projection_rows,
 )
 from shviewer.benchmark.measuring.machine import Worked, disturbance, machine_record, versions, yardstick
-from shviewer.benchmark.measuring.measured_lights import (
-    QUICK_TOLERANCES,
-    TOLERANCES,
-    MeasuredLight,
-    find_measured_lights,
-)
+from shviewer.benchmark.measuring.measured_lights import MeasuredLight, find_measured_lights
 from shviewer.benchmark.measuring.peers import peer_rows
-from shviewer.benchmark.measuring.reconstruction_rows import BANDS, reconstruction_rows
+from shviewer.benchmark.measuring.reconstruction_rows import reconstruction_rows
 from shviewer.benchmark.measuring.timing import summarise
 from shviewer.benchmark.options import Clock, Options, Progress
 from shviewer.benchmark.page import changes, plots, writing
@@ -43,13 +37,10 @@ from shviewer.ending import at_the_end
 from shviewer.errors import UsageError
 from shviewer.lights.find import file_of, split_light
 from shviewer.lights.light import Light
-from shviewer.outputs import Replacing
+from shviewer.outputs import Replacing, make_folder
 from shviewer.viewer.gl.renderer import Renderer
 
 PEER_BANDS = (3, 9, 16, 32)
-QUICK_RECONSTRUCTED = (3, 16)
-QUICK_REPEATS = 3
-"""The repeats in a quick report, in which five of the slow ones do not fit."""
 
 
 @dataclass(frozen=True)
@@ -110,18 +101,18 @@ class Run:
 def write_report(
     lights: Sequence[str | Light], folder: Path, options: Options | None = None, progress: Progress | None = None
 ) -> Summary:
-    """Measure `lights`, or experiments.LIGHTS if there are none, and write writing.FILES and plots into `folder`.
+    """Measure `lights`, or those of the size if there are none, and write writing.FILES and plots into `folder`.
 
     OutputError, LightError or UsageError, before anything is measured, if that is impossible or would destroy a file. An
     interrupt is raised again after the rows measured have been written as a partial report.
     """
     options = options or Options()
     before = None if options.against is None else read_report(options.against)
-    chosen = list(lights) or list(experiments.QUICK_LIGHTS if options.quick else experiments.LIGHTS)
+    chosen = list(lights) or list(options.size.lights)
     if options.moving:
         _check_moving(chosen)
-    writing.make_folder(folder)
-    found = find_measured_lights(chosen, QUICK_TOLERANCES if options.quick else TOLERANCES, options.reading)
+    make_folder(folder)
+    found = find_measured_lights(chosen, options.size.tolerances, options.reading)
     inputs = [*map(file_of, chosen), options.against]
     replacing = Replacing(tuple(path for path in inputs if path), options.force)
     for name in (*writing.FILES, *plots.names_of([measured.name for measured in found])):
@@ -169,7 +160,7 @@ def _summary(report: Report) -> str:
 def _measure_sections(run: Run) -> None:
     extra = run.report.extra
     extra[bands.BANDS_KEY] = bands.bands_extra(run.lights)
-    extra[bands.ROUGHNESS_KEY] = bands.roughness_extra(bands.staircases(run.lights))
+    extra[bands.ROUGHNESS_KEY] = bands.roughness_extra(run.lights)
     extra[encodings.KEY] = [asdict(kept) for measured in run.lights for kept in encodings.kept_of(measured)]
     run.measure("projection", _projection)
     run.measure("peers", _peers)
@@ -183,13 +174,8 @@ def _measure_sections(run: Run) -> None:
 
 
 def _projection(run: Run) -> None:
-    quick = run.options.quick
-    rounds = projection_rows.plan(
-        run.lights,
-        experiments.QUICK_BANDS if quick else experiments.BANDS,
-        experiments.QUICK_SAMPLES if quick else experiments.SAMPLES,
-        run.options.methods,
-    )
+    size = run.options.size
+    rounds = projection_rows.plan(run.lights, size.bands, size.samples, run.options.methods)
     projection_rows.measure(rounds, run.clock.left, run.options.seed, run.add, run.clock.tell)
 
 
@@ -207,28 +193,26 @@ def _reconstruction(run: Run, drawing: Renderer | str) -> None:
     kinds: dict[type, MeasuredLight] = {}
     for measured in run.lights:
         kinds.setdefault(type(measured.light), measured)
-    quick = run.options.quick
-    chosen = list(kinds.values())[: 1 if quick else 2]  # the first light of each kind
-    counts = QUICK_RECONSTRUCTED if quick else BANDS
+    size = run.options.size
+    chosen = list(kinds.values())[: size.kinds]  # the first light of each kind
     for number, measured in enumerate(chosen):
         run.clock.tell(measured.name)
         filling = 0.5 * run.seconds["reconstruction"] / len(chosen)
         at_most = run.clock.left() / (len(chosen) - number)
-        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=counts))
+        run.add(reconstruction_rows(measured, drawing, budget=filling, at_most=at_most, bands=size.reconstructed))
     if isinstance(drawing, str):
         run.report.note("reconstruction", [f"pictures: nothing was drawn: {drawing}"])
 
 
 def _end_to_end(run: Run, drawing: Renderer | str) -> None:
-    text = run.texts[0] if run.texts else experiments.LIGHTS[0]
+    text = run.texts[0] if run.texts else run.options.size.lights[0]
     name = run.lights[0].name if run.texts else text
     missing = [f"pictures: nothing was drawn: {drawing}"] if isinstance(drawing, str) else []
-    at_least = QUICK_REPEATS if run.options.quick else 5
     parts = (("pictures", end_to_end.session_rows, 0.25), ("new processes", end_to_end.process_rows, 0.35))
     for what, rows_of, share in parts:
         run.clock.tell(what)
         budget, at_most = share * run.seconds["end to end"], run.clock.left()
-        run.add(rows_of(text, name, drawing, budget=budget, at_most=at_most, at_least=at_least))
+        run.add(rows_of(text, name, drawing, budget=budget, at_most=at_most, at_least=run.options.size.repeats))
     if not run.options.quick and run.options.shader:
         run.clock.tell("an idle window")
         idle = end_to_end.idle_row(at_most=run.clock.left())

@@ -15,10 +15,10 @@ from shviewer.cli.jobs import in_order
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.status_line import bar, status_line
 from shviewer.coefficients.convention import Convention
-from shviewer.errors import OutputError, ShviewerError, within_memory
+from shviewer.errors import ShviewerError, within_memory
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
 from shviewer.lights.find import is_code, split_light
-from shviewer.outputs import Replacing, file_stem, write_atomically
+from shviewer.outputs import Replacing, file_stem, make_folder, write_atomically
 from shviewer.words import one_line
 
 FAILED = 1
@@ -73,14 +73,6 @@ def project_batch(
                 rows.append(SummaryRow(light, str(path), projected))
     print(summary(rows))
     return FAILED if any(row.projected is None for row in rows) else 0
-
-
-def make_folder(folder: Path) -> None:
-    """Make the folder, if need be. OutputError if that cannot be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{folder}: no folder can be made: {error.strerror}; choose another place") from error
 
 
 def _projected_alone(projected_of: Callable[[str], Projected], light: str) -> Projected:

@@ -15,7 +15,7 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.projections import way_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import load_light, subject
-from shviewer.cli.batch import error_in_percent, make_folder, project_batch
+from shviewer.cli.batch import error_in_percent, project_batch
 from shviewer.cli.below_zero import below_zero, encoded_below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.options.inputs import lights_of, lights_within, replacing_of
@@ -31,7 +31,7 @@ from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError, refused_as
 from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE, in_words
 from shviewer.harmonics.rotation import turn
-from shviewer.outputs import Replacing, file_stem, write_atomically
+from shviewer.outputs import Replacing, file_stem, make_folder, write_atomically
 from shviewer.words import counted, meant
 
 STDOUT = "-"

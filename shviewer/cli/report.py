@@ -14,21 +14,15 @@ def run(options: argparse.Namespace) -> int:
     given = vars(options)
     if options.stability and not any(given[name] for name in ("lights", "output", "quick", "peers", "against")):
         return _hard_cases(options)
-    from shviewer.benchmark.options import DEFAULT_BUDGET, Options
+    from shviewer.benchmark.options import Options
     from shviewer.benchmark.run import write_report
 
+    alike = ("budget", "quick", "against", "stability", "peers", "moving", "seed", "force")
     wanted = Options(
-        budget=DEFAULT_BUDGET if options.budget is None else options.budget,
-        quick=options.quick,
-        against=options.against,
-        stability=options.stability,
-        peers=options.peers,
-        moving=options.moving,
-        seed=options.seed,
+        **{name: given[name] for name in alike},
         methods=tuple(options.methods.split(",")) if options.methods else (),
         reading=reading_from(options),
         shader=not options.no_shader,
-        force=options.force,
     )
     with status_line() as line:
         folder = options.output or Path("shviewer-report")

@@ -42,7 +42,6 @@ class View:
             -MAX_EXPOSURE,
             MAX_EXPOSURE,
             f"it must be -{MAX_EXPOSURE:g} to {MAX_EXPOSURE:g} stops",
-            optional=True,
             called="exposure",
         ),
         "fixed, instead of chosen from the light",
@@ -70,7 +69,7 @@ class View:
     )
     error_range: float | None = option(
         None,
-        Number(DIMMEST, BRIGHTEST, f"it must be {DIMMEST:g} to {BRIGHTEST:g}", optional=True),
+        Number(DIMMEST, BRIGHTEST, f"it must be {DIMMEST:g} to {BRIGHTEST:g}"),
         "where its colours end: a radiance, or for the relative error such as 20%; chosen from the light unless given",
         "--error-range R",
     )
@@ -90,7 +89,7 @@ class View:
     )
     basis: tuple[int, int] | None = option(
         None,
-        Pair("l and m, such as (2, -1)", whole=True, optional=True),
+        Pair("l and m, such as (2, -1)", whole=True),
         "the surface of one basis function Y(l, m) on the right",
         "--basis L M",
     )
@@ -118,7 +117,7 @@ class View:
     )
     camera: tuple[float, float] | None = option(
         None,
-        Pair("azimuth and elevation in degrees, such as (30, 10)", optional=True),
+        Pair("azimuth and elevation in degrees, such as (30, 10)"),
         "where the camera stands, degrees; facing the light unless given",
         "--camera AZIMUTH ELEVATION",
     )

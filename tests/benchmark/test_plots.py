@@ -15,7 +15,7 @@ import pytest
 from PIL import Image
 
 from shviewer.analysis.roughness import ROUGHNESS
-from shviewer.benchmark.measuring.bands import ROUGHNESS_KEY, roughness_extra, staircases
+from shviewer.benchmark.measuring.bands import ROUGHNESS_KEY, roughness_extra
 from shviewer.benchmark.measuring.evaluations import CACHED, DIRECT, PER_FRAME
 from shviewer.benchmark.measuring.experiments import METHODS
 from shviewer.benchmark.measuring.measured_lights import measured_light
@@ -321,9 +321,9 @@ def test_a_legend_names_every_curve_and_covers_neither_a_point_nor_a_label(matpl
 
 @pytest.mark.usefixtures("matplotlib")
 def test_bands_by_roughness_are_drawn_also_where_a_light_needs_more_than_there_are(tmp_path: Path) -> None:
-    steps = staircases([measured_light(find_light("green")), measured_light(find_light("sun-sky"))])
-    assert steps["sun-sky"][0.05].counts[0] is None
-    extra = {ROUGHNESS_KEY: json.loads(json.dumps(roughness_extra(steps)))}
+    found = roughness_extra([measured_light(find_light("green")), measured_light(find_light("sun-sky"))])
+    assert found["fewest_bands"]["sun-sky"]["0.05"]["counts"][0] is None
+    extra = {ROUGHNESS_KEY: json.loads(json.dumps(found))}
     files, _ = make_plots(reported([], **extra), tmp_path)
     assert [file.name for file in files] == ["roughness-bands.svg", "roughness-bands.png"]
     assert {file.name for file in files} <= set(names_of(["green", "sun-sky"]))

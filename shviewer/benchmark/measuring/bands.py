@@ -9,7 +9,7 @@ from typing import Any
 from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projections import way_of
 from shviewer.analysis.recipe import Recipe
-from shviewer.analysis.roughness import ROUGHNESS, Staircase, staircase
+from shviewer.analysis.roughness import ROUGHNESS, staircase
 from shviewer.analysis.subjects import load_light, subject
 from shviewer.benchmark.measuring.measured_lights import MOST_BANDS, TOLERANCES, MeasuredLight
 from shviewer.harmonics.metrics import smallest_band_count
@@ -45,26 +45,16 @@ def bands_extra(lights: Sequence[MeasuredLight]) -> dict[str, Any]:
     return found
 
 
-def staircases(lights: Sequence[MeasuredLight]) -> dict[str, dict[float, Staircase]]:
-    """The staircases of each light for each of TOLERANCES."""
-    return {
-        measured.name: {tolerance: staircase(Recipe(measured.light, tolerance=tolerance)) for tolerance in TOLERANCES}
-        for measured in lights
-    }
-
-
-def roughness_extra(found: dict[str, dict[float, Staircase]]) -> dict[str, Any]:
-    """Light -> tolerance -> the fewest bands for the light itself, for shading, and for each roughness."""
+def roughness_extra(lights: Sequence[MeasuredLight]) -> dict[str, Any]:
+    """Light -> tolerance -> the staircase: the fewest bands for the light itself, for shading, and for each roughness."""
     steps = {
-        name: {
-            f"{tolerance:g}": {
-                "mirror": each.mirror,
-                "shading": each.shading,
-                "searched": each.searched,
-                "counts": list(each.counts),
-            }
-            for tolerance, each in steps_of.items()
-        }
-        for name, steps_of in found.items()
+        one.name: {f"{tolerance:g}": _kept(Recipe(one.light, tolerance=tolerance)) for tolerance in TOLERANCES}
+        for one in lights
     }
     return {"roughness": list(ROUGHNESS), "fewest_bands": steps}
+
+
+def _kept(recipe: Recipe) -> dict[str, Any]:
+    found = staircase(recipe)
+    names = ("mirror", "shading", "searched", "counts")
+    return {name: getattr(found, name) for name in names}

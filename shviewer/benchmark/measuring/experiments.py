@@ -30,13 +30,6 @@ from shviewer.lights.light import Light
 from shviewer.lights.lobes import LobeLight
 from shviewer.words import meant
 
-SAMPLES = (100, 1_000, 10_000, 100_000, 1_000_000)
-BANDS = (3, 5, 9, 16, 32)
-LIGHTS = ("green", "hemisphere", "sun-sky", "film_studio", "venice_sunset")
-"""The default lights: an edge in the slope, an edge, a source too small for any sampling, and two photographs."""
-
-QUICK_SAMPLES, QUICK_BANDS, QUICK_LIGHTS = (100, 10_000), (3, 9), ("green", "film_studio")
-
 PAPER_SAMPLES = 10_000
 """The number of samples in the paper."""
 

@@ -16,7 +16,6 @@ MOST_BANDS = 128
 """The number of bands up to which the count for a tolerance is searched."""
 
 TOLERANCES = (0.1, 0.05, 0.01)
-QUICK_TOLERANCES = (0.05,)
 
 
 @dataclass(frozen=True, eq=False)

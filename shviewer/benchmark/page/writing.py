@@ -16,7 +16,6 @@ from shviewer.benchmark.page.section import Page, Section
 from shviewer.benchmark.page.tables import bullet
 from shviewer.benchmark.rows.report import Report
 from shviewer.benchmark.rows.row import COLUMNS, Row
-from shviewer.errors import OutputError
 from shviewer.outputs import write_atomically
 
 FILES = ("report.html", "report.md", "report.json", "report.csv")
@@ -65,16 +64,6 @@ SECTIONS = (
     Section("Hard cases", "shviewer report --stability", _hard_cases),
 )
 """The sections in the order of the page: answers first, long tables last."""
-
-
-def make_folder(folder: Path) -> None:
-    """Make the folder if need be. OutputError if that is impossible."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise OutputError(
-            f"{folder}: cannot be made a folder: {problem.strerror or problem}; choose another place"
-        ) from problem
 
 
 def write(folder: Path, page: Page) -> None:
