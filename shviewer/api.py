@@ -22,9 +22,8 @@ from shviewer.analysis.options import options_of, taken, whole
 from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
 from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics import basis, synthesis
-from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE
-from shviewer.limits import check_brightness
 from shviewer.words import meant
 
 if TYPE_CHECKING:  # each function imports what it needs: mathematics alone loads no light, and a projection no OpenGL
@@ -90,21 +89,29 @@ def find_light(what: LightLike, *, convention: str = "", sanitize: bool = False,
     """Find or make the light that `what` names, describes or holds.
 
     A text or a path is read as on the command line. A function takes unit directions (k, 3) and returns radiance (k, 3), or
-    (k,) for grey, linear RGB. An array (n**2, 3) holds coefficients in our convention, an array (height, width, 3) a lat-long
-    image of linear radiance with +z on top and +x in the middle.
-    convention: that of a coefficient file that does not name one, such as "three". sanitize: repair bad values of an image.
+    (k,) for grey, linear RGB. An array (n**2, 3) holds coefficients in our convention, or in the one that is named, and then
+    of any shape that a file may have; an array (height, width, 3) is a lat-long image of linear radiance with +z on top and
+    +x in the middle.
+    convention: that of coefficients that do not name one, such as "three". sanitize: repair bad values of an image.
     layout: how an image covers the sphere: "auto", "lat-long", "cube", "angular" or "mirror-ball".
     LightError if there is no such light or its file is bad, UsageError for what is no light and for an option out of range.
     """
     from shviewer.lights import find
     from shviewer.lights.function import FunctionLight
-    from shviewer.lights.reading import Reading
+    from shviewer.lights.reading import DEFAULT_READING, Reading
 
     _check_reading(convention, layout)
+    reading = Reading(sanitize=sanitize, layout=layout, convention=convention)
     if isinstance(what, str | os.PathLike):
-        return find.find_light(os.fspath(what), Reading(sanitize=sanitize, layout=layout, convention=convention))
+        return find.find_light(os.fspath(what), reading)
     if isinstance(what, np.ndarray):
-        return _array_light(what)
+        from shviewer.lights.arrays import light_of_array
+
+        return light_of_array(what, reading)
+    if reading != DEFAULT_READING:
+        given = {"convention": convention, "sanitize": sanitize, "layout": "" if layout == "auto" else layout}
+        name = next(name for name, value in given.items() if value)
+        raise UsageError(f"{name} {given[name]!r}: it is for files and arrays; leave it out")
     if hasattr(what, "integrand"):
         return cast("Light", what)
     if callable(what):
@@ -120,32 +127,6 @@ def _check_reading(convention: str, layout: str) -> None:
         raise UsageError(f"layout {layout!r}: {meant(str(layout), LAYOUT_CHOICES)}")
     with refused_as(UsageError):
         parse_convention(convention or "shviewer")
-
-
-def _array_light(array: NDArray[np.generic]) -> Light:
-    from shviewer.lights.coefficient_light import CoefficientLight
-    from shviewer.lights.environment import EnvironmentLight
-
-    if isinstance(array, np.ma.MaskedArray):
-        raise UsageError("a masked array is no light: fill what is masked, array.filled(0)")
-    if array.dtype.kind not in "fiu":
-        raise UsageError(f"an array of type {array.dtype} is no light; radiance and coefficients are real numbers")
-    if array.ndim == 3 and array.dtype.kind in "iu":
-        raise UsageError(
-            f"an image of type {array.dtype}: radiance is linear; divide by 255 and linearise, or give the file"
-        )
-    if not np.isfinite(array).all():
-        raise UsageError("an array with NaN or infinite values is no light; radiance and coefficients are finite")
-    if array.ndim == 3 and array.shape[2] == 3 and array.size:
-        check_brightness(float(np.abs(array).max()), "image")  # before float32 makes it infinite
-        return EnvironmentLight(np.ascontiguousarray(array, dtype=np.float32))
-    if array.ndim == 2 and array.shape[1] == 3:
-        with refused_as(UsageError):
-            count_bands(array)
-        return CoefficientLight(np.array(array, dtype=np.float64))
-    raise UsageError(
-        f"an array of shape {array.shape}: coefficients are (n**2, 3), a lat-long image is (height, width, 3)"
-    )
 
 
 def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *others: type) -> Recipe:
@@ -239,7 +220,7 @@ def info(light: LightLike, *, convention: str = "", sanitize: bool = False, layo
     from shviewer.lights.reading import Reading
 
     if not isinstance(light, str | os.PathLike):
-        return describe(find_light(light, convention=convention, layout=layout), Reading())
+        return describe(find_light(light, convention=convention, sanitize=sanitize, layout=layout), Reading())
     _check_reading(convention, layout)
     return describe(os.fspath(light), Reading(sanitize=sanitize, layout=layout, convention=convention))
 

@@ -23,6 +23,7 @@ from shviewer.analysis.options import options_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.api import NAMED_ELSEWHERE
 from shviewer.cli.main import main
+from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.errors import ShviewerError
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.environment import EnvironmentLight
@@ -79,6 +80,59 @@ def test_a_light_may_be_a_text_a_path_a_function_an_array_or_a_light(tmp_path: P
     assert shviewer.find_light(tmp_path / "bare.json", convention="unreal").description == "3 bands, unreal"
     assert shviewer.project(asymmetric(7)).n_bands == 7  # all that a coefficient light has
     np.testing.assert_allclose(shviewer.project(np.ones((8, 16, 3)), 1).coefficients, 2 * np.sqrt(np.pi), rtol=1e-14)
+
+
+@pytest.mark.parametrize("convention", [*CONVENTIONS, "shviewer,4pi,no-phase,y-up", "unity,by-channel"])
+def test_an_array_is_read_in_the_convention_that_is_named(convention: str) -> None:
+    found = shviewer.project("studio", 3)
+    numbers = found.numbers(convention.removesuffix(",by-channel"))
+    given = numbers.T.ravel() if "by-channel" in convention else numbers
+    light = shviewer.find_light(given, convention=convention)
+    own = shviewer.find_light("studio").coefficients(3)
+    np.testing.assert_allclose(light.coefficients(3), own, rtol=0, atol=1e-13)
+
+
+def test_cilm_of_shtools_is_read_as_an_array() -> None:
+    cilm = np.zeros((2, 4, 4))
+    cilm[0, 0, 0], cilm[1, 2, 1] = 1, 0.5
+    light = shviewer.find_light(cilm)
+    expected = np.zeros(16)
+    expected[0], expected[5] = (
+        np.sqrt(4 * np.pi),
+        -0.5 * np.sqrt(4 * np.pi),
+    )  # 4-pi-normalised, m = -1 without the phase
+    np.testing.assert_allclose(light.coefficients(4), np.repeat(expected[:, None], 3, 1), rtol=1e-14)
+
+
+def test_an_image_is_repaired_and_laid_out_as_its_file_would_be(tmp_path: Path) -> None:
+    image = np.random.default_rng(3).random((32, 24, 3))
+    image[5, 9], image[6, 10] = np.nan, -1
+    np.save(tmp_path / "cross.npy", image)
+    options: dict[str, Any] = {"layout": "cube", "sanitize": True}
+    light, file = (shviewer.find_light(what, **options) for what in (image, tmp_path / "cross.npy"))
+    assert (light.description, light.notes) == (file.description, file.notes)
+    np.testing.assert_array_equal(light.coefficients(5), file.coefficients(5))
+    about = shviewer.info(image, **options)
+    assert (about.layout, len(about.notes)) == ("cube", 2)
+    assert np.isnan(image[5, 9]).all()
+
+
+@pytest.mark.parametrize(
+    ("what", "options", "says"),
+    [
+        (asymmetric(3), {"layout": "cube"}, "layout 'cube': it is for images"),
+        (asymmetric(3), {"sanitize": True}, "sanitize True: it is for images"),
+        (np.ones((4, 8, 3)), {"convention": "three"}, "convention 'three': it is for coefficients"),
+        (np.ones((4, 8, 3)), {"layout": "cube"}, "4 x|8 x 4"),
+        (np.ones((3, 2, 5)), {"convention": "three"}, "shape .3, 2, 5. as coefficients"),
+        (np.ones((25, 3)), {"convention": "three"}, "5 bands, so its numbers are not those of three"),
+        (lambda directions: directions, {"layout": "cube"}, "layout 'cube': it is for files and arrays"),
+        (np.ones((9, 3), complex), {}, "convention='scipy'"),
+    ],
+)
+def test_how_a_light_is_read_is_never_ignored(what: Any, options: dict[str, Any], says: str) -> None:
+    with pytest.raises(ShviewerError, match=says):
+        shviewer.find_light(what, **options)
 
 
 @pytest.mark.parametrize(
@@ -297,7 +351,7 @@ def test_info_is_that_of_the_command_line_and_of_any_light(capsys: pytest.Captur
     assert main(["info", "venice_sunset", "--json"]) == 0
     (said,) = json.loads(capsys.readouterr().out)
     found = shviewer.info("venice_sunset")
-    assert json.loads(json.dumps(asdict(found))) == said
+    assert {"schema": 1} | json.loads(json.dumps(asdict(found))) == said
     assert shviewer.info(np.ones((4, 3))).bands_needed[0].radiance == 2
     assert shviewer.info(lambda directions: directions[:, 2] ** 2).irradiance_up[0] == pytest.approx(np.pi / 2)
     with pytest.raises(ShviewerError, match="layout 'cubic'"):

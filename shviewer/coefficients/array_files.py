@@ -31,14 +31,17 @@ def read_arrays(data: bytes) -> Listed:
     most = 16 * MAX_NUMBERS + 2**16
     with decoding("readable NPZ or NPY"), warnings.catch_warnings(action="ignore"):  # of headers that Python 2 wrote
         arrays = _arrays(data, most)
-    numbers = arrays["coefficients"]
-    if numbers.ndim > 2 and numbers.size and numbers.dtype.kind in "fiuc" and "stamp" not in arrays:
+    listed = listed_array(arrays["coefficients"], bare="stamp" not in arrays)
+    return Listed(listed.numbers, _stamp_text(arrays["stamp"])) if "stamp" in arrays else listed
+
+
+def listed_array(numbers: NDArray[Any], *, bare: bool = True) -> Listed:
+    """The numbers of an array, cilm put in rows; those of a bare one are arranged. LightError if they are no coefficients."""
+    if numbers.ndim > 2 and numbers.size and numbers.dtype.kind in "fiuc" and bare:
         return rows_of_cilm(numbers)
     if numbers.dtype.kind not in "fiuc" or numbers.ndim not in (1, 2) or not numbers.size:
         raise LightError(f"coefficients of type {numbers.dtype} and shape {numbers.shape}; they are (n^2, 3) numbers")
-    if "stamp" not in arrays:
-        return arranged(numbers)
-    return Listed(numbers, _stamp_text(arrays["stamp"]))
+    return arranged(numbers) if bare else Listed(numbers)
 
 
 def _arrays(data: bytes, most: int) -> dict[str, NDArray[Any]]:

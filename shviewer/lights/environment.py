@@ -16,6 +16,7 @@ from shviewer.harmonics.basis import Array, Indices, count_bands
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.projection import channel_products
 from shviewer.lights.convolved import RadianceLight
+from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.radiance_files import read_radiance_image
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.lat_long import LatLongLayout
@@ -84,11 +85,14 @@ class EnvironmentLight(RadianceLight):
         """The image in a file, or one layer of it. LightError if it cannot be read or does not fit the layout asked for."""
         image = read_radiance_image(path, reading, layer)
         with naming(str(path)):
-            layout, notes, pixels = recognise(
-                image.pixels, image.layout, reading.layout, image.encoding.startswith("JPEG")
-            )
-        name = f"{path.stem}:{layer}" if layer else path.stem
-        return cls(pixels, layout, one_line(name), image.notes + notes, image.encoding, reading.limits)
+            return cls.of_image(image, one_line(f"{path.stem}:{layer}" if layer else path.stem), reading)
+
+    @classmethod
+    def of_image(cls, image: Decoded, name: str, reading: Reading = DEFAULT_READING) -> EnvironmentLight:
+        """An image whose values are fit for a light. LightError if it does not fit the layout asked for."""
+        lossy = image.encoding.startswith("JPEG")
+        layout, notes, pixels = recognise(image.pixels, image.layout, reading.layout, lossy)
+        return cls(pixels, layout, name, image.notes + notes, image.encoding, reading.limits)
 
     @property
     def description(self) -> str:

@@ -69,7 +69,13 @@ def decode_radiance_image(data: bytes, name: str, reading: Reading = DEFAULT_REA
         kind, file = _kind(data, Path(name).suffix.lower()), [data]
         del data  # held by nobody but its decoder, which lets it go before it takes memory for the pixels
         decoded = _decoded(kind, file, reading.limits, layer, reading.isolated)
-        notes = _repair(decoded.pixels) if reading.sanitize else ()
+    return checked(decoded, name, reading.sanitize)
+
+
+def checked(decoded: Decoded, name: str, sanitize: bool) -> Decoded:
+    """A decoded image with values that are fit for a light, perhaps repaired, in place; notes say so. LightError otherwise."""
+    with naming(name):
+        notes = _repair(decoded.pixels) if sanitize else ()
         smallest, largest = 0.0, decoded.largest or math.inf
         if largest > BRIGHTEST:  # else nothing needs a look
             smallest, largest = float(decoded.pixels.min()), float(decoded.pixels.max())  # NaN if there is one
@@ -118,10 +124,11 @@ def _of_another_kind(kind: _Kind, file: list[bytes], limits: Limits, isolated: b
 
         return decode_array(file.pop(), limits)
     if kind is _DDS:
-        from shviewer.lights.images.others.dds import decode_float_dds
+        from shviewer.lights.images.others.dds import decode_float_dds, spelled_out
 
         if (decoded := decode_float_dds(file[0], limits)) is not None:
             return decoded
+        file[0] = spelled_out(file[0])
     from shviewer.lights.images.others.openimageio import check_installed, decode_openimageio
 
     check_installed(kind.name)  # before a process is started

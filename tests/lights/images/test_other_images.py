@@ -334,10 +334,24 @@ def test_a_part_of_a_panorama_is_placed(tmp_path):
     assert light.notes == ("data window smaller than display window: 384 texels without data are 0",)
 
 
-def test_a_cube_of_8_bit_stands_as_one_of_floats(tmp_path):
+@pytest.mark.parametrize(
+    ("options", "unsaid"),
+    [
+        ({}, ""),
+        ({"levels": 3}, ""),
+        ({"levels": 3}, "levels"),
+        ({"dxgi": 28, "levels": 3}, "levels"),
+        ({"dxgi": 28}, "cube"),
+    ],
+)
+def test_a_cube_of_8_bit_stands_as_one_of_floats(options, unsaid, tmp_path):
+    """unsaid: what is not in the flags of the header, as the number of levels and the longer header say the same."""
     pytest.importorskip("OpenImageIO")
     codes = (FACES * 255).astype(np.uint8)
-    light = read(tmp_path / "a.dds", dds_file(codes))
+    data = bytearray(dds_file(codes, **options))
+    data[10] = 0x02 if "levels" in options and unsaid != "levels" else 0
+    data[113] = 0 if unsaid == "cube" else 0xFE
+    light = read(tmp_path / "a.dds", bytes(data))
     same = read(
         tmp_path / "b.dds",
         dds_file(np.concatenate([linear(codes[..., :3]), FACES[..., 3:]], 3).astype(np.float32), 116),

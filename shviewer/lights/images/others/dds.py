@@ -17,6 +17,7 @@ from shviewer.limits import DEFAULT_LIMITS, Limits
 _FORMATS: dict[int, tuple[type[np.floating], int]] = {113: (np.float16, 4), 116: (np.float32, 4)}
 _DXGI: dict[int, tuple[type[np.floating], int]] = {2: (np.float32, 4), 6: (np.float32, 3), 10: (np.float16, 4)}
 _CUBE, _VOLUME, _ALL_FACES = 0x200, 0x200000, 0xFC00
+_HAS_LEVELS, _COMPLEX = 0x20000, 0x8
 _HEADER, _DX10_HEADER = 128, 148  # bytes
 _DX10 = int.from_bytes(b"DX10", "little")
 
@@ -55,6 +56,18 @@ def decode_float_dds(data: bytes, limits: Limits = DEFAULT_LIMITS) -> Decoded | 
         )
     words = f"DDS, {'half' if dtype is np.float16 else 'float'}{', cube' if faces == 6 else ''}"
     return Decoded(pixels, words, ("alpha dropped",) if channels == 4 else (), "cube" if faces == 6 else None)
+
+
+def spelled_out(data: bytes) -> bytes:
+    """A DDS, for OpenImageIO: that it has smaller levels, or is a cube, also in the flags that a writer may leave out."""
+    flags, levels = struct.unpack_from("<I", data, 8)[0], struct.unpack_from("<I", data, 28)[0]
+    kind, faces = struct.unpack_from("<2I", data, 108)
+    if levels > 1:
+        flags |= _HAS_LEVELS
+    if data.startswith(b"DX10", 84) and struct.unpack_from("<I", data, _HEADER + 8)[0] & 4:
+        kind, faces = kind | _COMPLEX, faces | _CUBE | _ALL_FACES
+    said = struct.pack("<I", flags) + data[12:108] + struct.pack("<2I", kind, faces)
+    return data if data.startswith(said, 8) else data[:8] + said + data[116:]
 
 
 def _level(data: bytes, start: int, shape: tuple[int, int, int], dtype: type[np.floating]) -> NDArray[np.floating]:
