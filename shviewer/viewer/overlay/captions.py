@@ -241,12 +241,16 @@ def _foot(picture: Picture, line: Line, at: Composition, timing: bool, unsaid: l
     """How the coefficients came about and the sun that was split off; first what no line after the head has room for."""
     projection = picture.projection
     method = projection.method.partition("; ")[0]
+    how: Part = (method, *(("exact",) if method.startswith("exact") else ()))
     if projection.evaluations is not None:
-        method = f"{grouped(projection.evaluations)} {method} {projection.evaluation_noun}"
+        count, noun = grouped(projection.evaluations), projection.evaluation_noun
+        how = (f"{count} {method} {noun}", f"{count} {noun}")
     spent = timing and projection.milliseconds is not None
     time = f"{grouped_number(projection.milliseconds or 0.0)} ms" if spent else ""
-    said: list[Part] = [*unsaid, (method,), (describe_suns(picture),), (time,), (describe_evaluation(picture, timing),)]
+    said: list[Part] = [*unsaid, how, (describe_suns(picture),), (time,), (describe_evaluation(picture, timing),)]
     size, ink = at.px(SMALL if at.compact else FOOT), INK if at.over else FAINT
+    if how in set_on([*unsaid, how], [line], size)[1]:  # of what would nobody know
+        said = unsaid
     return [
         _text("method", where.left, where.baseline, words, size, ink, at)
         for where, words in set_on(said, [line], size)[0]

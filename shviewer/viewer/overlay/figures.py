@@ -22,8 +22,8 @@ from shviewer.viewer.picture import Picture
 UNIT = 0.61
 """The type of the word "bands" after an answer, in sizes of the answer."""
 
-SWATCH, COLUMN_GAP = 12.0, 9.0
-"""The side of a sample, and the space after a figure before the next column; pixels of the design."""
+SWATCH, COLUMN_GAP, BOUND_GAP = 12.0, 12.0, 9.0
+"""The side of a sample, and the space after a figure, or the bound after it, before the next column; pixels of the design."""
 
 SMALLER = 0.9
 """How much smaller than it should be a value with a bound may be set."""
@@ -126,7 +126,8 @@ def _figure(figure: _Figure, cell: Cell, at: Composition) -> list[Piece]:
     weight = MEDIUM if name == "relative_l2" else REGULAR
     room, label_size = cell.right - cell.left - at.px(COLUMN_GAP), at.px(numbers.label_size)
     sizes = at.px(numbers.figure_size), label_size, at.small
-    (said, bound), size, bound_size = _fitting(figure.said, room, sizes, weight)
+    spare = at.px(COLUMN_GAP - BOUND_GAP)
+    (said, bound), size, bound_size = _fitting(figure.said, room, sizes, weight, spare)
     pieces: list[Piece] = [Text(name, cell.left, cell.value, said, size, INK, weight)]
     if bound:
         pieces.append(Text(f"{name}_bound", pieces[0].box.right, cell.value, bound, bound_size, GREY))
@@ -139,22 +140,23 @@ def _figure(figure: _Figure, cell: Cell, at: Composition) -> list[Piece]:
         last, baseline = (label, cell.label) if labelled else (pieces[-2], cell.value)
         left, bottom = round(last.box.right + after), round(baseline + 1)
         scale = max(at.scale * (0.8 if at.compact else 1.0), 0.8)
-        if left + side <= cell.left + room + 2:
+        if left + side <= cell.left + room:
             pieces.append(Swatch(Box(left, bottom - side, left + side, bottom), figure.sample, scale, f"{name}_swatch"))
     return pieces
 
 
 def _fitting(
-    wordings: Sequence[Wording], room: float, sizes: tuple[float, float, float], weight: str
+    wordings: Sequence[Wording], room: float, sizes: tuple[float, float, float], weight: str, spare: float = 0.0
 ) -> tuple[Wording, float, float]:
     """The first wording that has room, with the sizes of the value and of the bound: best as large as the other figures.
 
-    sizes: of a value, of a label, and the least. A value that stands alone becomes as small as labels before it loses digits.
+    sizes: of a value, of a label, and the least. A value that stands alone becomes as small as labels before it loses
+    digits. spare: more room, which only a bound may take.
     """
     size, label, least = sizes
     for large, small in ((size, label), (SMALLER * size, least)):
         for said, bound in wordings:
-            if bound and width_of(said, large, weight) + width_of(bound, small) <= room:
+            if bound and width_of(said, large, weight) + width_of(bound, small) <= room + spare:
                 return (said, bound), large, small
     for said, bound in wordings:
         alone = min(size, floor(4 * size * room / width_of(said, size, weight)) / 4)  # type has quarters of a pixel

@@ -24,7 +24,14 @@ FIGURES = ("relative_l2", "max_error", "minimum", "negative_area", "energy")
 def faults(picture: Picture, at: Composition, drawn: Overlay) -> list[str]:
     """Everything that is wrong with what is written over a picture in a frame."""
     marks = place_marks(picture, at, tuple(drawn.boxes.values()))
-    return [*_cut(at, drawn), *_meeting(drawn), *_running_on(drawn), *_said_twice(drawn), *_marks(at, drawn, marks)]
+    return [
+        *_cut(at, drawn),
+        *_meeting(drawn),
+        *_running_on(drawn),
+        *_too_near(at, drawn),
+        *_said_twice(drawn),
+        *_marks(at, drawn, marks),
+    ]
 
 
 def _cut(at: Composition, drawn: Overlay) -> Iterator[str]:
@@ -56,6 +63,15 @@ def _running_on(drawn: Overlay) -> Iterator[str]:
             continue
         if one.x < two.x and two.x - one.right < APART * min(one.size, two.size):
             yield f"{one.name} runs on in {two.name}: {one.text!r} {two.text!r}"
+
+
+def _too_near(at: Composition, drawn: Overlay) -> Iterator[str]:
+    """Figures, or the samples after them, that nearly touch the figure in the next column."""
+    figures = [text for text in texts_of(drawn) if text.name in FIGURES]
+    samples = [piece for piece in pieces_of(drawn) if isinstance(piece, Swatch) and piece.name.endswith("_swatch")]
+    for one, two in itertools.product([*figures, *samples], figures):
+        if one.box.top < two.baseline < one.box.bottom + 2 and one.box.left < two.x < one.box.right + 11 * at.scale:
+            yield f"{one.name} nearly touches {two.name}"
 
 
 def _phrase(name: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -377,6 +378,15 @@ def test_a_message_is_shortened_to_fit_and_keys_give_way(size: tuple[int, int]) 
     assert "message" in drawn.boxes
     assert "key_H" not in drawn.boxes
     assert drawn.boxes["message"].right <= size[0] - 8
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+def test_no_time_stands_without_what_took_it(size: tuple[int, int]) -> None:
+    """In narrow windows "3.23 ms" stood alone under the sphere."""
+    for name in ("green", "irradiance", "sampled"):
+        drawn = draw_overlay(PICTURES[name], frame(PICTURES[name], size), timing=True)
+        for said in (text.text for text in texts_of(drawn) if text.name == "method"):
+            assert re.search("closed form|exact|samples", said), said
 
 
 def test_a_long_message_takes_the_place_of_the_legend_before_it_is_cut() -> None:
