@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from enum import Enum, auto
 from typing import Any
 
 from shviewer.analysis.options import Choice, options_of
@@ -23,40 +22,12 @@ from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.beside import besides_of
-from shviewer.viewer.camera import turn_of
+from shviewer.viewer.commands import Command
 from shviewer.viewer.state import IN_RECIPE, State, changed
 from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, View
 
-
-class Command(Enum):
-    """A request that a key makes and no new state can answer; the session carries it out."""
-
-    SAVE = auto()
-    RELOAD = auto()
-    FIT = auto()
-    """Use as many bands as the tolerance needs, which depends on the light."""
-    FACE_MARK = auto()
-    """Look at the next mark, whose place depends on the light."""
-    FULL_SCREEN = auto()
-    COPY = auto()
-    """Copy the command line that makes this picture."""
-    COPY_COEFFICIENTS = auto()
-    EXPORT = auto()
-    """Write the coefficients into a file."""
-    UNDO = auto()
-    REDO = auto()
-    PASTE = auto()
-    """Open the files whose paths are on the clipboard."""
-    LEAVE = auto()
-    """Leave full screen, or else close the window."""
-    CLOSE = auto()
-
-
 OPTIONS = options_of(Recipe, View)
 MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
-
-SWEEP_BANDS = 10
-"""The last band count of a sweep that starts with one band in use."""
 
 
 def next_choice(state: State, name: str) -> State:
@@ -70,10 +41,8 @@ def next_encoding(state: State) -> State:
     """Show the next encoding of irradiance in place of bands; after the last come the three bands that shading needs."""
     if state.recipe.quantity != IRRADIANCE:
         return changed(state, message="encodings are of irradiance: I shows it")
-    if state.recipe.compare:
-        return changed(
-            state, message=f"the coefficients are those of {state.recipe.compare.name}: R shows the light's own"
-        )
+    if given := state.recipe.compare:
+        return compares(state, given, ": R shows the light's own")
     encoding = _after(state.view.encode, ("", *ENCODED_BANDS))
     return changed(with_bands(state, ENCODED_BANDS.get(encoding, 3)), encode=encoding)
 
@@ -176,7 +145,7 @@ def open_light(state: State, light: str | Light) -> State:
 def next_layout(state: State) -> State:
     """Read images in the next layout: this one and those opened afterwards."""
     if not is_image(state.recipe.light):
-        return changed(state, message=f"{light_name(state.recipe.light)} is no image, and has no layout")
+        return _no_image(state, "layout")
     last = state.view.layout_tried or state.recipe.reading.layout
     layout = _after(last, LAYOUT_CHOICES)
     return changed(state, reading=replace(state.recipe.reading, layout=layout), layout_tried=layout)
@@ -185,8 +154,12 @@ def next_layout(state: State) -> State:
 def toggle_sanitizing(state: State) -> State:
     """Repair bad values or leave them: in this image and those opened afterwards."""
     if not is_image(state.recipe.light):
-        return changed(state, message=f"{light_name(state.recipe.light)} is no image, and has no values to repair")
+        return _no_image(state, "values to repair")
     return changed(state, reading=replace(state.recipe.reading, sanitize=not state.recipe.reading.sanitize))
+
+
+def _no_image(state: State, what: str) -> State:
+    return changed(state, message=f"{light_name(state.recipe.light)} is no image, and has no {what}")
 
 
 def next_window(state: State) -> State:
@@ -197,9 +170,14 @@ def next_window(state: State) -> State:
 
 
 def next_method(state: State) -> State:
-    if state.recipe.compare:
-        return changed(state, message=f"the coefficients are those of {state.recipe.compare.name}, and no method's")
+    if given := state.recipe.compare:
+        return compares(state, given, ", and no method's")
     return next_choice(state, "method")
+
+
+def compares(state: State, given: Light, so: str) -> State:
+    """Say that compared coefficients are shown, and what that means for a key."""
+    return changed(state, message=f"the coefficients are those of {given.name}{so}")
 
 
 def scale_samples(state: State, factor: float) -> State:
@@ -243,37 +221,6 @@ def step_basis(state: State, step: int) -> State:
     at = count if state.view.basis is None else index(*state.view.basis)
     at = (at + step) % (count + 1)
     return changed(state, lobe_view=True, whole_sphere=False, basis=None if at == count else degree_order(at))
-
-
-def toggle_sweep(state: State) -> State:
-    """Start a sweep from 1 band to the present count, or to SWEEP_BANDS where that is 1; or stop the sweep that plays."""
-    if state.view.sweep_to is not None:
-        return changed(state, sweep_to=None)
-    state = changed(state, turning="")
-    to = state.recipe.n_bands if state.recipe.n_bands > 1 else SWEEP_BANDS
-    return changed(with_bands(state, 1), sweep_to=to)
-
-
-def step_sweep(state: State) -> State:
-    """One band more; the last one ends the sweep."""
-    if state.view.sweep_to is None:
-        return state
-    stepped = with_bands(changed(state, message=""), state.recipe.n_bands + 1)
-    view, going_on = state.view, state.recipe.n_bands < stepped.recipe.n_bands < state.view.sweep_to
-    to = view.sweep_to if going_on else None
-    return changed(stepped, sweep_to=to, error_range=view.error_range, range_held=view.range_held)
-
-
-def turn_light(state: State, seeds: str) -> State:
-    """Let the light turn, projected anew in every frame, with samples by one of SEEDS; or stop it if it does so."""
-    if state.view.turning == seeds:
-        return changed(state, turning="")
-    if state.recipe.compare:
-        return changed(
-            state, message=f"the coefficients are those of {state.recipe.compare.name}: no light is projected"
-        )
-    turn = turn_of(state.view.light_rotation)
-    return changed(state, turn=turn, turning=seeds, trace=(), sweep_to=None)
 
 
 def reset(state: State) -> State:

@@ -13,8 +13,9 @@ from shviewer.analysis.recipe import light_name
 from shviewer.harmonics.quantities.names import in_words
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import actions as do
-from shviewer.viewer.actions import Command
+from shviewer.viewer.commands import Command
 from shviewer.viewer.placing import face_light
+from shviewer.viewer.playing import toggle_sweep, turn_light
 from shviewer.viewer.state import (
     State,
     changed,
@@ -95,7 +96,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding(
             "Space",
             "sweep from 1 band, stop",
-            {"Space": do.toggle_sweep},
+            {"Space": toggle_sweep},
             lambda s: "" if s.view.sweep_to is None else f"to {s.view.sweep_to}",
         ),
     ),
@@ -124,7 +125,7 @@ BINDINGS: dict[str, tuple[Binding, ...]] = {
         Binding(
             "Q / Shift+Q",
             "turn it, fresh or same samples",
-            _each(do.turn_light, {"Q": "fresh", "Shift+Q": "same"}),
+            _each(turn_light, {"Q": "fresh", "Shift+Q": "same"}),
             lambda s: s.view.turning or "still",
         ),
         Binding("right drag", "turn the light; Shift+drag, too", {}),

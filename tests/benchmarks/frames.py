@@ -42,8 +42,6 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.light import Light
-from shviewer.viewer.actions import turn_light
-from shviewer.viewer.animation.turning import step_turn
 from shviewer.viewer.composing.composition import compose, frame_for
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.directions.marks import mark_layers
@@ -52,6 +50,7 @@ from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.placing import rotate_light
+from shviewer.viewer.playing import step_turn, turn_light
 from shviewer.viewer.screenshot import headless_renderer, offscreen, render_linear
 from shviewer.viewer.state import State, state_of
 

@@ -21,8 +21,8 @@ from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer import actions, derived, drawn
 from shviewer.viewer import picture as picture_module
-from shviewer.viewer.actions import Command, step_sweep, toggle_band, with_bands
-from shviewer.viewer.animation.turning import step_turn
+from shviewer.viewer.actions import toggle_band, with_bands
+from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import Composition, frame_for
 from shviewer.viewer.desktop.behind.saving import projected_of
 from shviewer.viewer.desktop.session import Session
@@ -32,6 +32,7 @@ from shviewer.viewer.keys import ACTIONS
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
 from shviewer.viewer.placing import orbit, rotate_light, zoom
+from shviewer.viewer.playing import step_sweep, step_turn
 from shviewer.viewer.saving.picture_files import write_exr
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.saving.stamp_reading import state_of_stamp

@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from shviewer.errors import UsageError
 from shviewer.limits import BRIGHTEST, MAX_BANDS
 from shviewer.outputs import ANYTHING, Replacing, check_place, write_atomically
-from shviewer.viewer.actions import step_sweep, with_bands
+from shviewer.viewer.actions import with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_FRAMES, TURN_SECONDS
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.picture import Picture, error_end, prepare
+from shviewer.viewer.playing import step_sweep, wants_range
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import headless_renderer, render_rgb
 from shviewer.viewer.state import State, changed
@@ -47,17 +48,27 @@ MAX_PIXELS = 2**29
 """The most pixels of all frames together, a byte each while a GIF is encoded; 72 frames of 3840 x 1920 are just below."""
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Animation:
-    """The states of the frames, how long each is shown, and `portrait`, the state that the description tells."""
+    """The states of the frames, how long each is shown, and `portrait`, the state that the description tells.
+
+    UsageError if it is too long.
+    """
 
     states: tuple[State, ...]
     milliseconds: tuple[int, ...]
     portrait: State
     about: dict[str, object]
     """The kind of animation and its numbers, for the description."""
-    picture: Callable[[int], Picture] | None = None
-    """The picture of each frame, where it does not follow from its state alone."""
+
+    def __post_init__(self) -> None:
+        total = sum(self.milliseconds) / 1000
+        if total > MAX_SECONDS:
+            raise UsageError(f"{len(self.states)} frames last {total:g} s: at most {MAX_SECONDS:g}; lower --seconds")
+
+    def picture(self, number: int, *, written: bool) -> Picture:
+        """The picture of a frame. written: as for `prepare`."""
+        return prepare(self.states[number], written=written)
 
 
 def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECONDS) -> Animation:
@@ -69,8 +80,8 @@ def band_sweep(state: State, first: int, last: int, seconds: float = SWEEP_SECON
         raise UsageError(f"--from {first} --to {last}: a sweep adds bands; let --from be at most --to")
     states = with_one_range(_swept(state, first, last))
     shown = in_milliseconds(seconds)
-    about = {"kind": "bands", "from": first, "to": last}
-    return checked(states, [shown] * (len(states) - 1) + [HOLD * shown], states[-1], about)
+    about: dict[str, object] = {"kind": "bands", "from": first, "to": last}
+    return Animation(tuple(states), (*[shown] * (len(states) - 1), HOLD * shown), states[-1], about)
 
 
 def _swept(state: State, first: int, last: int) -> list[State]:
@@ -81,13 +92,6 @@ def _swept(state: State, first: int, last: int) -> list[State]:
         step = step_sweep(step)
         states.append(step)
     return states
-
-
-def wants_range(state: State) -> bool:
-    """Whether the state is a frame of what plays in the window, and has yet to be given the range of all its frames."""
-    view = state.view
-    plays = view.sweep_to is not None or bool(view.turning)
-    return plays and view.error != "off" and view.error_range is None
 
 
 def ranged(state: State) -> State:
@@ -121,7 +125,7 @@ def turntable(state: State, frames: int = TURN_FRAMES, seconds: float = TURN_SEC
     turned = "map_centre" if state.view.whole_sphere else "camera"
     azimuth, elevation = getattr(state.view, turned)
     states = [changed(state, **{turned: ((azimuth + 360 * k / frames) % 360, elevation)}) for k in range(frames)]
-    return checked(states, [in_milliseconds(seconds)] * frames, state, {"kind": "turntable"})
+    return Animation(tuple(states), (in_milliseconds(seconds),) * frames, state, {"kind": "turntable"})
 
 
 def in_milliseconds(seconds: float) -> int:
@@ -130,20 +134,6 @@ def in_milliseconds(seconds: float) -> int:
     if not least <= seconds <= most:
         raise UsageError(f"--seconds {seconds:g}: a frame is shown for {least:g} to {most:g} s")
     return 10 * round(100 * seconds)
-
-
-def checked(
-    states: list[State],
-    milliseconds: list[int],
-    portrait: State,
-    about: dict[str, object],
-    picture: Callable[[int], Picture] | None = None,
-) -> Animation:
-    """The animation. UsageError if it is too long."""
-    total = sum(milliseconds) / 1000
-    if total > MAX_SECONDS:
-        raise UsageError(f"{len(states)} frames last {total:g} s: at most {MAX_SECONDS:g}; lower --seconds")
-    return Animation(tuple(states), tuple(milliseconds), portrait, about, picture)
 
 
 def save_animation(
@@ -173,15 +163,15 @@ def save_animation(
     portrait = prepare(animation.portrait)
     replacing.check(out)
     with headless_renderer() as renderer:
-        tell = _Teller(animation, count * times_drawn, progress)
+        began, drawings, drawn = perf_counter(), count * times_drawn, 0
 
         def draw(number: int) -> NDArray[np.uint8]:
-            tell(number)
-            if animation.picture is not None:
-                picture = animation.picture(number)
-            else:
-                picture = prepare(animation.states[number], written=overlay)
-            return render_rgb(renderer, picture, composition, overlay=overlay)
+            nonlocal drawn
+            if progress is not None:
+                left = (perf_counter() - began) * (drawings - drawn) / drawn if drawn else 0.0
+                progress(drawn / drawings, left, f"frame {number + 1} of {count}")
+            drawn += 1
+            return render_rgb(renderer, animation.picture(number, written=overlay), composition, overlay=overlay)
 
         text = describe(animation, portrait, composition, renderer.version, overlay=overlay)
         data = encode(draw, animation.milliseconds, text)
@@ -196,22 +186,3 @@ def describe(
     frames = {"frames": len(animation.states), "milliseconds": list(animation.milliseconds)}
     described = json.loads(metadata(portrait, composition, opengl, overlay=overlay))
     return json.dumps({**described, "animation": {**animation.about, **frames}}, allow_nan=False)
-
-
-class _Teller:
-    """Says before each drawing how far the animation is."""
-
-    def __init__(self, animation: Animation, drawings: int, progress: Progress | None) -> None:
-        self.animation = animation
-        self.drawings = drawings
-        self.progress = progress
-        self.drawn = 0
-        self.began = perf_counter()
-
-    def __call__(self, number: int) -> None:
-        if self.progress is not None:
-            passed = perf_counter() - self.began
-            left = passed * (self.drawings - self.drawn) / self.drawn if self.drawn else 0.0
-            words = f"frame {number + 1} of {len(self.animation.states)}"
-            self.progress(self.drawn / self.drawings, left, words)
-        self.drawn += 1

@@ -6,8 +6,7 @@ is how far the coefficients, turned back, are from those before, over the norm o
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,27 +14,14 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.lights.light import Light
-from shviewer.viewer.animation.animation import MAX_FRAMES, Animation, checked, in_milliseconds, with_one_range
-from shviewer.viewer.animation.metronome import TURN_STEP
-from shviewer.viewer.camera import Quaternion, about_axis, compose, turn_of
+from shviewer.viewer.animation.animation import MAX_FRAMES, Animation, in_milliseconds, with_one_range
 from shviewer.viewer.derived import reconstruction_shown
 from shviewer.viewer.picture import Picture, prepare
+from shviewer.viewer.playing import turned
 from shviewer.viewer.state import State, changed
 
 SHOWN = 48
 """The most changes that the line under the curve goes back."""
-
-
-def step_turn(state: State) -> State:
-    """The next frame of a light that turns in the window."""
-    rotation = compose(about_axis((0, 0, 1), TURN_STEP), state.view.light_rotation)
-    return _standing(state, rotation, state.recipe.seed + (state.view.turning == "fresh"))
-
-
-def _standing(state: State, rotation: Quaternion, seed: int) -> State:
-    """The state with its light projected where `rotation` has it; changes that are known stay, and so does the range."""
-    kept = {name: getattr(state.view, name) for name in ("trace", "error_range", "range_held")}
-    return changed(state, light_rotation=rotation, turn=turn_of(rotation), seed=seed, **kept)
 
 
 def only_turned(one: Recipe, other: Recipe) -> bool:
@@ -56,23 +42,24 @@ def followed(state: State, light: Light, before: Array, after: Array) -> State:
 
 
 @dataclass(eq=False)
-class _Turn:
-    """The states of a turn, with the changes as far as they are known."""
+class LightTurn(Animation):
+    """A turn of the light, in whose frames the changes are seen up to them."""
 
-    states: list[State]
-    known: int = 0
-    last: Array | None = None
+    traced: list[State] = field(default_factory=list)
+    """The states with their changes, as far as they are known."""
+    last: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    """The coefficients of the last of them."""
 
-    def picture(self, number: int) -> Picture:
-        """The picture of a frame, with the changes up to it."""
-        while self.known < number or self.last is None:
-            at = 0 if self.last is None else self.known + 1
-            found = reconstruction_shown(self.states[at].recipe, self.states[at].view)
-            if self.last is not None:
-                state = changed(self.states[at], trace=self.states[self.known].view.trace)
-                self.states[at] = followed(state, found.subject.light, self.last, found.coefficients)
-            self.known, self.last = at, found.coefficients
-        return prepare(self.states[number])
+    def picture(self, number: int, *, written: bool = True) -> Picture:
+        while len(self.traced) <= number:
+            state = self.states[len(self.traced)]
+            found = reconstruction_shown(state.recipe, state.view)
+            if self.traced:
+                state = changed(state, trace=self.traced[-1].view.trace)
+                state = followed(state, found.subject.light, self.last, found.coefficients)
+            self.traced.append(state)
+            self.last = found.coefficients
+        return prepare(self.traced[number], written=written)
 
 
 def light_turn(state: State, frames: int, seconds: float, *, fresh: bool) -> Animation:
@@ -86,14 +73,7 @@ def light_turn(state: State, frames: int, seconds: float, *, fresh: bool) -> Ani
         raise UsageError("--turn-light projects the light in every frame; leave out --compare")
     (state,) = with_one_range([state])
     state = prepare(state).placed(changed(state, turning="", trace=()))
-    states = [
-        _standing(
-            state,
-            compose(about_axis((0, 0, 1), 360 * k / frames), state.view.light_rotation),
-            state.recipe.seed + (k if fresh else 0),
-        )
-        for k in range(frames)
-    ]
+    seed = state.recipe.seed
+    states = tuple(turned(state, 360 * k / frames, seed + (k if fresh else 0)) for k in range(frames))
     about: dict[str, object] = {"kind": "turning light", "seeds": "fresh" if fresh else "same"}
-    turn = _Turn(list(states))
-    return checked(states, [in_milliseconds(seconds)] * frames, state, about, partial(_Turn.picture, turn))
+    return LightTurn(states, (in_milliseconds(seconds),) * frames, state, about)

@@ -116,6 +116,10 @@ class Numbers:
     short: bool = False
     """Whether only short labels have room."""
 
+    def on_foot(self, line: Line | None) -> bool:
+        """Whether a line is on the baseline of the foot."""
+        return line is not None and self.foot is not None and line.baseline == self.foot.baseline
+
     def scaled(self, scale: float) -> Numbers:
         """The same in pixels; sizes of type stay those of the design."""
         answers, figures = (tuple(scaled(cell, scale) for cell in cells) for cells in (self.answers, self.figures))

@@ -19,13 +19,13 @@ from shviewer.viewer.gl.renderer import PART_SECONDS, Part, Renderer, surfaces_i
 from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.directions.marks import mark_layers
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
-from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
 from shviewer.viewer.overlay.plots.plane import measured
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State, changed
 from shviewer.viewer.view import View
+from shviewer.viewer.work import Work
 
 Point = tuple[float, float]
 

@@ -10,10 +10,9 @@ from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import version_read
 from shviewer.errors import ShviewerError
 from shviewer.lights.several import several
-from shviewer.viewer.actions import Command, open_light, step_sweep
-from shviewer.viewer.animation.animation import wants_range
+from shviewer.viewer.actions import open_light
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_SECONDS, Metronome
-from shviewer.viewer.animation.turning import step_turn
+from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.behind.opening import MOST_DROPPED
@@ -24,9 +23,10 @@ from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
 from shviewer.viewer.message import DONE, ERROR, WARNING, Passing
-from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture, prepare, still
+from shviewer.viewer.playing import step_sweep, step_turn, wants_range
 from shviewer.viewer.state import State, changed, released
+from shviewer.viewer.work import Work
 
 PATIENCE = 0.05
 """The longest that a window waits for a task, in seconds."""

@@ -10,7 +10,7 @@ from typing import Any
 import glfw
 import moderngl
 
-from shviewer.viewer.actions import Command
+from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import Composition, compose
 from shviewer.viewer.desktop.behind.saving import coefficients_text
 from shviewer.viewer.desktop.behind.task import Task
@@ -24,10 +24,10 @@ from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.message import DONE, WARNING
 from shviewer.viewer.overlay.directions.probe import direction_at
-from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.state import State
+from shviewer.viewer.work import Work
 
 OUTSIDE = (-1.0, -1.0)
 """The place of a mouse that has left the window."""

@@ -17,15 +17,7 @@ from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
 from shviewer.viewer.overlay.drawing import layer_of, lettering
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
-from shviewer.viewer.overlay.foot import (
-    Work,
-    foot_pieces,
-    hairline_pieces,
-    proposed_key,
-    said_of,
-    takes_legend,
-    turning_pieces,
-)
+from shviewer.viewer.overlay.foot import foot_pieces, proposed_key, said_of, takes_legend
 from shviewer.viewer.overlay.help_sheet import help_blocks
 from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
@@ -38,7 +30,9 @@ from shviewer.viewer.overlay.plots.plane import Plane, measured, plane_legend, p
 from shviewer.viewer.overlay.plots.steps import steps_legend, steps_of, steps_pieces
 from shviewer.viewer.overlay.plots.stored import stored_errors, stored_legend, stored_pieces
 from shviewer.viewer.overlay.plots.trace import trace_pieces
+from shviewer.viewer.overlay.working import hairline_pieces, turning_pieces, work_pieces
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.work import Work
 
 NOT_TIMED = "nothing was projected that could be timed; M changes the method"
 NO_ROOM = "no room for {}: enlarge the window; {} closes it"
@@ -95,37 +89,38 @@ def draw_overlay(
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]
     plane = plane_of(picture, at) if state.view.sheet == "plane" else None
     said = said_of(picture, _missing(picture, at, plane))
-    exposure = exposure_pieces(picture, at, numbers.exposure, unsaid) if numbers.exposure else []
-    turning = bool(numbers.foot and state.view.turning and not said and work is None)
+    told = bool(said) or work is not None
+    turning = bool(numbers.foot and state.view.turning and not told)
+    shared = numbers.on_foot(numbers.exposure)
+    exposure: list[Piece] = []
+    if numbers.exposure and not (shared and (told or turning)):
+        exposure = exposure_pieces(picture, at, numbers.exposure, unsaid)
+    line, foot = numbers.legend, list[Piece]()
+    explained = plane or state.view.by_roughness or state.view.encode or hovered is not None
     if turning:
         foot = turning_pieces(at, picture, pace)
-    shared = numbers.exposure and numbers.foot and numbers.exposure.baseline == numbers.foot.baseline
-    if shared and (said or work is not None or turning):  # both are on one line
-        exposure = []
-    line = numbers.legend
-    explained = plane or state.view.by_roughness or state.view.encode or hovered is not None
-    if line is None and explained and not (said or work is not None or turning):  # in place of keys
-        line, exposure, foot = numbers.foot, exposure if not shared else [], []
-    elif not turning:
+    elif work is not None:
+        foot = work_pieces(at, work)
+    elif line is None and explained and not said:  # in place of keys
+        line, exposure = numbers.foot, [] if shared else exposure
+    else:
         after = round(max((piece.box.right for piece in exposure), default=0) + at.px(18)) if shared else 0
-        foot = foot_pieces(at, said, work, after=after, proposed=proposed_key(picture))
-    bars: dict[int, Box] = {}
+        foot = foot_pieces(at, said, after=after, proposed=proposed_key(picture))
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
-    if numbers.foot is None and (said or work is not None):  # the message takes the place of the last line there is
+    if numbers.foot is None and told:  # the message takes the place of the last line there is
         answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])
         if not (numbers.figures or numbers.answers):
             blocks = heads
     blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
-    if numbers.curve is not None:
-        plotted, legend, head_words, bars = _plotted(picture, at, line, plane, hovered)
-        blocks += plotted
-        beside = numbers.legend and numbers.foot and numbers.legend.baseline == numbers.foot.baseline
-        if not (beside and (work is not None or takes_legend(at, said))):  # or else how far the work is stands there
-            blocks.append(legend)
-        if numbers.curve_head is not None:
-            head = numbers.curve_head
-            size = at.px(12.0 if at.compact else 15.0)
-            blocks.append([Text("curve_head", head.left, head.baseline, head_words, size, INK, SEMIBOLD)])
+    if numbers.curve is None:
+        return _overlay(_beside(blocks, foot, at))
+    plotted, legend, title, bars = _plotted(picture, at, line, plane, hovered)
+    blocks += plotted
+    if not (numbers.on_foot(numbers.legend) and (work is not None or takes_legend(at, said))):
+        blocks.append(legend)
+    if (head := numbers.curve_head) is not None:
+        size = at.px(12.0 if at.compact else 15.0)
+        blocks.append([Text("curve_head", head.left, head.baseline, title, size, INK, SEMIBOLD)])
     return _overlay(_beside(blocks, foot, at), bars)
 
 
@@ -179,7 +174,7 @@ def _plotted(
 
 def status_layers(work: Work, composition: Composition) -> tuple[Layer, ...]:
     """What is being done, where messages stand; for a window that has no picture yet."""
-    blocks = [hairline_pieces(composition, work), foot_pieces(composition, "", work)]
+    blocks = [hairline_pieces(composition, work), work_pieces(composition, work)]
     return _overlay(blocks).layers
 
 

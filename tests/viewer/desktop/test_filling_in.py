@@ -13,7 +13,7 @@ from shviewer.analysis.figures import PENDING, Figures
 from shviewer.errors import LightError
 from shviewer.progress import tell
 from shviewer.viewer import picture as pictures
-from shviewer.viewer.actions import Command
+from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop.behind import task as desktop_task
 from shviewer.viewer.desktop.canvas import _overlay_key

@@ -9,7 +9,7 @@ import pytest
 from helpers import frame_of, picture_of
 
 from shviewer.errors import LightError
-from shviewer.viewer.actions import Command
+from shviewer.viewer.commands import Command
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.desktop.showing import Settings
 from shviewer.viewer.saving.picture_files import write_png

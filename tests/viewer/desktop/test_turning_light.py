@@ -22,8 +22,8 @@ from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.viewer import camera
-from shviewer.viewer.actions import Command
 from shviewer.viewer.animation.turning import light_turn
+from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.overlay.overlay import draw_overlay

@@ -19,13 +19,15 @@ from shviewer.viewer import message
 from shviewer.viewer.composing.composition import Composition, compose, frame_for
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.figures import _fitting
-from shviewer.viewer.overlay.foot import Work, foot_pieces, hairline_pieces
+from shviewer.viewer.overlay.foot import foot_pieces
 from shviewer.viewer.overlay.inks import ACCENT, ERROR, FAINT, GREY, GROUND, INK, WARNING, Ink
 from shviewer.viewer.overlay.lettering import REGULAR, width_of
 from shviewer.viewer.overlay.numerals import value
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.pieces import Disc, Fill, Swatch
+from shviewer.viewer.overlay.working import hairline_pieces
 from shviewer.viewer.picture import Picture
+from shviewer.viewer.work import Work
 from shviewer.words import percent, radiance
 
 SIZES = [

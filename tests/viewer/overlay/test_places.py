@@ -13,10 +13,10 @@ from viewer.overlay.written import texts_of
 from shviewer.analysis.figures import Figures
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer import message
-from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import changed
+from shviewer.viewer.work import Work
 
 SIZES = [
     *[(400, 300), (640, 320), (640, 480), (800, 800), (1000, 700), (1280, 640), (1280, 720)],

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from shviewer.errors import ShviewerError
 from shviewer.progress import Stopped, tell
 from shviewer.viewer.desktop.behind.task import Task
-from shviewer.viewer.overlay.foot import Work
+from shviewer.viewer.work import Work
 
 T = TypeVar("T")
 

@@ -9,12 +9,13 @@ from typing import Any
 
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import read_again, read_once
-from shviewer.viewer.animation.animation import ranged, wants_range
+from shviewer.viewer.animation.animation import ranged
 from shviewer.viewer.desktop.behind.task import Task
-from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, stages, still
+from shviewer.viewer.playing import wants_range
 from shviewer.viewer.state import State
+from shviewer.viewer.work import Work
 
 SHOWN: dict[str, Any] = {
     name: getattr(Recipe, name) for name in ("n_bands", "muted", "window", "window_width", "tolerance")

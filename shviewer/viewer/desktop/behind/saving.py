@@ -22,11 +22,11 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.behind.errands import Errands
 from shviewer.viewer.desktop.behind.task import QUIET
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.overlay.foot import Work
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import render_in_parts
+from shviewer.viewer.work import Work
 
 P = ParamSpec("P")
 

@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import Generic, TypeVar
 
 from shviewer.progress import Stopped, in_words, listening
-from shviewer.viewer.overlay.foot import Work
+from shviewer.viewer.work import Work
 
 T = TypeVar("T")
 

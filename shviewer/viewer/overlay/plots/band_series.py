@@ -12,6 +12,7 @@ from shviewer.analysis.projections import BEST, project, way_of
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import band_power, errors_by_band_count
+from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer.picture import Picture
@@ -47,47 +48,35 @@ class BandSeries:
 
 
 def band_series(picture: Picture, least: int = SLOT_COUNTS[0]) -> BandSeries:
-    """The numbers of a picture's curve. least: the fewest bands that the axis shows."""
-    recipe, figures, needs = picture.state.recipe, picture.figures, picture.needs
+    """The numbers of a picture's curve. least: the fewest bands that the axis shows.
+
+    While figures are pending, what is known at once: the error of the bands that are projected, and what they are worth.
+    """
+    recipe, figures, needs, light = picture.state.recipe, picture.figures, picture.needs, picture.light
+    on_shading, ahead = recipe.quantity == IRRADIANCE, picture.state.bands_ahead
     if isinstance(needs, Pending):
-        return _pending(picture, least)
-    needed = needs.radiance if recipe.quantity == "irradiance" else needs.shown
-    slots = band_slots(picture.state.bands_ahead, needed, least)
-    on_shading = recipe.quantity == "irradiance"
-    radiance = load_light(replace(recipe, quantity="radiance")) if on_shading else picture.light
-    irradiance = picture.light if on_shading else load_light(replace(recipe, quantity="irradiance"))
+        needed = shading_needed = None
+        slots = band_slots(ahead, None, least)
+        known = _floored(_projected_errors(picture), picture, slots)
+        errors, shading = ((), known) if on_shading else (known, ())
+        worth = np.sqrt(np.maximum(figures.energy_share[:slots], 0.0))
+    else:
+        needed, shading_needed = needs.radiance if on_shading else needs.shown, needs.irradiance
+        slots = band_slots(ahead, needed, least)
+        radiance = load_light(replace(recipe, quantity=RADIANCE)) if on_shading else light
+        irradiance = light if on_shading else load_light(replace(recipe, quantity=IRRADIANCE))
+        errors, shading = (_floored(_errors(picture, one), picture, slots) for one in (radiance, irradiance))
+        worth = _worth(light)[:slots]
     return BandSeries(
         slots=slots,
-        errors=_errors(picture, radiance, slots),
-        shading=_errors(picture, irradiance, slots),
-        worth=tuple(value if value > figures.floor else 0.0 for value in _worth(picture.light)[:slots].tolist()),
-        factors=figures.factors,
-        shown=max(figures.relative_l2, figures.floor),
-        on_shading=on_shading,
-        needed=needed,
-        shading_needed=needs.irradiance,
-        tolerance=needs.tolerance,
-    )
-
-
-def _pending(picture: Picture, least: int) -> BandSeries:
-    """What is known at once: the error of the bands that are projected, and what they are worth."""
-    recipe, figures, light = picture.state.recipe, picture.figures, picture.light
-    slots, on_shading = band_slots(picture.state.bands_ahead, None, least), recipe.quantity == "irradiance"
-    exact = project(light, BEST, picture.projection.n_bands).coefficients
-    errors = errors_by_band_count(light.products(), exact, picture.projection.coefficients)[:slots]
-    known = tuple(np.maximum(errors, figures.floor).tolist())
-    worth = np.sqrt(np.maximum(figures.energy_share[:slots], 0.0))
-    return BandSeries(
-        slots=slots,
-        errors=() if on_shading else known,
-        shading=known if on_shading else (),
+        errors=errors,
+        shading=shading,
         worth=tuple(value if value > figures.floor else 0.0 for value in worth.tolist()),
         factors=figures.factors,
         shown=max(figures.relative_l2, figures.floor),
         on_shading=on_shading,
-        needed=None,
-        shading_needed=None,
+        needed=needed,
+        shading_needed=shading_needed,
         tolerance=recipe.tolerance,
     )
 
@@ -108,11 +97,20 @@ def _worth(light: Light) -> Array:
     return np.sqrt(power / total) if total > 0 else np.zeros(len(power))
 
 
-def _errors(picture: Picture, light: Light, slots: int) -> tuple[float, ...]:
-    """The error with bands 0 to l by the method in use; as far as it is known, and below the floor the floor."""
-    recipe = picture.state.recipe
-    errors = errors_of(light, way_of(recipe))
-    if light is picture.light and recipe.n_bands > len(errors):  # samples were searched no further
-        exact = project(light, BEST, picture.projection.n_bands).coefficients
-        errors = errors_by_band_count(light.products(), exact, picture.projection.coefficients)
+def _errors(picture: Picture, light: Light) -> Array:
+    """The error with bands 0 to l by the method in use, as far as it is known."""
+    errors = errors_of(light, way_of(picture.state.recipe))
+    searched_no_further = light is picture.light and picture.state.recipe.n_bands > len(errors)
+    return _projected_errors(picture) if searched_no_further else errors
+
+
+def _projected_errors(picture: Picture) -> Array:
+    """The error with bands 0 to l, as far as they are projected."""
+    light, projection = picture.light, picture.projection
+    exact = project(light, BEST, projection.n_bands).coefficients
+    return errors_by_band_count(light.products(), exact, projection.coefficients)
+
+
+def _floored(errors: Array, picture: Picture, slots: int) -> tuple[float, ...]:
+    """The first errors; below the floor of the figures it is the floor."""
     return tuple(np.maximum(errors[:slots], picture.figures.floor).tolist())

@@ -19,7 +19,7 @@ from shviewer.words import brief_percent
 
 def hovered_pieces(series: BandSeries, band: int, line: Line, at: Composition) -> list[Piece]:
     """The values of the band under the mouse, as many as have room."""
-    parts = band_words(series, band).split(",  ")
+    parts = band_words(series, band)
     wordings = [",  ".join(parts[:count]) for count in range(len(parts), 0, -1)]
     return sentence("hovered", line, wordings, at.px(12.0), INK)
 
@@ -50,8 +50,8 @@ def legend_pieces(state: State, line: Line, at: Composition) -> list[Piece]:
     return []
 
 
-def band_words(series: BandSeries, band: int) -> str:
-    """The values of one band, in words."""
+def band_words(series: BandSeries, band: int) -> list[str]:
+    """The values of one band, in words, the first with its name."""
     said = []
     if band < len(series.worth):
         said.append(f"{typeset(brief_percent(series.worth[band]))} error with it alone left out")
@@ -59,4 +59,4 @@ def band_words(series: BandSeries, band: int) -> str:
         said.append(f"with bands 0 to {band}: {share(series.errors[band])}")
     if band < len(series.shading) and math.isfinite(series.shading[band]):
         said.append(f"shading {share(series.shading[band])}")
-    return f"band {band}:  " + ",  ".join(said)
+    return [f"band {band}:  " + "".join(said[:1]), *said[1:]]

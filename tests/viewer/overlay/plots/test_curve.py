@@ -137,7 +137,7 @@ def test_one_band_and_128_have_a_curve(light: str, n_bands: int) -> None:
 
 
 def test_the_values_of_a_band_are_said_in_words() -> None:
-    said = band_words(band_series(picture_of()), 4).replace("\u202f", " ")
+    said = ",  ".join(band_words(band_series(picture_of()), 4)).replace("\u202f", " ")
     assert said.startswith("band 4:  43 % error with it alone left out")
     assert "with bands 0 to 4: 28.3 %" in said
     assert "shading" in said
