@@ -203,7 +203,7 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
     ),
     "harmonics/extremes/climbing.py": (("one round of search", "DISPLAY_ROUNDS = 3", "DISPLAY_ROUNDS = 1"),),
     "harmonics/extremes/both_sides.py": (("the lowest error alone", "for sign in (1, -1)", "for sign in (1, 1)"),),
-    "harmonics/extremes/waves.py": (
+    "harmonics/extremes/band_limited.py": (
         ("bends of a tenth of the height", "self.moved(2) / 4", "self.moved(2) / 40"),
         ("cells above an open row left out", "beside[1:] |= rows", "pass"),
         ("bends above taken for those below", "np.multiply(seconds, sign, out=seconds)", "seconds"),

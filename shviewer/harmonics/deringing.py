@@ -6,8 +6,8 @@ factor h(l) of its own, except band 0, the mean. The squared L2 change, which is
     sum over l of (1 - h(l))^2 p(l),   p(l) the energy of band l,
 is made as small as possible while no channel is negative in any direction. That is a least-distance problem with one linear
 constraint per direction. Only the few lowest valleys matter; they are found on the function itself and added until none is
-below zero, and until a bound of the whole sphere (extremes/waves.py) finds no other. There is a solution whenever the mean is
-not negative, since the mean alone is one.
+below zero, and until a bound of the whole sphere (extremes/band_limited.py) finds no other. There is a solution whenever the
+mean is not negative, since the mean alone is one.
 
 Source
     [LH] C. Lawson, R. Hanson, "Solving Least Squares Problems" (1974), chapter 23: NNLS and LDP.
@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, check_bands, count_bands, evaluate_basis
+from shviewer.harmonics.extremes.band_limited import BandLimited
 from shviewer.harmonics.extremes.bands import band_heights
 from shviewer.harmonics.extremes.climbing import valleys
-from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
@@ -111,7 +111,7 @@ def _searched(coefficients: Array, tolerance: float) -> tuple[Array, Array, Arra
             continue
         own = np.ascontiguousarray(values[:, [channel]])
         row, column = divmod(int(own.argmin()), len(phi))
-        found = Waves(own, heights[:, [channel]]).lowest(float(own.min()), tolerance, EFFORT)
+        found = BandLimited(own, heights[:, [channel]]).lowest(float(own.min()), tolerance, EFFORT)
         bounds[channel], lowest[channel] = found.bound, found.lowest
         angles = (found.theta, found.phi) if found.lowest < own.min() else (theta[row], phi[column])
         directions[channel] = directions_from_angles(*map(np.asarray, angles))

@@ -18,7 +18,7 @@ from shviewer.words import meant
 if TYPE_CHECKING:  # each kind of light is imported when one is found
     from shviewer.lights.light import Light
 
-Found = TypeVar("Found", bound="Light")
+SomeLight = TypeVar("SomeLight", bound="Light")
 
 
 def built_in_lights() -> dict[str, Path]:
@@ -72,7 +72,7 @@ def version_of_light(light: Light) -> FileVersion | None:
     return _FILES.get(light.source, (None, None))[1]
 
 
-def read_from(light: Found, path: Path, version: FileVersion | None = None) -> Found:
+def read_from(light: SomeLight, path: Path, version: FileVersion | None = None) -> SomeLight:
     """The light, which from now on is known to come from that file. version: the file's before it was read."""
     _FILES[light] = Path(os.path.abspath(path)), version
     return light

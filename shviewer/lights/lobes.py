@@ -78,10 +78,10 @@ class LobeLight(RadianceLight):
 
     def split_suns(self, wanted: int | str = "auto") -> Split:
         """Split off the discs that are suns by the rule for images; no rest of them is left."""
-        from shviewer.lights.suns.rule import MOST, Found, chosen
+        from shviewer.lights.suns.rule import MOST, CompactSource, chosen
         from shviewer.lights.suns.sun import Sun
 
-        found: list[Found] = []
+        found: list[CompactSource] = []
         taken: list[Lobe] = []
         rest, why = self, ""
         while len(found) < MOST:
@@ -93,7 +93,7 @@ class LobeLight(RadianceLight):
                 break
             disc = discs[refusals.index("")]
             sun = Sun(disc.axis, disc.profile.half_angle, disc.radiance)
-            found.append(Found(sun, sun.half_angle, False, rest._energy_of(disc)))
+            found.append(CompactSource(sun, sun.half_angle, False, rest._energy_of(disc)))
             taken.append(disc)
             rest = rest._without(disc)
         indices = chosen(self.name, found, wanted, why)

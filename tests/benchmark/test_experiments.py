@@ -11,7 +11,7 @@ import pytest
 from shviewer.benchmark.measuring import projection_rows
 from shviewer.benchmark.measuring.experiments import BEST, METHODS, Method, method
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight, find_measured_lights, measured_light
-from shviewer.benchmark.measuring.projection_rows import Experiment, errors_of
+from shviewer.benchmark.measuring.projection_rows import Experiment, projection_errors
 from shviewer.benchmark.page.tables import lines_not_measured
 from shviewer.benchmark.rows.row import Row, not_measured
 from shviewer.errors import UsageError
@@ -71,7 +71,7 @@ def test_errors_of_random_methods_fall_as_theory_says(name: str, low: float, hig
     medians = []
     for samples in (400, 25_600):
         found = [project(method(name), measured.light, samples, seed, 3) for seed in range(9)]
-        medians.append(np.median([errors_of(measured, each).error for each in found]))
+        medians.append(np.median([projection_errors(measured, each).error for each in found]))
     assert low < np.log(medians[1] / medians[0]) / np.log(64) < high
 
 
@@ -193,7 +193,7 @@ def test_a_bright_light_has_the_errors_of_a_dim_one() -> None:
     names = ("gauss-legendre", "random")
     small, large = measured_light(scaled(1.0)), measured_light(scaled(1e29))
     for name in names:
-        errors = [errors_of(each, project(method(name), each.light, 1000, 0, 4)) for each in (small, large)]
+        errors = [projection_errors(each, project(method(name), each.light, 1000, 0, 4)) for each in (small, large)]
         assert errors[0].error == pytest.approx(errors[1].error, rel=1e-6)
         assert errors[0].total == pytest.approx(errors[1].total, rel=1e-6)
 

@@ -16,12 +16,12 @@ from scipy.optimize import minimize
 from shviewer.analysis.figures import grid_rows
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.deringing import dering
-from shviewer.harmonics.extremes import raster_error, waves, zonal_sum
+from shviewer.harmonics.extremes import band_limited, raster_error, zonal_sum
+from shviewer.harmonics.extremes.band_limited import BandLimited
 from shviewer.harmonics.extremes.bands import band_heights
 from shviewer.harmonics.extremes.both_sides import largest_magnitude
 from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
 from shviewer.harmonics.extremes.raster import Raster
-from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.extremes.zonal_table import Table
 from shviewer.harmonics.filters import per_coefficient, window
 from shviewer.harmonics.metrics import band_power
@@ -43,7 +43,7 @@ from shviewer.lights.lobes import LobeLight
 THOUSANDTH = 1e-3
 LITTLE = {
     raster_error: {"MOST_CELLS": 2, "EVALUATIONS": 0},
-    waves: {"MOST_SIEVED": 8, "MOST_FINE": 2, "HALVINGS": 1},
+    band_limited: {"MOST_SIEVED": 8, "MOST_FINE": 2, "HALVINGS": 1},
     zonal_sum: {"MOST_BOXES": 2, "LEVELS": 2, "LOOKS": 1},
 }
 """The limits of the searches, so low that most is left."""
@@ -214,7 +214,7 @@ def test_no_derivative_passes_what_the_bands_allow() -> None:
     l = np.arange(n_bands)
     coefficients = np.zeros((n_bands**2, 3))
     coefficients[l * (l + 1)] = (np.sqrt(2 * l + 1) * np.exp(-l / 3))[:, None] * [1, -1, 0]
-    grid = Waves(
+    grid = BandLimited(
         Synthesis(coefficients).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows), band_heights(coefficients)
     )
     second = np.abs(np.diff(grid.values, 2, axis=0)).max(axis=(0, 2))
@@ -350,7 +350,7 @@ def test_a_sum_of_bands_stays_above_its_bound_by_another_basis(n_bands: int) -> 
     coefficients = rng.normal(size=(n_bands**2, 3)) / (1 + np.arange(n_bands**2))[:, None] ** 0.25
     rows = 4 * n_bands + 8
     values = Synthesis(coefficients).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows)
-    grid = Waves(values, band_heights(coefficients))
+    grid = BandLimited(values, band_heights(coefficients))
     found = grid.lowest(float(values.min()), 1e-4 * float(np.ptp(values)))
     lowest = float((scipy_basis(random_directions(2000), n_bands) @ coefficients).min())
     assert found.bound <= lowest + 1e-12
@@ -371,17 +371,17 @@ def test_a_valley_between_the_points_of_a_grid_is_bounded_though_another_is_lowe
     true = float((scipy_basis(tips, n_bands) @ coefficients).min())
     lowest = float(values.min())
     assert true < 1.015 * lowest  # so that the grid alone is taken in
-    found = Waves(values, band_heights(coefficients)).lowest(lowest, 1e-4 * abs(lowest))
+    found = BandLimited(values, band_heights(coefficients)).lowest(lowest, 1e-4 * abs(lowest))
     assert 1.005 * true < found.bound <= true  # two rows a band
 
 
-def rough_waves(seed: int, less: bool, sign: float = 1) -> Waves:
+def rough_waves(seed: int, less: bool, sign: float = 1) -> BandLimited:
     """A sum of seven bands, with and without a raster to compare with."""
     rng = np.random.default_rng(seed)
     coefficients, rows = rng.normal(size=(49, 3)), 36
     values = Synthesis(coefficients).on_rows(np.pi * (np.arange(rows) + 0.5) / rows, 2 * rows)
     other = rng.random(values.shape) if less else None
-    return Waves(sign * values, band_heights(coefficients), None if other is None else sign * other)
+    return BandLimited(sign * values, band_heights(coefficients), None if other is None else sign * other)
 
 
 @pytest.mark.parametrize("less", [False, True])
@@ -401,7 +401,7 @@ def test_rows_that_are_left_out_of_a_search_hold_nothing(monkeypatch: pytest.Mon
         rows = np.any(grid.values < (open_ + grid.slack)[:, None], axis=(1, 2))
         found = []
         for size in (1, 1000):  # with the second, all rows are looked at
-            monkeypatch.setattr(waves, "BLOCK_ROWS", size)
+            monkeypatch.setattr(band_limited, "BLOCK_ROWS", size)
             found.append(grid._below(open_, rows, 1))
         np.testing.assert_array_equal(found[0], found[1])
         assert not rows.all()

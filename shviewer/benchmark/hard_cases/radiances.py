@@ -41,13 +41,13 @@ def bad_texels(read: Callable[[Path], object] = EnvironmentLight.read) -> float:
     return missed
 
 
-def figures_of(light: Light) -> list[float]:
+def relative_figures(light: Light) -> list[float]:
     """Figures that a picture of 5 bands shows: the relative L2 error, and the energy of each band."""
     figures = shown_as(light, 5)
     return [figures.relative_l2, *figures.energy_share]
 
 
-def black(figures: Callable[[Light], Sequence[float]] = figures_of) -> float:
+def black(figures: Callable[[Light], Sequence[float]] = relative_figures) -> float:
     """An image and a scene of radiance 0: relative error and energies read 0. Bound: 0; a NaN is an infinite error."""
     image = EnvironmentLight(LatLongMap(np.zeros((4, 8, 3), dtype=np.float32)))
     lights: tuple[Light, ...] = (image, LobeLight((Lobe(Disc(0.5), np.array(SUN_AXIS), np.zeros(3)),)))
@@ -74,7 +74,7 @@ def subnormal_image() -> Iterator[Array]:
         yield (found - wanted) / 5e-324
 
 
-def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] = figures_of) -> float:
+def figures_at_any_radiance(figures: Callable[[Light], Sequence[float]] = relative_figures) -> float:
     """The relative figures of a sun of radiance 1e-30 and 1e30, the ends of what lights may have, against those of 1.
 
     Bound: 1e-12, rounding of sums.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shviewer.benchmark.hard_cases.outcome import Case, worst
-from shviewer.benchmark.hard_cases.radiances import figures_of
+from shviewer.benchmark.hard_cases.radiances import relative_figures
 from shviewer.benchmark.hard_cases.shader import SUN_AXIS
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.deringing import dering
@@ -93,14 +93,14 @@ def irradiance(factors: Callable[[int], Array] = irradiance_factors) -> Iterator
 @worst
 def green_figures() -> Iterator[float]:
     """The energy of the first bands of Green's light in the figures. Bound: 1e-13, sums of a hundred squares."""
-    shares = np.cumsum(figures_of(find_light("green"))[1:])
+    shares = np.cumsum(relative_figures(find_light("green"))[1:])
     yield from (1 - shares[n - 1] - float(Fraction(text)) for n, text in GREEN_LEFT_OUT.items())
 
 
 def band_limited() -> float:
     """A light of two bands shown with five reads no error. Bound: 5e-8, the resolution of a difference of squares."""
     light = LobeLight((Lobe(ClampedLinear(0.5, -1.0), np.array(SUN_AXIS), np.array([1.0, 0.3, 2.0])),))
-    return figures_of(light)[0]
+    return relative_figures(light)[0]
 
 
 CASES = (

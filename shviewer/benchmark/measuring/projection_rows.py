@@ -215,7 +215,7 @@ class Errors(NamedTuple):
     total: float
 
 
-def errors_of(measured: MeasuredLight, coefficients: Array) -> Errors:
+def projection_errors(measured: MeasuredLight, coefficients: Array) -> Errors:
     """The errors of coefficients (n_bands**2, 3) against the light's own, by the metrics of the window."""
     norm, exact = measured.products.diagonal(), measured.exact[: len(coefficients)]
     left_out, added = squared_error(norm, exact, coefficients)
@@ -224,7 +224,7 @@ def errors_of(measured: MeasuredLight, coefficients: Array) -> Errors:
 
 def _row(round_: Round, experiment: Experiment, state: _Running, timing: Timing) -> Row:
     method, samples = experiment
-    found = [errors_of(round_.measured, coefficients) for coefficients in state.found]
+    found = [projection_errors(round_.measured, coefficients) for coefficients in state.found]
     errors = [each.error for each in found]
     reference = method.name == BEST
     return Row(

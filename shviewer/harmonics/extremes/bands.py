@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shviewer.harmonics.basis import Array, count_bands
-from shviewer.harmonics.extremes.both_sides import Found, largest_magnitude
+from shviewer.harmonics.extremes.both_sides import Extreme, largest_magnitude
 from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import row_angles
 from shviewer.harmonics.synthesis import Synthesis
@@ -36,7 +36,7 @@ class Bands:
         kept = max(1, int(np.argmax(tails <= most)))
         return difference[: kept**2], self.room + float(tails[kept])
 
-    def largest_error(self, shown: Array, n_rows: int, least: float, share: float, negligible: float) -> Found:
+    def largest_error(self, shown: Array, n_rows: int, least: float, share: float, negligible: float) -> Extreme:
         """The largest error of a reconstruction (n**2, 3).
 
         n_rows: at least so many rows are looked at. least: about the error there is on some grid; bands that hold less than a

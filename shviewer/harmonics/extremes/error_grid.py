@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.extremes.band_limited import BandLimited
 from shviewer.harmonics.extremes.bands import Bands, band_heights
-from shviewer.harmonics.extremes.both_sides import Found, largest_magnitude
+from shviewer.harmonics.extremes.both_sides import Extreme, largest_magnitude
 from shviewer.harmonics.extremes.climbing import DISPLAY_ROUNDS, Objective, climb
 from shviewer.harmonics.extremes.raster import Raster
 from shviewer.harmonics.extremes.raster_error import Search
-from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.extremes.zonal_sum import Lobes
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.quadrature import (
@@ -85,7 +85,7 @@ class _Seen(NamedTuple):
     shown: Array
     synthesis: Synthesis
     values: Array
-    waves: Waves
+    waves: BandLimited
     of_lobes: tuple[Array, float]
     """`Lobes.factors` of a light of lobes; nothing for others."""
 
@@ -151,7 +151,7 @@ class ErrorGrid:
         synthesis = Synthesis(shown)
         values = synthesis.on_rows(self.theta, len(self.phi))
         of_lobes = self._lobes.factors(shown) if self._lobes else (np.zeros((0, 0)), 0.0)
-        return _Seen(shown, synthesis, values, Waves(values, band_heights(shown)), of_lobes)
+        return _Seen(shown, synthesis, values, BandLimited(values, band_heights(shown)), of_lobes)
 
     def _lows(self, seen: _Seen) -> Lows:
         lobes = self._lobes
@@ -173,27 +173,27 @@ class ErrorGrid:
         """What is no longer told apart in a reconstruction."""
         return NEGLIGIBLE * float(max(seen.waves.high.max(), -seen.waves.low.min()))
 
-    def _best(self, objective: Objective, starts: Array) -> Found:
+    def _best(self, objective: Objective, starts: Array) -> Extreme:
         """The best of directions (k, 3), climbed from."""
         values, places = climb(objective, starts[[int(objective(starts).argmax())]], self._step / 2, DISPLAY_ROUNDS)
-        return Found(float(values[0]), places[0])
+        return Extreme(float(values[0]), places[0])
 
-    def _lowest(self, seen: _Seen) -> Found:
+    def _lowest(self, seen: _Seen) -> Extreme:
         def depth(directions: Array) -> Array:
             return np.asarray(-seen.synthesis.in_directions(directions).min(axis=1))
 
         row, _, column = (int(i) for i in np.unravel_index(int(seen.values.argmin()), seen.values.shape))
         start = directions_from_angles(self.theta[[row]], self.phi[[column]])
         values, places = climb(depth, start, self._step, DISPLAY_ROUNDS)
-        found = Found(-float(values[0]), places[0], -np.inf)
+        found = Extreme(-float(values[0]), places[0], -np.inf)
         tolerance = max(TOLERANCE * abs(found.value), self._negligible(seen))
         bounded = seen.waves.lowest(found.value, tolerance)
         if bounded.lowest < found.value - tolerance / 2:
             deeper = self._best(depth, directions_from_angles(np.array([bounded.theta]), np.array([bounded.phi])))
-            found = min(found, Found(-deeper.value, deeper.direction, -np.inf), key=lambda place: place.value)
+            found = min(found, Extreme(-deeper.value, deeper.direction, -np.inf), key=lambda place: place.value)
         return found._replace(bound=bounded.bound)
 
-    def _lowest_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> Found:
+    def _lowest_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> Extreme:
         negligible, low = self._negligible(seen), float(seen.waves.low.min())
         close = len(self.theta) >= CLOSE_ROWS * len(seen.waves.heights) or (
             seen.waves.open_points(low, TOLERANCE * abs(low)) < MOST_OPEN
@@ -204,14 +204,14 @@ class ErrorGrid:
                 return found
         places, bound = lobes.shade(zonal).largest(TOLERANCE, negligible, magnitude=False)
         found = self._best(lambda d: -seen.synthesis.in_directions(d).min(axis=1), places)
-        return Found(-found.value, found.direction, -bound - rest)
+        return Extreme(-found.value, found.direction, -bound - rest)
 
-    def _error_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> Found:
+    def _error_of_lobes(self, seen: _Seen, lobes: Lobes, zonal: Array, rest: float) -> Extreme:
         negligible = NEGLIGIBLE * self.peak
         places, bound = lobes.error(zonal).largest(TOLERANCE, negligible, magnitude=True)
         errors = self._error(seen, places)
         best = int(errors.argmax())
-        found = Found(float(errors[best]), places[best], bound + rest)
+        found = Extreme(float(errors[best]), places[best], bound + rest)
         if rest <= negligible and bound <= found.value * (1 + 2 * TOLERANCE) + negligible:
             return found
         around = lobes.rings(RING_POINTS * seen.synthesis.n_bands)
@@ -219,7 +219,7 @@ class ErrorGrid:
         starts = starts[np.argsort(-self._error(seen, starts))[:BLOCKS]]
         return found.or_larger(self._climbed(seen, starts))._replace(bound=found.bound)
 
-    def _error_of_raster(self, seen: _Seen, raster: Raster) -> Found:
+    def _error_of_raster(self, seen: _Seen, raster: Raster) -> Extreme:
         negligible, rows = NEGLIGIBLE * self.peak, raster.aligned_rows(len(self.theta))
         if rows is not None:
             values = seen.values if rows == len(self.theta) else seen.synthesis.on_rows(row_angles(rows), 2 * rows)
@@ -227,19 +227,19 @@ class ErrorGrid:
             return largest_magnitude(values, raster.on_grid(rows), heights, magnitude, TOLERANCE, negligible)
         error = Search(raster, seen.waves, self.original, seen.synthesis, TOLERANCE, negligible).run()
         direction = directions_from_angles(np.array([error.theta]), np.array([error.phi]))
-        found = Found(float(self._error(seen, direction)[0]), direction[0], error.bound)
+        found = Extreme(float(self._error(seen, direction)[0]), direction[0], error.bound)
         if error.bound <= found.value * (1 + 2 * TOLERANCE):
             return found
         return found.or_larger(self._climbed(seen))._replace(bound=error.bound)
 
-    def _error_of_bands(self, seen: _Seen, bands: Bands) -> Found:
+    def _error_of_bands(self, seen: _Seen, bands: Bands) -> Extreme:
         least = float(np.abs(seen.values - self.original).max())
         return bands.largest_error(seen.shown, len(self.theta), least, TOLERANCE, NEGLIGIBLE * self.peak)
 
     def _error(self, seen: _Seen, directions: Array) -> Array:
         return np.asarray(np.abs(seen.synthesis.in_directions(directions) - self.radiance(directions)).max(axis=1))
 
-    def _climbed(self, seen: _Seen, others: Array | None = None) -> Found:
+    def _climbed(self, seen: _Seen, others: Array | None = None) -> Extreme:
         """The largest error that is found from the grid, the landmarks and other directions (k, 3), without a bound."""
         difference = seen.values - self.original
         rows, columns = _highest_in_blocks(np.abs(difference, out=difference).max(axis=1))
@@ -247,11 +247,11 @@ class ErrorGrid:
         if others is not None:
             starts = np.concatenate([starts, others])
         errors, places = climb(partial(self._error, seen), starts, self._step, DISPLAY_ROUNDS)
-        best = Found(float(errors.max()), places[int(errors.argmax())])
+        best = Extreme(float(errors.max()), places[int(errors.argmax())])
         if len(self.landmarks):
             there = np.abs(seen.synthesis.in_directions(self.landmarks) - self.landmark_radiance).max(axis=1)
             highest = int(there.argmax())
-            best = best.or_larger(Found(float(there[highest]), self.landmarks[highest]))
+            best = best.or_larger(Extreme(float(there[highest]), self.landmarks[highest]))
         return best
 
     def _negative_energy(self, values: Array, shown: Array) -> float:

@@ -82,7 +82,7 @@ class Raster:
         return self._finer[rows]
 
     def ranges(self, grid_rows: int) -> tuple[Texels, Texels]:
-        """The lowest and the highest texel that bears on each cell of a grid (waves.py), (grid_rows + 1, 3, columns)."""
+        """The lowest and the highest texel that bears on each cell of a grid (band_limited.py), (grid_rows + 1, 3, columns)."""
         if grid_rows not in self._ranges:
             low, high = (self._pool(self.texels, grid_rows, better) for better in (np.minimum, np.maximum))
             self._ranges[grid_rows] = low, high

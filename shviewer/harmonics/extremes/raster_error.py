@@ -1,8 +1,8 @@
 """The largest error of a reconstruction of a bilinear raster: texels against bounds of the band-limited part.
 
-Between four texels the raster is bilinear in row and column, and so is it in any part of that cell. There, the error passes its
-largest corner by no more than the reconstruction bends (waves.py). Most of the sphere is ruled out by far less: in each cell of
-the grid, by the highest and the lowest texel against the corners of the reconstruction.
+Between four texels the raster is bilinear in row and column, and so is it in any part of that cell. There, the error passes
+its largest corner by no more than the reconstruction bends (band_limited.py). Most of the sphere is ruled out by far less: in
+each cell of the grid, by the highest and the lowest texel against the corners of the reconstruction.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.extremes.band_limited import BandLimited
 from shviewer.harmonics.extremes.raster import Raster
-from shviewer.harmonics.extremes.waves import Waves
 from shviewer.harmonics.synthesis import Synthesis
 
 TEXELS_READ = 2**18
@@ -52,7 +52,7 @@ class Error(NamedTuple):
 class _Boxes(NamedTuple):
     """Rectangles within a texel cell: edges in texels (k, 2), the raster in their corners (k, 2, 2, 3), bounds (k,).
 
-    curvature: of the reconstruction, as in `Waves.curvature`, (k, 2, 3).
+    curvature: of the reconstruction, as in `BandLimited.curvature`, (k, 2, 3).
     """
 
     rows: Array
@@ -80,7 +80,7 @@ class Search:
     def __init__(
         self,
         raster: Raster,
-        waves: Waves,
+        waves: BandLimited,
         original: Array,
         synthesis: Synthesis,
         tolerance: float,

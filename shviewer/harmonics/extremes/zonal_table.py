@@ -50,7 +50,7 @@ class Table:
         waves = np.fft.fft(np.stack([series, l * series, l * l * series]), 2 * bins)[:, : bins + 1]
         values, slope, bend = -waves[0].real, -waves[1].imag, waves[2].real
         between = (n_bands - 1) ** 2 * width**2 / 8  # the share of a wave that is lost between the ends of a bin
-        wave = float(np.ptp(values)) / 2 / np.cos((n_bands - 1) * width / 2)  # [Ehlich-Zeller], see waves.py
+        wave = float(np.ptp(values)) / 2 / np.cos((n_bands - 1) * width / 2)  # [Ehlich-Zeller], see band_limited.py
         lit, lit_slope, lit_bend, rough = _along(profile, bins)
         total = values + lit
         alone = _larger(bend) + (n_bands - 1) ** 2 * wave * between

@@ -24,7 +24,7 @@ from shviewer.lights.suns.caps import TILE, Caps, chord, chord_of
 from shviewer.lights.suns.clipping import highest, is_clipped
 from shviewer.lights.suns.excess import CAP, Excess
 from shviewer.lights.suns.patched import Patched
-from shviewer.lights.suns.rule import ENERGY, FEW_TEXELS, MOST, Found, refusal
+from shviewer.lights.suns.rule import ENERGY, FEW_TEXELS, MOST, CompactSource, refusal
 from shviewer.lights.suns.sun import Sun
 
 CLIPPED_ENERGY = 0.01
@@ -47,9 +47,9 @@ class CompactSources:
         self._plateau = highest(pixels, self._caps)
         self._axes: list[Array] = []
 
-    def take_all(self) -> tuple[list[Found], str]:
+    def take_all(self) -> tuple[list[CompactSource], str]:
         """Take all sources out; return them and the reason why there are no more."""
-        sources: list[Found] = []
+        sources: list[CompactSource] = []
         while True:
             found, why = self._take_brightest(MOST - len(sources))
             sources += found
@@ -67,7 +67,7 @@ class CompactSources:
             self._remove(excess)
         return suns
 
-    def _take_brightest(self, most: int) -> tuple[list[Found], str]:
+    def _take_brightest(self, most: int) -> tuple[list[CompactSource], str]:
         """Take out up to `most` sources; return them and why the first spot that is not compact is none.
 
         A source has a texel of at least sqrt(ENERGY ||f||^2 / solid angle of the cap), which few texels reach.
@@ -80,7 +80,7 @@ class CompactSources:
         least = ENERGY if self._plateau is None else CLIPPED_ENERGY
         dimmest = np.sqrt(least * squares / np.pi) / chord_of(CAP)
         waiting = self._brighter_than(dimmest * peak)
-        found: list[Found] = []
+        found: list[CompactSource] = []
         why = ""
         for _ in range(TRIES):
             if not len(waiting) or len(found) == most:
@@ -103,7 +103,7 @@ class CompactSources:
                 wrong = "" if clipped else refusal(disc.half_angle, excess.contrast, *shares)
                 if not wrong:
                     core, texels = excess.core
-                    found.append(Found(disc, core, texels <= FEW_TEXELS, shares[1]))
+                    found.append(CompactSource(disc, core, texels <= FEW_TEXELS, shares[1]))
                     self._axes.append(axis)
                     self._remove(excess)
             why = why or wrong

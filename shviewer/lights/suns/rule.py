@@ -42,7 +42,7 @@ RULE = (
 
 
 @dataclass(frozen=True)
-class Found:
+class CompactSource:
     """A compact source, and what the rule asks of it."""
 
     sun: Sun
@@ -81,7 +81,7 @@ def refusal(half_angle: float, contrast: float, flux: float, energy: float, leas
     return ""
 
 
-def chosen(name: str, found: Sequence[Found], wanted: int | str, why: str) -> list[int]:
+def chosen(name: str, found: Sequence[CompactSource], wanted: int | str, why: str) -> list[int]:
     """The indices of the sources to take out of the light `name`, the greatest flux first.
 
     wanted: AUTO for suns alone, ALL, or a number of compact sources. LightError, one line, if there are none; why: why there

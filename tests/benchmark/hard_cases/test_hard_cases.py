@@ -99,9 +99,9 @@ FAILURES: dict[str, Callable[[], float]] = {
     "+-1e6 cancellation, 1e7 samples": lambda: projecting.many_cancelling_samples(textbook.project_samples_float32),
     "jittered samples, 300 x 300 cells": lambda: sampling.stratified(sampling.uniform_random),
     "independent samples": lambda: sampling.independent(textbook.samples_at_equal_angles),
-    "black light": lambda: radiances.black(textbook.figures_of),
+    "black light": lambda: radiances.black(textbook.relative_figures),
     "figures of radiance 1e-30 to 1e30": lambda: radiances.figures_at_any_radiance(
-        lambda light: textbook.figures_of(light, np.float32)
+        lambda light: textbook.relative_figures(light, np.float32)
     ),
     "NaN and Inf texels": lambda: radiances.bad_texels(lambda path: None),
     "rotation at the gimbal, 33 bands": lambda: rotating.gimbal(
@@ -177,8 +177,8 @@ def test_the_textbook_is_right_where_nothing_is_hard() -> None:
     np.testing.assert_allclose(textbook.project_image(image, 3)[0], np.sqrt(4 * np.pi), rtol=1e-3)
     turn = rotating._about_z(1.0) @ rotating._about_y(0.7) @ rotating._about_z(-2.0)
     np.testing.assert_allclose(textbook.rebuilt_from_euler_angles(turn), turn, rtol=0, atol=1e-15)
-    green = radiances.figures_of(ringing.find_light("green"))
-    np.testing.assert_allclose(textbook.figures_of(ringing.find_light("green")), green[:6], rtol=1e-3)
+    green = radiances.relative_figures(ringing.find_light("green"))
+    np.testing.assert_allclose(textbook.relative_figures(ringing.find_light("green")), green[:6], rtol=1e-3)
 
 
 # --- the references

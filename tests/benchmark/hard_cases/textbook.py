@@ -166,7 +166,7 @@ def irradiance_factors(n_bands: int) -> np.ndarray:
     return factors
 
 
-def figures_of(light, squares=np.float64) -> list[float]:
+def relative_figures(light, squares=np.float64) -> list[float]:
     """Relative L2 error of five bands and their energies: squares of that type, divided by their sum."""
     from shviewer.harmonics.quadrature import gauss_legendre
 

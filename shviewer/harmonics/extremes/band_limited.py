@@ -46,7 +46,7 @@ class Bounded(NamedTuple):
     phi: float
 
 
-class Waves:
+class BandLimited:
     """A function of bands by its values (rows, channels, columns) on a lat-long grid of 2 rows columns.
 
     heights: what each of its bands stays within, (n_bands, channels). less: values like those of another function, which is
