@@ -197,7 +197,7 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ("half a solid angle", "zonal[0] = 2 * np.pi * versine", "zonal[0] = np.pi * versine"),
     ),
     "harmonics": (
-        ("negative area of rows that all count alike", "axis=1) @ self.row_share)", "axis=1).mean() / 192)"),
+        ("negative area of rows that all count alike", "axis=1) @ (z[:-1] - z[1:])", "axis=1).sum() * 2 / len(theta)"),
         ("energy below zero over 4 pi", "4 * np.pi * float(squares) / whole", "float(squares) / whole"),
         ("luminance of Rec. 601", "[0.2126, 0.7152, 0.0722]", "[0.299, 0.587, 0.114]"),
     ),
