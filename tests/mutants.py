@@ -72,7 +72,7 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ),
         ("muted bands are the ones on", "invert=True", "invert=False"),
     ),
-    "harmonics/scattered.py": (
+    "harmonics/projection/scattered.py": (
         ("divide by the weight", "np.multiply(values.T, weights, out=", "np.divide(values.T, weights, out="),
         (
             "float32 accumulation",
@@ -133,14 +133,14 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
         ("another spiral", "(np.sqrt(5) - 1) / 2", "(np.sqrt(3) - 1) / 2"),
         ("Gauss-Legendre weights not squared", "weights = 2 / slope**2", "weights = 2 / np.abs(slope)"),
     ),
-    "harmonics/projection.py": (
+    "harmonics/projection/rows.py": (
         ("missing sin(theta)", "(sines[2:] - sines[:-2]) / 2", "cosines[1:-1] * 1.0"),
         ("half a texel off", "(np.arange((height + 1) // 2) + 0.5)", "(np.arange((height + 1) // 2) + 0.0)"),
         ("image upside down", "row_sums(image, ", "row_sums(image[::-1], "),
         ("east folded like west", "west + east if mirrored else west - east", "west + east"),
         ("texels as points", "np.sinc(np.arange(n_bands) / width)", "1.0"),
     ),
-    "harmonics/row_transform.py": (
+    "harmonics/projection/row_transform.py": (
         (
             "south folded with the sign of the north",
             "((0, even), (1, odd), (0, odd), (1, even))",

@@ -354,7 +354,7 @@ STAGES = (
     "lights/images/openexr.py",
     "lights/layouts/recognise.py",
     "analysis/projections.py",
-    "harmonics/projection.py",
+    "harmonics/projection/rows.py",
     "analysis/figures.py",
     "coefficients/writing.py",
 )

@@ -33,9 +33,9 @@ from shviewer.harmonics.metrics import (
     split_half_estimate,
     squared_error,
 )
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 

@@ -18,10 +18,10 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.metrics import errors_by_band_count
-from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.projection.rows import project_product
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, gauss_legendre, jittered
 from shviewer.harmonics.rotation import rotate
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.lights.lobe import lobes_form

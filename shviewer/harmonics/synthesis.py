@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, normalise
+from shviewer.harmonics.projection.row_transform import BLOCK_ROWS, by_parity
 from shviewer.harmonics.quadrature import angles_from_directions, column_azimuths
-from shviewer.harmonics.row_transform import BLOCK_ROWS, by_parity
 from shviewer.harmonics.theta_series import azimuth_functions, degrees_and_orders, to_waves
 
 BLOCK_VALUES = 2**14

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from shviewer.files import naming
 from shviewer.harmonics.basis import Array, Indices, count_bands
 from shviewer.harmonics.extremes.raster import Raster
-from shviewer.harmonics.projection import channel_products
+from shviewer.harmonics.projection.rows import channel_products
 from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.images.decoded import Decoded
 from shviewer.lights.images.radiance_files import read_radiance_image

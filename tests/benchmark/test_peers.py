@@ -11,8 +11,8 @@ from shviewer.benchmark.measuring import peers
 from shviewer.benchmark.rows.row import Row
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import degrees
+from shviewer.harmonics.projection.scattered import project_values
 from shviewer.harmonics.quadrature import fibonacci
-from shviewer.harmonics.scattered import project_values
 
 
 def test_a_peer_that_is_not_installed_is_named_and_left_out() -> None:

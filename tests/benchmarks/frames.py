@@ -37,8 +37,8 @@ from measure import cpu_milliseconds, machine, medians, wall_milliseconds
 
 from shviewer.analysis.figures import figures_of, irradiance_error, sums
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.light import Light

@@ -23,7 +23,7 @@ from lights.function_suite import Disc, direction, discs, judge, suite
 from measure import cpu_milliseconds, machine, medians
 
 from shviewer.harmonics.metrics import errors_by_band_count
-from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.projection.rows import project_product
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.harmonics.sampling.look import SEEN_DEGREES
 from shviewer.lights.function import FunctionLight

@@ -32,11 +32,9 @@ import numpy as np
 from measure import cpu_milliseconds, machine, medians
 
 from shviewer.benchmark.measuring.peers import IMAGE_PEERS, available
-from shviewer.harmonics import projection
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.projection import project_image, project_product
-from shviewer.harmonics.quadrature import gauss_legendre, jittered
-from shviewer.harmonics.row_transform import (
+from shviewer.harmonics.projection import rows as projection
+from shviewer.harmonics.projection.row_transform import (
     BLOCK_ROWS,
     FEWEST_ROWS,
     FOLD_BANDS,
@@ -45,7 +43,9 @@ from shviewer.harmonics.row_transform import (
     NARROW,
     _step,
 )
-from shviewer.harmonics.scattered import project_samples
+from shviewer.harmonics.projection.rows import project_image, project_product
+from shviewer.harmonics.projection.scattered import project_samples
+from shviewer.harmonics.quadrature import gauss_legendre, jittered
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import degrees_and_orders, from_waves, series_by_parity, theta_series
 from shviewer.lights.find import built_in_lights, find_light

@@ -26,9 +26,9 @@ import numpy as np
 from measure import cpu_milliseconds, machine
 
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.projection.rows import project_product
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, Radiance, gauss_legendre, jittered
-from shviewer.harmonics.scattered import project_samples
 
 BANDS = (3, 4, 5, 6, 7, 8, 9, 12, 16, 24, 32)
 SAMPLES = {10_000: 60, 100_000: 15, 1_000_000: 3}

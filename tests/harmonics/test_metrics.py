@@ -17,8 +17,8 @@ from shviewer.harmonics.metrics import (
     relative,
     squared_error,
 )
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
-from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, orient
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight

@@ -7,7 +7,8 @@ from mpmath import mp
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import roots_legendre
 
-from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.projection.rows import project_product
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import (
     column_azimuths,
     directions_from_angles,
@@ -18,7 +19,6 @@ from shviewer.harmonics.quadrature import (
     jittered,
     uniform_random,
 )
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.find import find_light
 from shviewer.limits import MAX_SAMPLES
 

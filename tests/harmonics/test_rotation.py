@@ -10,9 +10,9 @@ from places import hard_cases
 from scipy.spatial.transform import Rotation
 
 from shviewer.harmonics.basis import evaluate_basis
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.rotation import rotate, turn
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight

@@ -1,4 +1,4 @@
-"""What shviewer.harmonics.synthesis promises about whole maps; rows and scattered directions are in test_projection.py."""
+"""What shviewer.harmonics.synthesis promises about whole maps; rows and scattered directions: projection/test_projection.py."""
 
 import numpy as np
 import pytest

@@ -14,8 +14,8 @@ from shviewer.harmonics.metrics import (
     split_half_estimate,
     squared_error,
 )
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.find import find_light
 from shviewer.lights.function import UNCERTAIN, FunctionLight
 from shviewer.lights.light import Light

@@ -12,9 +12,9 @@ from PIL import Image
 
 from shviewer.errors import LightError
 from shviewer.harmonics.metrics import squared_error
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection.rows import project_image
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, jittered, row_angles
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import MAX_TEXTURE_SIDE, EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.angular import AngularLayout

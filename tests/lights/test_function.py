@@ -10,8 +10,8 @@ from helpers import refusal
 from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.function import FunctionLight, load_function
 from shviewer.lights.lat_long import MAP_ROWS
 

@@ -11,8 +11,8 @@ from helpers import refusal
 from lights.images.hdr_files import exr_file, hdr_file, random_texels
 from numpy.testing import assert_allclose, assert_array_equal
 
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, jittered
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import built_in_lights, find_light
 from shviewer.lights.function import FunctionLight

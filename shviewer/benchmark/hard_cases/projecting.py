@@ -15,9 +15,9 @@ from shviewer.benchmark.hard_cases import exact
 from shviewer.benchmark.hard_cases.outcome import Case, largest, worst
 from shviewer.benchmark.hard_cases.shader import SEED, SKY, SUN, cancelling_views, sun_views
 from shviewer.harmonics.basis import Array, evaluate_basis, index
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection.rows import project_image
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, Radiance
-from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.zonal import Disc
 
 MANY = 10_000_000

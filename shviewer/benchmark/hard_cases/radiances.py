@@ -13,7 +13,7 @@ from shviewer.benchmark.hard_cases.shader import SEED, SUN_AXIS
 from shviewer.ending import temporary_folder
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection.rows import project_image
 from shviewer.harmonics.zonal import Disc
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap

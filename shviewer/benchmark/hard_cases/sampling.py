@@ -16,9 +16,9 @@ from shviewer.benchmark.hard_cases.evaluation import generic, towards
 from shviewer.benchmark.hard_cases.outcome import Case, largest, worst
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.filters import window
-from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.projection.rows import project_product
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, fejer, fibonacci, gauss_legendre, jittered, uniform_random
-from shviewer.harmonics.scattered import project_samples
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Gaussian
 

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.projection import project_image, project_product
+from shviewer.harmonics.projection.rows import project_image, project_product
+from shviewer.harmonics.projection.scattered import project_samples, project_values
 from shviewer.harmonics.quadrature import (
     DirectionSet,
     ProductRule,
@@ -22,7 +23,6 @@ from shviewer.harmonics.quadrature import (
     jittered,
     uniform_random,
 )
-from shviewer.harmonics.scattered import project_samples, project_values
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.layouts.lat_long import LatLongLayout

@@ -18,9 +18,9 @@ import numpy as np
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight
 from shviewer.benchmark.rows.row import Row
 from shviewer.harmonics.metrics import band_power
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, jittered, uniform_random
 from shviewer.harmonics.rotation import rotate, turn
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
 

@@ -18,8 +18,8 @@ from shviewer.benchmark.measuring.moving import BANDS, MOST
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.metrics import band_power
+from shviewer.harmonics.projection.scattered import project_values
 from shviewer.harmonics.quadrature import directions_from_angles, jittered
-from shviewer.harmonics.scattered import project_values
 from shviewer.lights.layouts.lat_long import LatLongLayout
 
 NOISE_SIZE, NOISE_FRAMES = (32, 64), 100

@@ -31,9 +31,9 @@ from shviewer.children import follow_parent, leash
 from shviewer.ending import temporary_folder
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection.rows import project_image
+from shviewer.harmonics.projection.scattered import project_values
 from shviewer.harmonics.quadrature import DirectionSet, column_azimuths, directions_from_angles, jittered, row_angles
-from shviewer.harmonics.scattered import project_values
 from shviewer.lights.find import find_light
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.light import Light

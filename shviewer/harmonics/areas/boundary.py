@@ -15,7 +15,7 @@ import numpy as np
 
 from shviewer.harmonics.areas.patches import mirrored_waves
 from shviewer.harmonics.basis import Array, check_bands
-from shviewer.harmonics.row_transform import by_parity
+from shviewer.harmonics.projection.row_transform import by_parity
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
 
 

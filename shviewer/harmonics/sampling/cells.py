@@ -18,8 +18,8 @@ from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.projection.row_transform import by_parity
 from shviewer.harmonics.quadrature import Radiance, angles_from_directions, directions_from_angles, gauss_unit
-from shviewer.harmonics.row_transform import by_parity
 from shviewer.harmonics.sampling.look import BLOCK, LOOK_COLUMNS, N_STRIPS, STRIP_ROWS, strides
 from shviewer.harmonics.theta_series import from_waves
 

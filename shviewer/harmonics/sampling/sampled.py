@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import errors_by_band_count
-from shviewer.harmonics.projection import project_product
+from shviewer.harmonics.projection.rows import project_product
 from shviewer.harmonics.quadrature import Radiance, gauss_legendre
 from shviewer.harmonics.sampling.adaptive import resolve
 from shviewer.harmonics.sampling.cells import Cells

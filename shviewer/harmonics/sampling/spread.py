@@ -15,8 +15,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.projection.row_transform import by_parity
 from shviewer.harmonics.quadrature import gauss_unit
-from shviewer.harmonics.row_transform import by_parity
 from shviewer.harmonics.sampling.cells import POINTS, Cells, sectors, shares
 from shviewer.harmonics.sampling.look import N_STRIPS
 from shviewer.harmonics.theta_series import from_waves

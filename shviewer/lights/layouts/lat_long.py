@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, Indices
-from shviewer.harmonics.projection import project_image, project_rows
+from shviewer.harmonics.projection.rows import project_image, project_rows
 from shviewer.harmonics.quadrature import angles_from_directions, directions_from_angles, row_angles
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.layouts.layout import raster_of

@@ -146,7 +146,7 @@ def one_function(directions: np.ndarray, l: int, m: int) -> np.ndarray:
 
 def float32_sums(image: np.ndarray, n_bands: int) -> np.ndarray:
     """Texels projected exactly, and what 32 rows at a time give added up in float32."""
-    from shviewer.harmonics.projection import project_image
+    from shviewer.harmonics.projection.rows import project_image
 
     total = np.zeros((n_bands**2, 3), dtype=np.float32)
     for start in range(0, len(image), 32):

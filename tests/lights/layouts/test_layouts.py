@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.scattered import project_values
+from shviewer.harmonics.projection.scattered import project_values
 from shviewer.lights.layouts import mirror_ball
 from shviewer.lights.layouts.angular import AngularLayout
 from shviewer.lights.layouts.arrangements import (

@@ -10,9 +10,9 @@ from viewer.overlay.written import pieces_of, texts_of
 
 from shviewer.cli.main import main
 from shviewer.errors import UsageError
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.rotation import rotate
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.viewer import camera

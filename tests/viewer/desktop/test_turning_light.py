@@ -16,9 +16,9 @@ from viewer.desktop.desktop import Viewer
 from viewer.overlay.written import texts_of
 
 from shviewer.analysis.projected import project_recipe
+from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import gauss_legendre
 from shviewer.harmonics.rotation import rotate
-from shviewer.harmonics.scattered import project_samples
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.viewer import camera

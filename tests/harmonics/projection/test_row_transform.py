@@ -1,13 +1,13 @@
-"""What shviewer.harmonics.row_transform promises: folds and blocks do not show, and float32 stays within its bound."""
+"""What shviewer.harmonics.projection.row_transform promises: folds and blocks do not show, float32 stays within its bound."""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from shviewer.harmonics import row_transform
-from shviewer.harmonics.projection import project_image
+from shviewer.harmonics.projection import row_transform
+from shviewer.harmonics.projection.row_transform import FOLD_BANDS, RowFunctions, by_parity, row_sums
+from shviewer.harmonics.projection.rows import project_image
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
-from shviewer.harmonics.row_transform import FOLD_BANDS, RowFunctions, by_parity, row_sums
 from shviewer.harmonics.zonal import Gaussian
 
 SHAPES = [(1, 1), (1, 8), (2, 2), (3, 6), (5, 4), (64, 12), (65, 10), (129, 7), (130, 3), (200, 400)]

@@ -1,4 +1,4 @@
-"""What shviewer.harmonics.projection promises: the coefficients of rules and of images, and the way back."""
+"""What shviewer.harmonics.projection.rows promises: the coefficients of rules and of images, and the way back."""
 
 import tracemalloc
 
@@ -11,10 +11,10 @@ from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import sph_harm_y
 
-from shviewer.harmonics import projection
 from shviewer.harmonics import theta_series as theta_series_module
 from shviewer.harmonics.basis import evaluate_basis
-from shviewer.harmonics.projection import project_image, project_product
+from shviewer.harmonics.projection import rows as projection
+from shviewer.harmonics.projection.rows import project_image, project_product
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, gauss_legendre
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import from_waves, theta_series

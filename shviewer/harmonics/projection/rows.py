@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, check_bands
+from shviewer.harmonics.projection.row_transform import Precision, RowFunctions, row_sums
 from shviewer.harmonics.quadrature import ProductRule, Radiance
-from shviewer.harmonics.row_transform import Precision, RowFunctions, row_sums
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, azimuth_functions, from_waves
 
 BLOCK_VALUES = 2**21

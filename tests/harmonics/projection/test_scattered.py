@@ -1,4 +1,4 @@
-"""What shviewer.harmonics.scattered promises: the plain sum over scattered samples, in little memory."""
+"""What shviewer.harmonics.projection.scattered promises: the plain sum over scattered samples, in little memory."""
 
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
@@ -8,10 +8,16 @@ import pytest
 from harmonics.independent import HARD_CASES, random_directions
 from numpy.testing import assert_allclose, assert_array_equal
 
-from shviewer.harmonics import scattered
 from shviewer.harmonics.basis import evaluate_basis
+from shviewer.harmonics.projection import scattered
+from shviewer.harmonics.projection.scattered import (
+    POWER_BANDS,
+    SLICED_BANDS,
+    WAVE_BANDS,
+    project_samples,
+    project_values,
+)
 from shviewer.harmonics.quadrature import DirectionSet, jittered
-from shviewer.harmonics.scattered import POWER_BANDS, SLICED_BANDS, WAVE_BANDS, project_samples, project_values
 from shviewer.lights.find import find_light
 
 GREEN = find_light("green")

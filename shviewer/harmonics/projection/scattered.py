@@ -18,8 +18,8 @@ import numpy as np
 
 from shviewer.harmonics.basis import Array, check_bands, evaluate_basis
 from shviewer.harmonics.evaluation.waves import Waves, wave_table
+from shviewer.harmonics.projection.scattered_powers import POWER_BANDS, PowerSums
 from shviewer.harmonics.quadrature import DirectionSet, Radiance
-from shviewer.harmonics.scattered_powers import POWER_BANDS, PowerSums
 from shviewer.harmonics.theta_series import degrees_and_orders
 from shviewer.harmonics.workspace import borrowed
 from shviewer.progress import tell
