@@ -39,6 +39,7 @@ from shviewer.files import DEBUG
 from shviewer.lights.find import find_light
 from shviewer.lights.reading import Reading
 from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.message import WARNING, kind_of
 from shviewer.viewer.saving.reference import compare_with_reference
 from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.state import state_of
@@ -70,13 +71,15 @@ def test_a_name_that_a_folder_holds_is_not_run(tmp_path: Path, monkeypatch: pyte
     assert Path("ran").exists()
 
 
-def test_code_that_is_dropped_is_not_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["evil.py", "evil.py:f"])
+def test_code_that_is_dropped_is_not_run(tmp_path: Path, name: str) -> None:
     (tmp_path / "evil.py").write_text("raise SystemExit('ran')\n")
     session = Session(state_of())
-    session.drop(f"{tmp_path / 'evil.py'}:f")
+    session.drop(str(tmp_path / name))
     session.prepare()
     assert session.state.recipe.light == "green"
     assert "code runs only when the command line names it" in session.state.view.message
+    assert kind_of(session.state.view.message) == WARNING
 
 
 def test_a_batch_says_which_lights_are_code(

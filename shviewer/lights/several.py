@@ -36,7 +36,7 @@ def several(texts: Iterable[str], *, most: int | None = None, code: bool = False
     lights: list[str] = []
     said: list[str] = []
     for text in texts:
-        if is_code(text) and not code:
+        if not code and (is_code(text) or text.endswith(".py")):
             said.append(one_line(f"{text}: code runs only when the command line names it"))
         elif os.path.isdir(split_light(text)[0]):
             held = list(_lights_in(Path(text), bare))

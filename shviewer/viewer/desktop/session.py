@@ -22,7 +22,7 @@ from shviewer.viewer.desktop.showing import PLAIN, Settings, Showing
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
-from shviewer.viewer.message import DONE, ERROR, WARNING, Passing
+from shviewer.viewer.message import DONE, ERROR, WARNING, Passing, warning
 from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.playing import step_sweep, step_turn, wants_range
 from shviewer.viewer.state import State, changed, released
@@ -166,13 +166,13 @@ class Session(Showing):
         """
         found = several(paths, most=MOST_DROPPED)
         if not found.lights:
-            self.say("; ".join(found.said) or "nothing that could be opened")
+            self.say("; ".join(found.said) or "nothing that could be opened", WARNING)
             return
         first, *others = found.lights
         if others:  # they come together, wherever some of them were
             lights = (*(light for light in self.state.lights if light not in found.lights), *found.lights)
             self.state = replace(self.state, lights=lights, entry=self.state.entry or self.state.recipe.light)
-        self.open(changed(open_light(self.state, first), message="; ".join(found.said)), others, again=True)
+        self.open(changed(open_light(self.state, first), message=warning("; ".join(found.said))), others, again=True)
 
     def tick(self, now: float) -> bool:
         """Take a step of what plays and a look at a watched file, where they are due; return whether anything changed."""

@@ -17,6 +17,9 @@ from shviewer.viewer.picture import Picture
 KEYS = (("↑ ↓", "bands"), ("0–9", "mute"), ("D", "error"), ("G", "whole sphere"), ("U", "sun apart"), ("H", "help"))
 """The keys to begin with, and what they do; the last ones but one go first where there is no room."""
 
+OTHERS = ("← →", "light")
+"""The keys that go through several lights; they stand after the first, and go before any other."""
+
 INKS: dict[str, Ink] = {message.DONE: INK, "": INK, message.WARNING: WARNING, message.ERROR: ERROR}
 MARK, AFTER_MARK = 11.0, 18.0
 """The size of a mark before a message, and where its words begin."""
@@ -30,12 +33,17 @@ def said_of(picture: Picture, remark: str = "") -> str:
     return picture.verdict if not picture.verdict or agrees(picture.verdict) else message.warning(picture.verdict)
 
 
-def foot_pieces(at: Composition, said: str, *, after: float = 0.0, proposed: str = "") -> list[Piece]:
-    """The line at the foot: a message, or else keys. after: where what stands before them ends; proposed: one that helps."""
+def foot_pieces(
+    at: Composition, said: str, *, after: float = 0.0, proposed: str = "", others: bool = False
+) -> list[Piece]:
+    """The line at the foot: a message, or else keys.
+
+    after: where what stands before them ends; proposed: one that helps; others: whether there are other lights.
+    """
     line, foot = message_line(at), at.numbers.foot
     if said and line is not None:
         return message_pieces(line._replace(right=at.width - at.margin) if takes_legend(at, said) else line, said, at)
-    return [] if foot is None or said else _keys(foot._replace(left=max(foot.left, after)), at, proposed)
+    return [] if foot is None or said else _keys(foot._replace(left=max(foot.left, after)), at, proposed, others)
 
 
 def takes_legend(at: Composition, said: str) -> bool:
@@ -116,12 +124,13 @@ def proposed_key(picture: Picture) -> str:
     return "U" if picture.light.map is not None or picture.light.lobes else ""
 
 
-def _keys(line: Line, at: Composition, proposed: str) -> list[Piece]:
+def _keys(line: Line, at: Composition, proposed: str, others: bool) -> list[Piece]:
     """As many keys as have room; help is always among them, and one that is proposed, which stands out."""
     size = at.px(12.0)
-    gone_first = [key for key in reversed(KEYS[:-1]) if key[0] != proposed]
+    keys = [KEYS[0], *([OTHERS] if others else []), *KEYS[1:]]
+    gone_first = [OTHERS, *(key for key in reversed(KEYS[:-1]) if key[0] != proposed)]
     for gone in range(len(gone_first) + 1):
-        shown, x = [key for key in KEYS if key not in gone_first[:gone]], line.left
+        shown, x = [key for key in keys if key not in gone_first[:gone]], line.left
         pieces: list[Piece] = []
         if len(shown) == 1:
             x = line.right - width_of("H", size, MEDIUM) - at.px(5) - width_of("help", size)

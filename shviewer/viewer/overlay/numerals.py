@@ -19,7 +19,7 @@ BEYOND = 1.01
 @lru_cache(maxsize=1024)
 def typeset(text: str) -> str:
     """A text of words.py with its numbers as they are set: "-1.08e-5" as "−1.08 × 10⁻⁵", "5 %" with a thin space."""
-    text = re.sub(r"(?<=\d)e(-?\d+)", lambda found: f" × 10{found[1].translate(RAISE)}", text)
+    text = re.sub(r"(?<=\d)e\+?(-?)0*(\d+)", lambda found: f" × 10{(found[1] + found[2]).translate(RAISE)}", text)
     text = re.sub(r"(?<![\w.-])-(?=[\d.])", MINUS, text)
     text = re.sub(r"(?<=\d) (?=\d{3}(?!\d))", THIN, text)
     return text.replace(" %", f"{THIN}%")

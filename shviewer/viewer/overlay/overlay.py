@@ -105,7 +105,7 @@ def draw_overlay(
         line, exposure = numbers.foot, [] if shared else exposure
     else:
         after = round(max((piece.box.right for piece in exposure), default=0) + at.px(18)) if shared else 0
-        foot = foot_pieces(at, said, after=after, proposed=proposed_key(picture))
+        foot = foot_pieces(at, said, after=after, proposed=proposed_key(picture), others=len(state.lights) > 1)
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
     if numbers.foot is None and told:  # the message takes the place of the last line there is
         answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])

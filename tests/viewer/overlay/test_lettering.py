@@ -47,7 +47,8 @@ def test_digits_and_signs_have_one_width_so_that_numbers_do_not_dance(weight: st
 
 def test_every_character_that_the_picture_sets_is_in_the_face() -> None:
     assert all(has(Face(str(FONTS / "Inter-Regular.otf")), c) for c in "−×…\u202f↑↓←→≤≥°–%>")
-    assert typeset("-1.08e-5") == "−1.08 × 10⁻⁵"
+    assert typeset("-1.08e-5") == typeset("-1.08e-05") == "−1.08 × 10⁻⁵"
+    assert typeset("3e+08") == "3 × 10⁸"
     assert mask("10⁻⁵", 18).coverage.any()
 
 

@@ -430,6 +430,18 @@ def test_an_error_has_a_cross() -> None:
     assert {piece.ink for piece in pieces} == {ERROR}  # type: ignore[union-attr]
 
 
+def test_where_there_are_several_lights_the_keys_that_go_through_them_are_named_if_there_is_room() -> None:
+    several = picture_of(lights=("green", "studio"))
+    for size, shown, named in (
+        ((1280, 640), several, True),
+        ((1280, 640), picture_of(), False),
+        ((900, 900), several, False),
+    ):
+        boxes = draw_overlay(shown, frame(shown, size)).boxes
+        assert ("key_← →" in boxes) == named
+        assert {"key_↑ ↓", "key_D", "key_H"} <= boxes.keys()
+
+
 @pytest.mark.parametrize("size", [(1280, 640), (1280, 720), (2560, 1440)])
 def test_where_a_sun_is_to_blame_u_is_among_the_keys_and_stands_out(size: tuple[int, int]) -> None:
     """Beside three panes there is no room for all keys."""
