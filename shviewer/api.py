@@ -37,8 +37,8 @@ LightLike: TypeAlias = "str | os.PathLike[str] | Light | Callable[[Any], ArrayLi
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
-NAMED_ELSEWHERE = ("n_bands",)
-"""Options that the functions take as an argument of another name."""
+NAMED_ELSEWHERE = {"n_bands": "bands"}
+"""Options that the functions take as an argument of another name, which is given."""
 
 
 def with_options(*holders: type) -> Callable[[_Function], _Function]:
@@ -133,9 +133,12 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
     """The recipe with these options; those of the dataclasses `others` are left out. UsageError for an unknown option."""
     from shviewer.analysis.comparing.comparison import as_the_file_holds
 
-    known = [name for name in options_of(Recipe, *others) if name not in NAMED_ELSEWHERE] + ["compare"]
+    table = options_of(Recipe, *others)
+    known = [name for name in table if name not in NAMED_ELSEWHERE] + ["compare"]
     if unknown := sorted(set(options) - set(known)):
-        raise UsageError(f"option {unknown[0]!r}: {meant(unknown[0], known)}")
+        name, flags = unknown[0], {row.flag: row.name for row in table.values()}
+        here = NAMED_ELSEWHERE.get(name) or flags.get(f"--{name.replace('_', '-')}", "")
+        raise UsageError(f"option {name!r}: {f'it is called {here} here' if here else meant(name, known)}")
     count = None if bands is None else whole(bands, "bands")
     found = find_light(light)
     if count is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import io
 import json
 import os
 import subprocess
@@ -145,6 +146,8 @@ def test_how_a_light_is_read_is_never_ignored(what: Any, options: dict[str, Any]
         (np.full((9, 3), np.nan), {}, "NaN"),
         ("green", {"bands": 129}, "129 bands"),
         ("green", {"colour": 1}, "option 'colour': it must be one of"),
+        ("green", {"n_bands": 3}, "option 'n_bands': it is called bands here"),
+        ("green", {"mute": [3]}, "option 'mute': it is called muted here"),
         ("green", {"window": "welch"}, "window 'welch'"),
         ("green", {"bands": 3.5}, "bands 3.5: it must be a whole number"),
         ("green", {"bands": "3"}, "bands '3': it must be a whole number"),
@@ -180,6 +183,8 @@ def test_saving_converts_and_keeps_figures_only_where_they_hold(tmp_path: Path) 
     ):
         with pytest.raises(ShviewerError, match=says):
             found.save(tmp_path / path, convention)
+    with pytest.raises(ShviewerError, match="a file of type BytesIO: give a path"):
+        found.save(io.BytesIO())  # type: ignore[arg-type]
     with pytest.raises(ShviewerError, match="takes 1 to 3"):
         shviewer.project("green", 4).numbers("unity")
 

@@ -157,6 +157,8 @@ class Projected(InNotebooks):
         A file that the light was read from is never replaced, and one that shviewer did not write only by `force`.
         UsageError for another suffix or a convention that does not fit, OutputError if it cannot be written.
         """
+        if not isinstance(path, str | os.PathLike):
+            raise UsageError(f"a file of type {type(path).__name__}: give a path; numbers() has the numbers alone")
         with refused_as(UsageError):
             chosen = parse_convention(convention)
         out = Path(path)

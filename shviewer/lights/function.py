@@ -21,7 +21,7 @@ from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
 from shviewer.lights.convolved import RadianceLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.limits import DEFAULT_LIMITS, Limits, check_brightness
-from shviewer.words import grouped, theta_phi_degrees
+from shviewer.words import grouped, meant, theta_phi_degrees
 
 MAX_CODE_BYTES = 2**22
 
@@ -209,5 +209,6 @@ def load_function(path: Path, function: str, limits: Limits = DEFAULT_LIMITS) ->
     found = getattr(module, function, None)
     if not callable(found):
         there = sorted(name for name, value in vars(module).items() if callable(value) and not name.startswith("_"))
-        raise LightError(f"{path}: no function {function!r}; there is: {', '.join(there) or 'none'}")
+        offer = meant(function, there, f"there is: {', '.join(there) or 'none'}")
+        raise LightError(f"{path}: no function {function!r}; {offer}")
     return FunctionLight(found, function)

@@ -232,10 +232,12 @@ def test_a_missing_file_is_one_line(tmp_path):
 
 
 def test_a_missing_function_lists_those_that_are_there(load):
-    with pytest.raises(LightError, match=r"my_light\.py: no function 'ligth'; there is: dusk, light$"):
+    with pytest.raises(LightError, match=r"my_light\.py: no function 'ligth'; did you mean light\?$"):
         load("LEVEL = 3\ndef light(d): ...\ndef dusk(d): ...\ndef _helper(): ...\n", "ligth")
     with pytest.raises(LightError, match=r"my_light\.py: no function 'light'; there is: none$"):
         load("light = 3\n")
+    with pytest.raises(LightError, match=r"no function 'sun'; there is: dusk, light$"):
+        load("def light(d): ...\ndef dusk(d): ...\n", "sun")
 
 
 @pytest.mark.parametrize(

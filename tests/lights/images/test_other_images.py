@@ -215,6 +215,10 @@ def test_an_image_in_a_dds_is_lat_long(tmp_path):
         (dds_file(FACES, dxgi=2, caps=0x7E00), "a cube of which faces are missing"),
         (dds_file(np.ones((6, 4, 2, 4), np.float32), dxgi=2), "faces of 2 x 4 texels; they are square"),
         (dds_file(FACES, 116, caps=0x200000), "a volume"),
+        (
+            dds_file((FACES[..., :1] * 255).astype(np.uint32), dxgi=67),
+            "a variant that is not read (Unsupported DXGI format: 67)",
+        ),
     ],
 )
 def test_a_broken_dds_is_one_line(data, says, tmp_path):

@@ -150,6 +150,8 @@ def _bytes(profile: Any) -> bytes:
 
 
 def _damaged(said: str) -> LightError:
+    if re.search("unsupported|not supported", said, re.IGNORECASE):
+        return LightError(f"a variant that is not read ({one_line(said, 160)}); convert it to .hdr or .exr")
     return LightError(
         f"damaged or cut short ({one_line(said, 160) or 'no reason given'}); fetch or export the file again"
     )
