@@ -16,6 +16,7 @@ from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.kept import Kept
 from shviewer.viewer.gl.renderer import PART_SECONDS, Part, Renderer, surfaces_in
+from shviewer.viewer.gl.warming import Warming
 from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.directions.marks import mark_layers
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
@@ -32,7 +33,7 @@ Point = tuple[float, float]
 UPLOAD_SECONDS = 0.02
 """About how long a frame uploads maps, where no other thread does."""
 
-UPLOADING, MESHING = "handing the map to OpenGL", "making the surfaces"
+UPLOADING, MESHING, COMPILING = "handing the map to OpenGL", "making the surfaces", "compiling the shaders"
 
 PLAIN_FRAMES = 2
 """How many frames of the same panes are drawn as they are; further ones copy them, which takes a fifth of a frame."""
@@ -49,6 +50,8 @@ class Canvas:
     ) -> None:
         """wake: called from another thread when something has been made for the next frame."""
         self.renderer = Renderer(context, carrier)
+        if carrier is not None:
+            self.renderer.compiled = Warming(carrier).ready
         self.screen = context.screen
         self.overlay: Overlay | None = None
         self.again = False
@@ -114,6 +117,8 @@ class Canvas:
         self._pending = None
         if not self._meshed(picture, composition):
             self._pending = Work(MESHING)
+        elif not self.renderer.compiled(picture, composition, self._shown is None):
+            self._pending = Work(COMPILING)
         elif not self.renderer.show(picture, UPLOAD_SECONDS):
             self._pending = Work(UPLOADING, round(self.renderer.held.uploading or 0.0, 2))
         if self._pending is None:
@@ -165,7 +170,8 @@ class Canvas:
         key = _panes_key(self._shown, composition, self._exact)
         frames = self._panes[1] + 1 if key == self._panes[0] else 1
         self._panes = key, frames
-        copied = frames > PLAIN_FRAMES and not again
+        carrier = self.renderer.carrier  # what copies panes may be compiled there
+        copied = frames > PLAIN_FRAMES and not again and not (carrier is not None and carrier.busy)
         parts = self._parts(composition, pointer, key if copied else None)
         self._frame = _Frame(parts, composition, alone and not copied and _choosable(self._shown))
 

@@ -101,7 +101,7 @@ class SideContext:
     def leave(self) -> None:
         glfw.make_context_current(None)  # type: ignore[arg-type]  # None: no window
 
-    def address(self, function: str) -> int:
+    def load(self, function: str) -> int:
         return ctypes.cast(glfw.get_proc_address(function), ctypes.c_void_p).value or 0
 
 

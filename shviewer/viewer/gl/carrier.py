@@ -1,4 +1,4 @@
-"""Large textures, made, filled and freed by a thread with an OpenGL context of its own, so that the one that draws never waits.
+"""A thread with an OpenGL context of its own, which makes, fills and frees large textures: the one that draws never waits.
 
 An OpenGL in software takes the memory of a texture in one piece and fills it with zeros: a third of a second for the largest
 maps, and a tenth to give it back. moderngl keeps Python's lock meanwhile, so the calls of this thread go past it.
@@ -26,7 +26,7 @@ from shviewer.errors import GraphicsError
 CARRIED_BYTES = 2**24
 """What goes up at a time: a driver may let nobody draw meanwhile, which takes some milliseconds."""
 
-TEXTURE_2D, NEAREST, MIN_FILTER, MAG_FILTER, UNPACK_ALIGNMENT = 0x0DE1, 0x2600, 0x2801, 0x2800, 0x0CF5
+TEXTURE_2D, LINEAR, MIN_FILTER, MAG_FILTER, UNPACK_ALIGNMENT = 0x0DE1, 0x2601, 0x2801, 0x2800, 0x0CF5
 FORMATS = {3: 0x1907, 4: 0x1908}
 """GL_RGB, GL_RGBA by components."""
 
@@ -43,6 +43,10 @@ _CALLS: dict[str, tuple[type[Any], ...]] = {
     "glTexStorage2D": (_INT,) * 5,
     "glTexSubImage2D": (*(_INT,) * 8, _POINTER),
     "glTextureView": (_INT,) * 8,
+    "glUseProgram": (_INT,),
+    "glBindVertexArray": (_INT,),
+    "glDrawArrays": (_INT,) * 3,
+    "glDrawElements": (_INT, _INT, _INT, _POINTER),
     "glFinish": (),
     "glGetError": (),
 }
@@ -57,8 +61,8 @@ class Side(Protocol):
     def leave(self) -> None:
         """Make it current nowhere."""
 
-    def address(self, function: str) -> int:
-        """Where a function of OpenGL is."""
+    def load(self, function: str) -> int:
+        """Where a function of OpenGL is; moderngl asks for it by this name."""
 
 
 class Load:
@@ -110,10 +114,13 @@ class Carrier:
         GraphicsError if the thread cannot have the context.
         """
         self.context = context
-        self._side, self._arrived = side, arrived
+        self.side = side
+        self.calls = _functions(context, side)
+        """Functions of OpenGL for that thread."""
+        self._arrived = arrived
         self._retired: list[Load] = []
         self._works: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
-        self._calls = _functions(context, side)
+        self._begun = self._done = 0
         refused: SimpleQueue[str] = SimpleQueue()
         self._thread = Thread(target=self._run, args=(refused,), name="textures", daemon=True)
         self._thread.start()
@@ -135,13 +142,31 @@ class Carrier:
     def carry(self, array: NDArray[np.generic], dtype: str) -> Load:
         """Begin with the texture of an array, as half floats ("f2") or as it is ("f4")."""
         load = Load(self, array, dtype)
-        self._works.put(partial(self._fill, load))
+        self._put(partial(self._fill, load))
         return load
+
+    def ask(self, work: Callable[[], None]) -> Event:
+        """Have something done by that thread; the event is set when it is over, whatever came of it."""
+        over = Event()
+
+        def done() -> None:
+            with suppress(Exception):
+                work()
+            over.set()
+            self._tell()
+
+        self._put(done)
+        return over
+
+    @property
+    def busy(self) -> bool:
+        """Whether there is anything that the thread has not done yet."""
+        return self._begun != self._done
 
     def retire(self, load: Load) -> None:
         """Free a texture as soon as nothing is drawn with it."""
         if load.over.is_set() and load.names[0]:
-            self._calls["glDeleteTextures"](1, ctypes.byref(load.names))
+            self.calls["glDeleteTextures"](1, ctypes.byref(load.names))
             load.names[0] = 0
         self._retired.append(load)
 
@@ -149,7 +174,7 @@ class Carrier:
         """Hear that a frame was drawn with what is in use now."""
         retired, self._retired = self._retired, []
         for load in retired:
-            self._works.put(partial(self._free, load))
+            self._put(partial(self._free, load))
 
     def end(self) -> None:
         """Free what is retired, and end the thread."""
@@ -160,7 +185,7 @@ class Carrier:
     def _run(self, refused: SimpleQueue[str]) -> None:
         """Do what is asked for, once it is told that there was no reason to refuse."""
         try:
-            self._side.enter()
+            self.side.enter()
         except GraphicsError as error:
             refused.put(str(error))
             return
@@ -168,27 +193,39 @@ class Carrier:
         try:
             while (work := self._works.get()) is not None:
                 work()
+                self._done += 1
         finally:
-            self._side.leave()
+            self.side.leave()
+
+    def _put(self, work: Callable[[], None]) -> None:
+        self._begun += 1
+        self._works.put(work)
+
+    def _tell(self) -> None:
+        if self._arrived is not None:
+            self._arrived()
 
     def _fill(self, load: Load) -> None:
+        self.fill(load)
+        self._tell()
+
+    def fill(self, load: Load) -> None:
+        """Make a texture in that thread."""
         try:
             if not load.unwanted:
                 self._make(load)
         except Exception as error:
             load.error = f"a map could not be handed to OpenGL: {error}"
         load.over.set()
-        if self._arrived is not None:
-            self._arrived()
 
     def _make(self, load: Load) -> None:
-        calls, (height, width, components) = self._calls, load.array.shape
+        calls, (height, width, components) = self.calls, load.array.shape
         while calls["glGetError"]():
             pass
         calls["glGenTextures"](1, ctypes.byref(load.names))
         calls["glBindTexture"](TEXTURE_2D, load.names[0])
         for what in (MIN_FILTER, MAG_FILTER):
-            calls["glTexParameteri"](TEXTURE_2D, what, NEAREST)
+            calls["glTexParameteri"](TEXTURE_2D, what, LINEAR)
         stored = STORED[components, load.dtype]
         calls["glTexStorage2D"](TEXTURE_2D, 1, stored, width, height)
         if calls["glGetError"]():
@@ -216,9 +253,9 @@ class Carrier:
         for place in range(2):
             if load.names[place]:
                 name = ctypes.c_uint(load.names[place])
-                self._calls["glDeleteTextures"](1, ctypes.byref(name))
+                self.calls["glDeleteTextures"](1, ctypes.byref(name))
                 load.names[place] = 0
-        self._calls["glFinish"]()
+        self.calls["glFinish"]()
 
 
 def _functions(context: moderngl.Context, side: Side) -> dict[str, Callable[..., int]]:
@@ -226,7 +263,7 @@ def _functions(context: moderngl.Context, side: Side) -> dict[str, Callable[...,
     kind = getattr(ctypes, "WINFUNCTYPE", ctypes.CFUNCTYPE)
     views = context.version_code >= 430 or "GL_ARB_texture_view" in context.extensions
     return {
-        name: kind(ctypes.c_int if name == "glGetError" else None, *types)(side.address(name))
+        name: kind(ctypes.c_int if name == "glGetError" else None, *types)(side.load(name))
         for name, types in _CALLS.items()
         if views or name != "glTextureView"
     }

@@ -14,7 +14,7 @@ from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.programs import BLOCKS, SAMPLERS
 from shviewer.viewer.gl.shared import LOBE_SLOTS, SH_TERMS, pack_coefficients, pack_lobes
-from shviewer.viewer.gl.textures import ArrayTexture
+from shviewer.viewer.gl.textures import ArrayTexture, large
 from shviewer.viewer.picture import Picture
 
 VEC4 = 16
@@ -24,12 +24,14 @@ VEC4 = 16
 class Held:
     """One context's buffers and textures of lights and reconstructions. release() at the end."""
 
-    def __init__(self, context: moderngl.Context, carrier: Carrier | None = None) -> None:
-        """carrier: makes the textures of large maps, so that drawing does not wait for them."""
+    def __init__(
+        self, context: moderngl.Context, carrier: Carrier | None = None, texture: type[ArrayTexture] = ArrayTexture
+    ) -> None:
+        """carrier: makes the textures of large maps, so that drawing does not wait for them. texture: the kind of all."""
         self.sh_buffer, self.beside_buffer = (context.buffer(reserve=SH_TERMS * VEC4) for _ in range(2))
         self.lobe_buffer = context.buffer(reserve=LOBE_SLOTS * 3 * VEC4)
-        self.original_map, self.compared_map = (ArrayTexture(context, carrier) for _ in range(2))
-        self.reconstruction_map, self.beside_map, self.colour_map = (ArrayTexture(context) for _ in range(3))
+        self.original_map, self.compared_map = (texture(context, carrier) for _ in range(2))
+        self.reconstruction_map, self.beside_map, self.colour_map = (texture(context) for _ in range(3))
         self.pinned: Picture | None = None
         """A picture that is drawn a part at a time, whose maps stay: no other ones come meanwhile."""
         self._colours: dict[str, NDArray[np.float32]] = {}
@@ -101,6 +103,15 @@ def _maps(picture: Picture) -> tuple[LatLongMap | None, LatLongMap | None]:
     original = picture.original.map
     compared = picture.compared.map if picture.error_scale is not None else None
     return original, None if compared is original else compared
+
+
+def kind_of(shown: LatLongMap | None) -> tuple[int, ...]:
+    """All that a compiler of shaders may know of the texture of a map."""
+    if shown is None:
+        return ()
+    height, width, components = shown.texels.shape
+    powers = (side & (side - 1) == 0 for side in (height, width))
+    return components, shown.halves, large(shown.texels), *powers
 
 
 def _texels(shown: LatLongMap | None) -> NDArray[np.float32] | None:

@@ -14,11 +14,11 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobe import Lobe
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Pane, Pixels, Sphere
-from shviewer.viewer.drawn import Drawn, Encoded, SplineMap
-from shviewer.viewer.gl.held import Held
+from shviewer.viewer.drawn import Drawn, Encoded, SplineMap, Surfaces
+from shviewer.viewer.gl.held import Held, kind_of
 from shviewer.viewer.gl.programs import Program
 from shviewer.viewer.gl.shared import CHOICES, FLOATS, profile_bits
-from shviewer.viewer.picture import Picture
+from shviewer.viewer.picture import Picture, Source
 from shviewer.viewer.view import ERRORS
 
 MOST_SAMPLES = 6
@@ -27,30 +27,31 @@ MOST_SAMPLES = 6
 LEAST_HATCHED = 3
 """How many lines beyond white are the fewest that a sun has room for, if it has any."""
 
+Chosen = tuple[str | int, ...]
+"""What a program is made for: one of each of CHOICES, PROFILES and SAMPLES."""
+
+Kind = tuple[object, ...]
+
 
 class PaneRenderer:
     """One context's programs of sphere.frag. release() at the end."""
 
     def __init__(self, context: moderngl.Context, held: Held) -> None:
-        self.programs: dict[tuple[str | int, ...], Program] = {}
-        """By the choices they were made for."""
+        self.programs: dict[Chosen, Program] = {}
+        """By what they are made for, and whether they draw into a window: what Mesa has compiled for one framebuffer,
+        it does not find on the disk for another."""
         self._context = context
         self._held = held
 
     def draw(self, picture: Picture, shown: str, pane: Pane, composition: Composition, *, linear: bool) -> None:
         """Draw a pane into the viewport, which is its `pixel_box`. linear: the radiance alone."""
-        beside = picture.beside if shown == "ERROR" else None
-        self._held.bind(picture, shown, beside=beside is not None)
-        if beside is not None:
-            picture, shown = (
-                replace(picture, coefficients=beside.found.coefficients, drawn=beside.drawn),
-                "RECONSTRUCTION",
-            )
+        self._held.bind(picture, shown, beside=shown == "ERROR" and picture.beside is not None)
+        picture, shown = _as_drawn(picture, shown)
         ends = np.cumsum([0, len(picture.original.lobes), len(picture.compared.lobes), len(picture.suns)]).tolist()
-        source, lobes, suns = picture.original, tuple(ends[0:2]), tuple(ends[2:4])
-        if shown == "ERROR":  # the error of what is left without the suns, if there are any
-            source, lobes, suns = picture.compared, tuple(ends[1:3]), (0, 0)
-        program = self._program(picture, shown, pane, 1 if linear else _samples(source.map, pane))
+        source, lobes, suns = _source(picture, shown), tuple(ends[0:2]), tuple(ends[2:4])
+        if shown == "ERROR":
+            lobes, suns = tuple(ends[1:3]), (0, 0)
+        program = self._program(_chosen(picture, shown, pane, linear=linear))
         light_from_pane = picture.light_from_world
         if isinstance(pane, Sphere):
             light_from_pane = light_from_pane @ picture.world_from_view
@@ -82,23 +83,50 @@ class PaneRenderer:
         for program in self.programs.values():
             program.release()
 
-    def _program(self, picture: Picture, shown: str, pane: Pane, samples: int) -> Program:
-        """The program that draws `shown`, compiled when first wanted. Choices that it does not read make no new one."""
-        original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
-        reconstruction = _reconstruction(picture.drawn) if shown != "ORIGINAL" else "SUM"
-        tone = "NONE" if shown == "ERROR" else picture.state.view.tone.upper()
-        form = "SPHERE" if isinstance(pane, Sphere) else "MAP"
-        lobes = {
-            "ORIGINAL": picture.original.lobes,
-            "RECONSTRUCTION": picture.suns,
-            "ERROR": picture.compared.lobes,
-        }[shown]
-        samples = samples if original == "MAP" else 1
-        key: tuple[str | int, ...] = (shown, original, reconstruction, tone, form, profile_bits(lobes), samples)
+    def _program(self, chosen: Chosen) -> Program:
+        """The program for some choices and for the framebuffer in use, made when first wanted."""
+        key = *chosen, self._context.fbo.glo == 0
         if key not in self.programs:
-            chosen: dict[str, str | int] = dict(zip((*CHOICES, "PROFILES", "SAMPLES"), key, strict=True))
-            self.programs[key] = Program(self._context, "sphere.frag", chosen)
+            names = *CHOICES, "PROFILES", "SAMPLES"
+            self.programs[key] = Program(self._context, "sphere.frag", dict(zip(names, chosen, strict=True)))
         return self.programs[key]
+
+
+def kinds_of(picture: Picture, composition: Composition) -> set[Kind]:
+    """Everything of a frame that compiling its programs depends on."""
+    if isinstance(picture.drawn, Surfaces):
+        return {(Surfaces,)}
+    found = set[Kind]()
+    for part, pane in shown_panes(picture, composition):
+        one, shown = _as_drawn(picture, part)
+        chosen = _chosen(one, shown, pane)
+        found.add((chosen, kind_of(_source(one, shown).map if "MAP" in chosen[:2] else None)))
+    return found
+
+
+def _as_drawn(picture: Picture, shown: str) -> tuple[Picture, str]:
+    """A second reconstruction is drawn as the one of a picture of its own."""
+    if shown != "ERROR" or picture.beside is None:
+        return picture, shown
+    return replace(
+        picture, coefficients=picture.beside.found.coefficients, drawn=picture.beside.drawn
+    ), "RECONSTRUCTION"
+
+
+def _source(picture: Picture, shown: str) -> Source:
+    """The light that is drawn; that of the error is what is left without the suns, if there are any."""
+    return picture.compared if shown == "ERROR" else picture.original
+
+
+def _chosen(picture: Picture, shown: str, pane: Pane, *, linear: bool = False) -> Chosen:
+    """The choices of a pane. What its program does not read makes no new one."""
+    original = "LOBES" if picture.original.map is None or shown == "RECONSTRUCTION" else "MAP"
+    reconstruction = _reconstruction(picture.drawn) if shown != "ORIGINAL" else "SUM"
+    tone = "NONE" if shown == "ERROR" else picture.state.view.tone.upper()
+    form = "SPHERE" if isinstance(pane, Sphere) else "MAP"
+    lobes = picture.suns if shown == "RECONSTRUCTION" else _source(picture, shown).lobes
+    samples = _samples(_source(picture, shown).map, pane) if original == "MAP" and not linear else 1
+    return shown, original, reconstruction, tone, form, profile_bits(lobes), samples
 
 
 def shown_panes(picture: Picture, composition: Composition) -> list[tuple[str, Pane]]:

@@ -51,12 +51,20 @@ class Program:
     def draw(self) -> None:
         """Draw all pixels of the viewport."""
         assert self._triangle is not None
-        self._triangle.render(moderngl.TRIANGLES, vertices=3)
+        render(self._triangle, 3)
 
     def release(self) -> None:
         if self._triangle is not None:
             self._triangle.release()
         self.program.release()
+
+
+def render(array: moderngl.VertexArray, vertices: int, first: int = 0) -> None:
+    """Draw triangles; a context may have a way of its own, which is its `extra`."""
+    if array.ctx.extra is None:
+        array.render(moderngl.TRIANGLES, vertices, first=first)
+    else:
+        array.ctx.extra(array)
 
 
 def _compile(

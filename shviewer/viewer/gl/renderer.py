@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from time import perf_counter
@@ -21,6 +21,7 @@ from shviewer.viewer.gl.layer_renderer import LayerRenderer
 from shviewer.viewer.gl.pane_renderer import PaneRenderer, pixel_box, shown_panes
 from shviewer.viewer.gl.shared import BACKGROUND
 from shviewer.viewer.gl.surface_renderer import Steps, SurfaceRenderer, tiles
+from shviewer.viewer.gl.textures import ArrayTexture
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.surface import Surface
@@ -52,14 +53,18 @@ class Part(NamedTuple):
 class Renderer:
     """One context's programs, buffers and textures. `show` uploads what changed, `draw` draws it; release() at the end."""
 
-    def __init__(self, context: moderngl.Context, carrier: Carrier | None = None) -> None:
-        """carrier: as for `Held`."""
+    def __init__(
+        self, context: moderngl.Context, carrier: Carrier | None = None, texture: type[ArrayTexture] = ArrayTexture
+    ) -> None:
+        """carrier, texture: as for `Held`."""
         self.context = context
         self.carrier = carrier
-        self.held = Held(context, carrier)
+        self.held = Held(context, carrier, texture)
         self.panes = PaneRenderer(context, self.held)
         self.layers = LayerRenderer(context)
         self.surfaces = SurfaceRenderer(context)
+        self.compiled: Callable[[Picture, Composition, bool], bool] = lambda *_: True
+        """`Warming.ready`, where there is one."""
         self.picture: Picture | None = None
         self.rest = context.simple_framebuffer((1, 1))
         """Bound while no other framebuffer is in use."""
@@ -82,6 +87,8 @@ class Renderer:
 
     def ready(self, picture: Picture, composition: Composition) -> bool:
         """Whether all of a picture is there at once; what is not is on its way then, surfaces in this frame, too."""
+        if not self.compiled(picture, composition, False) or (self.carrier is not None and self.carrier.busy):
+            return False
         return self.surfaces.triangles.bring(surfaces_in(picture, composition)) and self.show(picture, 0.0)
 
     def draw(

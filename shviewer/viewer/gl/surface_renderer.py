@@ -13,7 +13,7 @@ import moderngl
 
 from shviewer.harmonics.basis import Array
 from shviewer.viewer.composing.panes import Pixels, Sphere
-from shviewer.viewer.gl.programs import SAMPLERS, Program
+from shviewer.viewer.gl.programs import SAMPLERS, Program, render
 from shviewer.viewer.gl.triangles import Triangles
 from shviewer.viewer.surface import Surface
 
@@ -88,7 +88,7 @@ class SurfaceRenderer:
                 fine.viewport = (0, 0, side, side)
                 if first == 0:
                     fine.clear(viewport=(0, 0, wide * OVERSAMPLING, high * OVERSAMPLING))
-                self.triangles.array(self.program, key).render(moderngl.TRIANGLES, 3 * count, first=3 * first)
+                render(self.triangles.array(self.program, key), 3 * count, 3 * first)
 
         try:
             yield Steps(self.triangles.array(self.program, key).vertices // 3, FIRST_TRIANGLES, draw)

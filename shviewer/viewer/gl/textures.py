@@ -26,8 +26,8 @@ class ArrayTexture:
         self._context = context
         self._carrier = carrier
         self._array: NDArray[np.generic] | None = None
-        self._held: _Upload | Load | None = None
-        self._next: _Upload | Load | None = None
+        self._held: Upload | Load | None = None
+        self._next: Upload | Load | None = None
 
     def follow(self, array: NDArray[np.generic] | None, halves: bool = False) -> None:
         """Upload `array` unless it is the one held. GraphicsError if this OpenGL has no textures that large.
@@ -58,19 +58,23 @@ class ArrayTexture:
         """How much there is of what is on its way; None while nothing is."""
         return None if self._next is None else self._next.share
 
-    def _begin(self, array: NDArray[np.generic], halves: bool) -> _Upload | Load:
-        height, width, components = array.shape
+    def _begin(self, array: NDArray[np.generic], halves: bool) -> Upload | Load:
+        height, width = array.shape[:2]
         limit = self._context.info["GL_MAX_TEXTURE_SIZE"]
         if max(height, width) > limit:
             raise GraphicsError(f"a map of {width} x {height} texels: this OpenGL takes at most {limit} a side")
         dtype = "f1" if array.dtype == np.uint8 else "f2" if halves else "f4"
-        if array.nbytes > BAND_BYTES and dtype != "f1" and self._carrier is not None:
+        return self._load(array, dtype)
+
+    def _load(self, array: NDArray[np.generic], dtype: str) -> Upload | Load:
+        if self._carrier is not None and dtype != "f1" and large(array):
             return self._carrier.carry(array, dtype)
-        held = self._held.texture if isinstance(self._held, _Upload) else None
+        height, width, components = array.shape
+        held = self._held.texture if isinstance(self._held, Upload) else None
         alike = held is not None and (held.size, held.components, held.dtype) == ((width, height), components, dtype)
-        if held is None or not alike or array.nbytes > BAND_BYTES:  # a small one is written over the one held
+        if held is None or not alike or large(array):  # a small one is written over the one held
             held = self._context.texture((width, height), components, dtype=dtype, alignment=1)
-        return _Upload(array, held)
+        return Upload(array, held)
 
     def _drop_upload(self) -> None:
         if self._next is not None and not _same(self._next, self._held):
@@ -89,12 +93,17 @@ class ArrayTexture:
         self._held = self._array = None
 
 
-def _same(one: _Upload | Load, other: _Upload | Load | None) -> bool:
+def large(array: NDArray[np.generic]) -> bool:
+    """Whether an array takes a while."""
+    return array.nbytes > BAND_BYTES
+
+
+def _same(one: Upload | Load, other: Upload | Load | None) -> bool:
     """Whether they have one texture, which the one is written into over the other."""
-    return isinstance(one, _Upload) and isinstance(other, _Upload) and one.texture is other.texture
+    return isinstance(one, Upload) and isinstance(other, Upload) and one.texture is other.texture
 
 
-class _Upload:
+class Upload:
     """An array on its way into a texture, a band of rows at a time."""
 
     def __init__(self, array: NDArray[np.generic], texture: moderngl.Texture) -> None:

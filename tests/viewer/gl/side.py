@@ -43,7 +43,7 @@ class EglSide:
     def leave(self) -> None:
         self.egl.eglMakeCurrent(self.display, None, None, None)
 
-    def address(self, function: str) -> int:
+    def load(self, function: str) -> int:
         return self.egl.eglGetProcAddress(function.encode()) or 0
 
     def end(self) -> None:

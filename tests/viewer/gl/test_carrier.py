@@ -38,14 +38,14 @@ class Thread(Carrier):
         made = cls(renderer.context, side)
         made.open, made.asked = threading.Event(), threading.Event()
         made.open.set()
-        storage = made._calls["glTexStorage2D"]
+        storage = made.calls["glTexStorage2D"]
 
         def held(*arguments: int) -> int:
             made.asked.set()
             assert made.open.wait(60)
             return storage(*arguments)
 
-        made._calls["glTexStorage2D"] = held
+        made.calls["glTexStorage2D"] = held
         return made
 
 
@@ -191,10 +191,10 @@ def test_a_map_for_which_opengl_has_no_memory_is_refused_in_one_line(renderer: R
     texture = ArrayTexture(renderer.context, thread)
     texture.follow(LARGE)
     answers = iter([0, OUT_OF_MEMORY])
-    asked, thread._calls["glGetError"] = thread._calls["glGetError"], lambda: next(answers)
+    asked, thread.calls["glGetError"] = thread.calls["glGetError"], lambda: next(answers)
     with pytest.raises(GraphicsError, match="no memory in OpenGL for a map of 9 x 50 texels"):
         texture.follow(LARGE + 1)
-    thread._calls["glGetError"] = asked
+    thread.calls["glGetError"] = asked
     np.testing.assert_array_equal(arrived(texture, LARGE), LARGE)
     texture.release()
 
