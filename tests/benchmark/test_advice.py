@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from shviewer.benchmark.measuring.measured_lights import MeasuredLight, measured_light
-from shviewer.benchmark.page import tables
+from shviewer.benchmark.page import tables, use_page
 from shviewer.benchmark.page.advice import front_of, sentences
 from shviewer.benchmark.rows.report import LightRecord
 from shviewer.benchmark.rows.row import Row
@@ -74,6 +74,18 @@ def test_the_sentence_has_the_cheapest_way_and_what_the_paper_would_do(record: L
         "for a total error of 5 %: 15 bands, fastest by closed form in 0.200 ms, which leaves 4.60 %; the paper's 10 000"
         " jittered samples take 75 times as long as closed form and stop at 5.34 %."
     ]
+
+
+def test_the_way_of_a_function_reads_as_one_thing(record: LightRecord) -> None:
+    """What it may miss stands where the accuracy of the reference does."""
+    words = "Gauss-Legendre, 51 200 points; features narrower than 0.5 degrees may be missed"
+    function = replace(record, best_method=words, accuracy=1e-8)
+    rows = [row("best", 15, 0.4, 0.046), row("fejer", 15, 0.1, 0.048, 1000)]
+    (said,) = sentences(function, rows)
+    assert "; Gauss-Legendre (51 200 points) takes 4 times as long as Fejer lat-long and leaves 4.60 %." in said
+    page = "\n".join(use_page.advised(function, rows))
+    assert page.count("may be missed") == 1
+    assert "may be off by 1.0e-6 %, and features narrower than 0.5 degrees may be missed." in page
 
 
 def test_a_sampled_winner_is_compared_with_the_best_way(record: LightRecord) -> None:

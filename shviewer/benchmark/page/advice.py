@@ -67,11 +67,11 @@ def _what_reaches(record: LightRecord, tolerance: float, needed: int, rows: Sequ
     rivals = [row for row in rows if row.n_bands == winner.n_bands and row is not winner and row.measured]
     best = next((row for row in rivals if row.method == BEST), None)
     if best is not None:
-        parts.append(f"{record.best_method} takes {_times(best, winner, name)} and leaves {error(best.total_error)}")
+        parts.append(f"{record.best_way} takes {_times(best, winner, name)} and leaves {error(best.total_error)}")
     paper = next((row for row in rivals if row.method == PAPER and row.samples == PAPER_SAMPLES), None)
     if paper is not None and paper.total_error is not None:
         takes = _times(paper, winner, name)
-        takes += "" if best is None else f", {_times(paper, best, record.best_method)},"
+        takes += "" if best is None else f", {_times(paper, best, record.best_way)},"
         end = "stop at" if paper.total_error > tolerance else "reach"
         parts.append(
             f"the paper's {grouped(PAPER_SAMPLES)} jittered samples take {takes} and {end} {error(paper.total_error)}"
@@ -95,7 +95,7 @@ def times(ratio: float) -> str:
 
 def words_for(row: Row, record: LightRecord) -> str:
     """The method in words."""
-    return record.best_method if row.method == BEST else method(row.method).words
+    return record.best_way if row.method == BEST else method(row.method).words
 
 
 def where_bands_stop_paying(rows: Sequence[Row]) -> str:

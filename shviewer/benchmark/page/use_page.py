@@ -35,16 +35,18 @@ def lines(page: Page) -> list[str]:
     for (name, record), stem in zip(page.report.lights.items(), stems, strict=True):
         rows = [row for row in page.report.measured(SECTION) if row.light == name]
         found += [f"### {name}", "", *([record.description, ""] if record.description else [])]
-        found += [*_advice(record, rows), *page.picture(stem, f"Total error of {name} against the time to project it")]
+        found += [*advised(record, rows), *page.picture(stem, f"Total error of {name} against the time to project it")]
         found += [*_front(record, rows), ""] if rows else []
     return found
 
 
-def _advice(record: LightRecord, rows: list[Row]) -> list[str]:
+def advised(record: LightRecord, rows: list[Row]) -> list[str]:
+    """What to use, and how far the reference may be trusted."""
     if not rows:
         return ["Not measured.", ""]
     said = [bullet(sentence) for sentence in sentences(record, rows)]
-    accuracy = [f"The reference itself may be off by {error(record.accuracy)}.", ""] if record.accuracy else []
+    missed = f", and {record.best_misses}" if record.best_misses else ""
+    accuracy = [f"The reference itself may be off by {error(record.accuracy)}{missed}.", ""] if record.accuracy else []
     return [*said, "", *accuracy]
 
 

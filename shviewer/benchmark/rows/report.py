@@ -50,6 +50,17 @@ class LightRecord:
     error_by_bands: list[float]
     """The relative L2 error of the exact coefficients with 1, 2, ... bands."""
 
+    @property
+    def best_way(self) -> str:
+        """The best method within a sentence: "Gauss-Legendre (51 200 points)"."""
+        way, _, points = self.best_method.partition(";")[0].partition(", ")
+        return f"{way} ({points})" if points else way
+
+    @property
+    def best_misses(self) -> str:
+        """What it may miss; "" for nothing."""
+        return self.best_method.partition(";")[2].strip()
+
     def __post_init__(self) -> None:
         numbers = [self.accuracy, *self.error_by_bands, *map(float, self.bands_within)]
         if not self.error_by_bands or not all(map(is_number, numbers)):
