@@ -1,4 +1,4 @@
-"""Where the coefficients of a file come from, and what their errors are: the keys of its stamp that follow from the recipe."""
+"""The origin and the errors of written coefficients: the keys of the stamp that follow from the recipe."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ERRORS = (
 def origin_of(
     recipe: Recipe, shown: Subject, projection: Projection, sums: Sums, lows: Lows, shading: float
 ) -> dict[str, Value]:
-    """What is known, by key. shading: the error of the irradiance."""
+    """The keys and their values. shading: the error of the irradiance."""
     about: dict[str, Value] = {
         **_light(recipe, shown),
         "window": _window(recipe),

@@ -64,13 +64,13 @@ class Projected(InNotebooks):
     notes: tuple[str, ...] = ()
     """The notes on the light, such as negative texels, and why no sun was found where one was asked for."""
     below_zero: str = ""
-    """One line on what of it goes below zero, to be said once it is written."""
+    """One line on how far below zero it goes, to be printed once it is written."""
     searched: Figures | None = None
     """All figures, once they have been asked for."""
     turn: Array | None = None
     """The rotation (3, 3) by which it was turned; None for none."""
     recipe: Recipe | None = None
-    """What was asked for: a notebook draws it. It may hold an image, so that it is not pickled."""
+    """The recipe, which a notebook draws. It may hold an image, so it is not pickled."""
     encoding: str = ""
     """One of ENCODINGS, whose bands the coefficients are."""
     stored: Stored | None = None

@@ -171,7 +171,7 @@ def idle(recipe: Recipe, given: Iterable[str]) -> list[str]:
 
 
 def what_it_needs(name: str, recipe: Recipe, names: Mapping[str, str]) -> str:
-    """What is missing for an option to have an effect. names: what options are called where they were given."""
+    """What is missing for an option to have an effect. names: the name of each option where it was given."""
     return NEEDS[name][1].format(bands=counted(recipe.n_bands, "band"), **names)
 
 

@@ -82,7 +82,7 @@ def _projected_alone(projected_of: Callable[[str], Projected], light: str) -> Pr
 
 @contextmanager
 def failing_alone(light: str) -> Iterator[None]:
-    """Let whatever goes wrong with one light of a batch, a fault of this program too, be a ShviewerError."""
+    """Turn whatever goes wrong with one light of a batch into a ShviewerError, a fault of this program, too."""
     try:
         with within_memory(light):
             yield

@@ -1,4 +1,4 @@
-"""What goes below zero of what a program shows, and what each remedy makes of it and costs."""
+"""How far below zero the picture in another program goes, and what each remedy makes of that and costs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ROUNDING = 1e-6
 
 
 OWN = 0.01
-"""A minimum that is below the negative one of the light itself by no more than this share of it is the light's own."""
+"""Where the light itself is negative: the share by which a minimum may be lower and still count as the light's own."""
 
 
 class _Shown(NamedTuple):
@@ -74,7 +74,7 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
 
 
 def encoded_below_zero(projected: Projected, recipe: Recipe) -> str:
-    """The same of what engines store of an irradiance: its own minimum, where the formula shows it, or that of its bands."""
+    """The same line for an encoding of irradiance: for the minimum that its formula shows, or that of its bands."""
     assert projected.stored is not None
     stored, lowest = projected.stored, projected.lows.minimum
     if not stored.encoding.turns:

@@ -37,7 +37,7 @@ def run(topics: Sequence[str]) -> int:
 
 
 def _hint(words: str, pages: dict[str, Path]) -> str:
-    """Which topic is meant, or which pages have these words in a heading or as code, those that have them most often first."""
+    """The topic that is meant, or the three pages that have these words most often in a heading or as code."""
     if found := near(words, [*pages, *PARSERS], most=1):
         return f"; did you mean shviewer help {found[0]}?"
     counts = {topic: _told(path).count(words.casefold()) for topic, path in pages.items()}

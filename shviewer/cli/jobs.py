@@ -1,6 +1,6 @@
 """The lights of a batch in several processes at a time, their results in the order of the lights.
 
-A process that is killed, perhaps for want of memory, takes only the light with it that it dies of a second time.
+If a process is killed, perhaps for want of memory, its lights are given to others; a light that kills a second one fails alone.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def _in_words(convention: Convention, quantity: str) -> dict[str, Value]:
 
 
 def safe(said: Mapping[str, object]) -> Stamp:
-    """What a file says of itself, fit to be told: texts as one line without control characters; only texts and numbers."""
+    """The stamp of a file, safe to print: texts on one line without control characters, and numbers; nothing else."""
     return {
         one_line(key): one_line(value) if isinstance(value, str) else value
         for key, value in said.items()

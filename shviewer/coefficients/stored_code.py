@@ -1,4 +1,4 @@
-"""Numbers that engines store of irradiance, with the formula that decodes them: in words, and as a function of GLSL.
+"""Encodings of irradiance, as engines store them, with the formula that decodes them: in words, and as a function of GLSL.
 
 The formulas are those of harmonics/quantities/decoding.py. In another program's axes the numbers are those of the same function
 there, so that the formulas are the same in all.

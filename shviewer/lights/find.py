@@ -117,7 +117,7 @@ def _holds_image(path: Path, reading: Reading) -> bool:
 
 
 def _what_it_is(text: str) -> str:
-    """Why the file or directory `text` is no light, and what to do; "" if nothing has that name."""
+    """The reason why the file or directory `text` is no light, and the remedy; "" if nothing has that name."""
     path = Path(text)
     if not os.path.exists(path):
         return _what_the_colon_is(text)

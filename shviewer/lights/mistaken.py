@@ -1,4 +1,4 @@
-"""A light as it is often projected by mistake: without solid angles, clamped at 1, encoded for a display, or half of it."""
+"""Lights that are projected by mistake: without solid angles, clamped at 1, encoded for a display, or only the upper half."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MISTAKES = 2 * len(SPOILED) - 1
 
 
 def mistaken(light: Light, n_bands: int) -> Iterator[tuple[list[str], Array]]:
-    """What was done to a light, each in words after "if", and the coefficients (n_bands**2, 3) of what is left of it."""
+    """Each mistake in words after "if", and the coefficients (n_bands**2, 3) of the light that it makes."""
     if isinstance(light, EnvironmentLight):
         pixels, layout = light.pixels, light.layout
     else:

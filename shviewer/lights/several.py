@@ -1,4 +1,4 @@
-"""Several lights at once: files, and what folders hold."""
+"""Several lights at once: files, and the lights in folders."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Several(NamedTuple):
 
 
 def several(texts: Iterable[str], *, most: int | None = None, code: bool = False, bare: bool = False) -> Several:
-    """The lights that texts name, folders replaced by what they hold; none of these files is read to its end.
+    """The lights that texts name, and those in the folders that they name; none of these files is read to its end.
 
     Of a folder: images, scenes, and coefficients with our stamp, by name, no hidden ones and none of folders within; if
     there are some, that is said. most: how many are taken. code: whether a function in a Python file may be one. bare:

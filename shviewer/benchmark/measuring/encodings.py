@@ -18,7 +18,7 @@ KEY = "encodings"
 
 @dataclass(frozen=True)
 class Kept:
-    """What one encoding keeps of one light's irradiance."""
+    """The errors of one encoding of one light's irradiance."""
 
     light: str
     encoding: str
@@ -33,7 +33,7 @@ class Kept:
 
 
 def kept_of(measured: MeasuredLight) -> list[Kept]:
-    """What all encodings keep of a light. A black one has none."""
+    """The errors of all encodings of a light; none for a black one."""
     light = through(measured.light, IRRADIANCE)
     exact, norm = light.from_source(measured.exact[: GEOMERICS_BANDS**2]), float(np.trace(light.products()))
     if norm == 0:

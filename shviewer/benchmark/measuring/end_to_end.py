@@ -1,4 +1,4 @@
-"""The times that a user waits: from LIGHT to a picture, and from a key to the next picture; and the cost of an idle window.
+"""How long a user waits: from LIGHT to a picture, and from a key to the next one; and the cost of an idle window.
 
 Cold means a new process, Python's start included; warm means a process that has drawn, but has forgotten every light.
 """

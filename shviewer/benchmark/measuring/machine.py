@@ -93,13 +93,13 @@ def yardstick() -> list[Worked]:
 
 
 class Worked(NamedTuple):
-    """What a piece of work took, in milliseconds: by the clock, and of a processor."""
+    """The time of a piece of work, in milliseconds: by the clock, and of a processor."""
 
     wall: float
     cpu: float
 
 
 def disturbance(worked: Sequence[Worked]) -> float:
-    """By how much longer it all took than it worked: 1 where nobody else wanted the processor."""
+    """The time by the clock over that of the processor: 1 where nothing else wanted the processor."""
     cpu = sum(one.cpu for one in worked)
     return sum(one.wall for one in worked) / cpu if cpu else 1.0

@@ -40,7 +40,7 @@ class Stated:
 
 
 def noise(seed: int) -> list[Stated]:
-    """What is left of noise of deviation 1 in each texel of a lat-long image, and of its texels read by jittered samples."""
+    """The noise that is left in n bands of a lat-long image whose texels have deviation 1, projected exactly or by samples."""
     height, width = NOISE_SIZE
     layout, rng = LatLongLayout(height, width), np.random.default_rng(seed)
     areas = np.broadcast_to(layout.solid_angles(), NOISE_SIZE)

@@ -52,7 +52,7 @@ def _error(share: float) -> str:
 
 
 def _ranking(found: Sequence[Kept]) -> str:
-    """Which of four, five and nine floats keeps most."""
+    """The best encodings of four, five and nine floats."""
     offered = [kept for kept in found if kept.encoding in ENCODINGS]
     best = {
         floats: min((one for one in offered if one.floats == floats), key=lambda one: round(one.relative_l2, 6))

@@ -61,7 +61,7 @@ def lines(page: Page) -> list[str]:
 
 
 def _sampled_table(name: str, samples: Sequence[SamplingError]) -> list[str]:
-    """What one light that turns is off by, and what it flickers by, for each way to sample its frames."""
+    """The error and the flicker of one light that turns, for each way to sample its frames."""
     own = {(one.way, one.samples, one.n_bands): one for one in samples if one.light == name}
     rows = []
     for way, count in dict.fromkeys((way, count) for way, count, _ in own):

@@ -41,7 +41,7 @@ BELOW: dict[str, Any] = {"loc": "outside lower left", "ncols": 2}
 
 
 class Paper(NamedTuple):
-    """What a plot is drawn on, and its inks, as #rrggbb."""
+    """The colours of a plot, as #rrggbb."""
 
     ground: str
     ink: str

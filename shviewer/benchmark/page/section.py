@@ -1,4 +1,4 @@
-"""What the page is made of: the report, the plots that were drawn, and sections that are made of both."""
+"""The page and its sections, made of the report and the plots that were drawn."""
 
 from __future__ import annotations
 
@@ -28,5 +28,5 @@ class Section(NamedTuple):
 
     title: str
     command: str
-    """What makes it, to be typed; empty if it is no measurement."""
+    """The command that measures it; empty if it is no measurement."""
     lines: Callable[[Page], list[str]]

@@ -1,4 +1,4 @@
-"""The section on what to use: for each light advice in sentences, the plot of time against error, and its Pareto front."""
+"""The section of advice: for each light sentences, the plot of time against error, and its Pareto front."""
 
 from __future__ import annotations
 

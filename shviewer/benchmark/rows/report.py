@@ -17,10 +17,10 @@ from shviewer.words import one_line
 
 SCHEMA = "shviewer-report/1"
 DISTURBANCE = "disturbance"
-"""The key in the report's `extra` of by how much longer the yardstick took than it worked."""
+"""The key in the report's `extra` of the yardstick's time by the clock over that of the processor."""
 
 DISTURBED = 1.1
-"""From there on other programs are said to disturb: on a quiet machine it is 1.00 to 1.03."""
+"""From this ratio on other programs are said to disturb: on a quiet machine it is 1.00 to 1.03."""
 
 HEAD = ("complete", "command", "seed", "versions", "machine", "renderer", "yardstick_milliseconds", "left_out", "extra")
 """The fields of a Report in front of its lights and rows, in the order of the file."""

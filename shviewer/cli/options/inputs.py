@@ -1,4 +1,4 @@
-"""What a command reads: its lights, the picture that its options come on top of, and how images and lists are read."""
+"""The inputs of a command: its lights, the picture that its options start from, and how images and lists are read."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from shviewer.viewer.saving.restoring import Restored
 
 LIGHT = "green"
-"""The light that stands for none."""
+"""The light that is shown if none is given."""
 
 
 def lights_of(options: argparse.Namespace) -> list[str]:
-    """What is given as LIGHT, or what stands for it."""
+    """The lights that are given, or the one that is shown without any."""
     given = vars(options)
     return given.get("lights") or [given.get("light") or LIGHT]
 
@@ -66,7 +66,7 @@ def _names_light(path: Path) -> bool:
 
 
 def pictured_by(options: argparse.Namespace) -> Restored | None:
-    """What the options come on top of: the picture named by --like, or by LIGHT; None for another light. Read once."""
+    """The picture that the options start from, named by --like or as LIGHT; None for another light. It is read once."""
     given = vars(options)
     if "pictured" not in given:
         options.pictured = _pictured(options) if "as_image" in given else None

@@ -31,7 +31,7 @@ def chosen_of(options: argparse.Namespace, holder: type) -> dict[str, Any]:
 def recipe_from(options: argparse.Namespace, light: str | Light, start: Recipe = START) -> tuple[Recipe, str]:
     """The recipe that the options ask for, with LIGHT, and a message about it or "".
 
-    start: what the options come on top of. UsageError for an option out of range, before the light is read if that does
+    start: the recipe that the options change. UsageError for an option out of range, before the light is read if that does
     not depend on it. With --bands, a tolerance only says what is enough.
     """
     from shviewer.coefficients.suffixes import COEFFICIENT_SUFFIXES
@@ -86,7 +86,7 @@ def check_for_any_light(options: argparse.Namespace) -> None:
 
 
 def check_effects(options: argparse.Namespace, recipe: Recipe, beside: str = "off") -> None:
-    """UsageError for an option that changes nothing in what is written. beside: the second reconstruction in a picture."""
+    """UsageError for an option without any effect on what is written. beside: the second reconstruction in a picture."""
     sampled = OF_SAMPLES if beside == "method" else ()
     given = [name for name in chosen_of(options, Recipe) if name not in sampled]
     for name in idle(recipe, given):

@@ -1,4 +1,4 @@
-"""What the names in a list say: the channel, as r, x or red, and the coefficient, as L1m1, l1_1 or sh[3]."""
+"""Names in a list: of channels, such as r, x or red, and of coefficients, such as L1m1, l1_1 or sh[3]."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which compact sources are clipped in the file.
+"""The test for compact sources that are clipped in the file.
 
 A source is *clipped* if it ends in a plateau: PLATEAU or more texels at the image's highest value in some channel, most of
 all such texels, in a glow that has GLOW of the peak beyond the texels that its edge crosses, as no disc has, and that falls by

@@ -110,7 +110,7 @@ class CompactSources:
         return found, why or "no texel is bright enough to hold so much in so small a cap"
 
     def _around(self, axis: Array) -> tuple[Excess, bool]:
-        """What rises above its surroundings around an axis, and whether it is clipped."""
+        """The excess around an axis, and whether it is clipped."""
         excess = Excess.around(axis, self._caps, self.rest, self._mean)
         return excess, is_clipped(excess, self._plateau, self._caps, self._mean)
 

@@ -1,4 +1,4 @@
-"""What a compact source is: radiance that rises above its surroundings.
+"""The radiance of a compact source: what rises above its surroundings.
 
 A source is the radiance that rises above its surroundings within CAP of its middle, which is the middle of all texels at least
 half as bright as its peak. The surroundings are the ring beyond, out to RING; their level is the radiance that LEVEL of the
