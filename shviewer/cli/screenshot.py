@@ -7,7 +7,7 @@ import sys
 
 from shviewer.cli.notes import print_notes, say_written
 from shviewer.cli.options.inputs import check_out, replacing_of
-from shviewer.cli.options.states import state_from
+from shviewer.cli.options.states import has_overlay, size_of, state_from
 from shviewer.cli.status_line import speaking
 from shviewer.errors import UsageError
 from shviewer.viewer.composing.composition import frame_for
@@ -37,19 +37,19 @@ def run(options: argparse.Namespace) -> int:
             f"{options.out}: surfaces hold no radiance; let OUT end in .png, or leave out --lobes and --basis"
         )
     whole = state.view.whole_sphere and kind == ".exr"
-    width, height = options.size
+    (width, height), overlay = size_of(options), has_overlay(options)
     if whole and width != 2 * height:
         raise UsageError(
             f"--size {width} {height}: a map is twice as wide as high; give --size {width} {width // 2} or leave it out"
         )
     with speaking():
-        picture = prepare(state, written=not options.no_overlay)
+        picture = prepare(state, written=overlay)
     pixels = None
     if whole:
         write_sphere_map(picture, width, options.out)
     else:
-        composition = frame_for(state.view, *options.size)
-        pixels = save_picture(picture, composition, options.out, overlay=not options.no_overlay, timing=options.timing)
+        composition = frame_for(state.view, width, height)
+        pixels = save_picture(picture, composition, options.out, overlay=overlay, timing=options.timing)
     print_notes(state.recipe)
     say_written(options.out, f"{width} x {height}, {describe_numbers(state)}")
     if options.reference is None or pixels is None:

@@ -6,7 +6,7 @@ import argparse
 
 from shviewer.cli.notes import print_notes, say_written
 from shviewer.cli.options.inputs import check_out, replacing_of
-from shviewer.cli.options.states import DEFAULT_SWEEP, state_from
+from shviewer.cli.options.states import DEFAULT_SWEEP, has_overlay, size_of, state_from
 from shviewer.cli.status_line import status_line
 from shviewer.errors import UsageError
 from shviewer.viewer.animation.animation import ENCODERS, band_sweep, save_animation, turntable
@@ -31,18 +31,18 @@ def run(options: argparse.Namespace) -> int:
         given = (options.first, options.last)
         first, last = (usual if n is None else n for n, usual in zip(given, DEFAULT_SWEEP, strict=True))
         animation = band_sweep(state, first, last, seconds)
-    composition = frame_for(state.view, *options.size)
+    width, height = size_of(options)
+    composition = frame_for(state.view, width, height)
     with status_line() as line:
         save_animation(
             animation,
             composition,
             options.out,
-            overlay=not options.no_overlay,
+            overlay=has_overlay(options),
             progress=line.fraction if line else None,
             replacing=replacing_of(options),
         )
     print_notes(state.recipe)
-    width, height = options.size
     seconds, shown = sum(animation.milliseconds) / 1000, describe_numbers(animation.states[-1])
     if (first := animation.states[0].recipe.n_bands) != animation.states[-1].recipe.n_bands:
         shown = f"{first} to {shown}"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from shviewer.cli.options.inputs import lights_of, lights_within
 from shviewer.cli.options.modes import MODES
-from shviewer.cli.options.states import state_from
+from shviewer.cli.options.states import size_of, state_from
 from shviewer.errors import LightError, UsageError
 
 if TYPE_CHECKING:
@@ -54,13 +54,13 @@ def run(options: argparse.Namespace) -> int:
     state, others = _opened(options)
     first = Task(lambda: [_announced(state, others, options.as_image)])
     try:
-        closed = window.run(first, options.size, Settings(options.verbose, options.watch, options.as_image))
+        closed = window.run(first, size_of(options), Settings(options.verbose, options.watch, options.as_image))
         if options.last_size and closed is not None:
             keep_size(closed)
     except NoDisplayError as error:
         picture = completed(first.result())
         stem = f"shviewer-{file_stem(picture.light.name)}"
-        composition = frame_for(picture.state.view, *options.size)
+        composition = frame_for(picture.state.view, *size_of(options))
         out = write_numbered(stem, lambda out: save_picture(picture, composition, out, exclusive=True), first=0)
         print(f"shviewer: {error}; wrote {out} instead", file=sys.stderr)
     return 0

@@ -30,11 +30,21 @@ BESIDE_NEEDS = {
 """What must be given for a second reconstruction to differ from the first."""
 
 
-def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
-    """The state that the options ask for, on top of that of a picture. UsageError for an option out of range.
+def size_of(options: argparse.Namespace) -> tuple[int, int]:
+    """Width and height, pixels: those that the options say, or those of the picture that they start from."""
+    pictured = pictured_by(options)
+    width, height = options.size or (pictured and pictured.size) or DEFAULT_SIZE
+    return width, height
 
-    Size and overlay, which are no part of a state, are those of the picture from now on, unless the options say them.
-    """
+
+def has_overlay(options: argparse.Namespace) -> bool:
+    """Whether anything is written on the picture: not with --no-overlay, or where the options start from one without."""
+    pictured = pictured_by(options)
+    return not options.no_overlay and (pictured is None or pictured.overlay)
+
+
+def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
+    """The state that the options ask for, on top of that of a picture. UsageError for an option out of range."""
     from shviewer.lights.find import built_in_lights
     from shviewer.viewer.actions import open_light
     from shviewer.viewer.beside import recipe_beside
@@ -46,8 +56,6 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     start = pictured.state if pictured else State()
     entry = lights_of(options)[0]
     light = start.recipe.light if pictured else entry
-    options.size = tuple(options.size or (pictured and pictured.size) or DEFAULT_SIZE)
-    options.no_overlay = vars(options).get("no_overlay") or (pictured is not None and not pictured.overlay)
     view, counted_bands = _view_from(options, start.view), not (options.n_bands is None and options.tolerance is None)
     if options.encode and counted_bands:
         raise UsageError(f"--encode {options.encode}: it takes the place of bands; leave out --bands and --tolerance")
@@ -56,7 +64,7 @@ def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     encoding = "" if counted_bands or (options.quantity and not options.encode) else view.encode
     view = replace(view, encode="")
     asked = start.recipe.n_bands if options.n_bands is None else options.n_bands
-    State(Recipe(n_bands=asked), view).check(options.size)
+    State(Recipe(n_bands=asked), view).check(size_of(options))
     recipe, said = recipe_from(options, light, start.recipe if pictured else START)
     if options.beside in BESIDE_NEEDS and recipe_beside(recipe, options.beside) == recipe:
         raise UsageError(f"--beside {options.beside}: {BESIDE_NEEDS[options.beside]}")

@@ -15,7 +15,7 @@ from shviewer.analysis.comparing.compared_files import compared_with
 from shviewer.analysis.projected import project_recipe
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.options.modes import PARSERS
-from shviewer.cli.options.states import state_from
+from shviewer.cli.options.states import size_of, state_from
 from shviewer.coefficients.programs import OURS
 from shviewer.errors import UsageError
 from shviewer.lights.coefficient_light import CoefficientLight
@@ -34,7 +34,7 @@ def made_again(state: State) -> State:
     words = shlex.split(shlex.join(arguments_of(state, (640, 320))))
     options = PARSERS["screenshot"]().parse_intermixed_args(["out.png", *words])
     found = state_from(options, all_lights=False)
-    assert options.size == (640, 320)
+    assert size_of(options) == (640, 320)
     return found
 
 
