@@ -5,7 +5,7 @@ from directions, weights and the values of three channels and end with the coeff
 samples at once, and in blocks that fit the cache; the ratio is to the faster of the two. "ns" is per sample and function.
 The basis alone is beside sphericart's own, as a ratio to it; "write" is that of writing every value by one multiplication.
 
-Goals: a ratio of at most 1 to sphericart for 3 to 32 bands and 10 000 to a million samples, and of 1.5 for the basis alone; at
+Goals: a ratio of at most 1 to sphericart for 2 to 32 bands and 10 000 to a million samples, and of 1.5 for the basis alone; at
 most 200 MiB beside a million samples at 16 bands; 10 000 evaluations projected by Gauss-Legendre within 0.5 ms up to 32 bands,
 not counting the light itself.
 
@@ -30,7 +30,7 @@ from shviewer.harmonics.projection.rows import project_product
 from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, Radiance, gauss_legendre, jittered
 
-BANDS = (3, 4, 5, 6, 7, 8, 9, 12, 16, 24, 32)
+BANDS = (2, 3, 4, 5, 6, 7, 8, 9, 12, 16, 24, 32)
 SAMPLES = {10_000: 60, 100_000: 15, 1_000_000: 3}
 """How many, and how often each is run."""
 

@@ -146,7 +146,7 @@ def test_the_remembered_normalisation_cannot_be_written_to():
     assert basis.normalisation(5)[0, 0] == np.sqrt(1 / (4 * np.pi))
 
 
-@pytest.mark.parametrize("n_bands", [2, 3, 4, 5, 6, 7, 8, 9, 32, 33])
+@pytest.mark.parametrize("n_bands", [1, 2, 3, 4, 5, 6, 7, 8, 9, 32, 33])
 def test_many_directions_have_the_values_that_each_has_alone(n_bands):
     """Many are evaluated by matrix products, few by the recurrence: to 1e-14 of the largest, also where blocks are not full."""
     poles = np.array([[0, 0, 1], [0, 0, -1], [1e-9, 0, 1], [1e-9, -1e-9, -1], [0, 1, 0], [-1, 0, 0.0]])
@@ -159,7 +159,7 @@ def test_many_directions_have_the_values_that_each_has_alone(n_bands):
         assert np.abs(many[some, 0] - few).max() < 1e-14 * np.abs(few).max()
 
 
-@pytest.mark.parametrize("n_bands", [3, 9])
+@pytest.mark.parametrize("n_bands", [2, 3, 9])
 @pytest.mark.parametrize("bad", [[0, 0, 0], [np.nan, 0, 1], [0, np.inf, 0]])
 def test_a_direction_without_direction_is_named_among_many(n_bands, bad):
     directions = random_directions(3000, seed=3).reshape(2, 1500, 3)
@@ -169,7 +169,7 @@ def test_a_direction_without_direction_is_named_among_many(n_bands, bad):
 
 
 @pytest.mark.parametrize("length", [1e-200, 1e200])
-@pytest.mark.parametrize("n_bands", [3, 9])
+@pytest.mark.parametrize("n_bands", [2, 3, 9])
 def test_many_directions_of_any_length_are_normalised(n_bands, length):
     directions = random_directions(1500, seed=9)
     found = evaluate_basis(directions * length, n_bands)

@@ -28,11 +28,11 @@ Part = tuple[int, slice, Array]
 
 
 class MonomialProducts:
-    """The memory to evaluate the basis of 3 to MONOMIAL_BANDS bands in a block of `length` directions."""
+    """The memory to evaluate the basis of 2 to MONOMIAL_BANDS bands in a block of `length` directions."""
 
     def __init__(self, n_bands: int, length: int) -> None:
         self.points, self.norms = np.empty((3, length)), np.empty(length)
-        squares = [np.empty((len(_powers(q)), length)) for q in range((n_bands + 1) // 2)]
+        squares = [np.empty((len(_powers(q)), length)) for q in range(max(2, (n_bands + 1) // 2))]
         self.squares = x, y, z = squares[1]
         self.multiplied: list[tuple[Array, Array, Array]] = []
         """Two factors and where their product goes: the monomials of the squares from degree 2 on."""
@@ -41,7 +41,7 @@ class MonomialProducts:
             self.multiplied += (old, x, new[:count]), (old[-q:], y, new[count:-1]), (old[-1], z, new[-1])
         memory = np.empty((n_bands**2, length))  # what is not used of it is never fetched
         self.even, self.odd = [], []
-        for monomials, (even, *parts) in zip(squares[1:], _tables(n_bands), strict=True):
+        for monomials, (even, *parts) in zip(squares[1:], _tables(n_bands), strict=False):
             self.even.append((even[2], monomials, even[1]))
             if parts:
                 factors = np.concatenate([part[2] for part in parts])
@@ -58,8 +58,9 @@ class MonomialProducts:
         table[0] = NORMS[0, 0]
         np.multiply(self.points[1:], NORMS[1, 0] / SCALES[2], out=table[1:3])
         np.multiply(x, NORMS[1, 0] / SCALES[2], out=table[3])
-        np.multiply(y, self.points[::2], out=table[4:6])
-        np.multiply(x, z, out=table[7])
+        if len(table) > 4:
+            np.multiply(y, self.points[::2], out=table[4:6])
+            np.multiply(x, z, out=table[7])
         if len(table) > 9:
             np.multiply(table[2], NORMS[3, 2] / (NORMS[2, 2] * NORMS[1, 0]), out=self.norms)
             np.multiply(table[4], self.norms, out=table[10])

@@ -12,7 +12,7 @@ from shviewer.harmonics.evaluation.monomials import MONOMIAL_BANDS, MonomialProd
 from shviewer.harmonics.evaluation.waves import Waves, wave_table
 from shviewer.harmonics.workspace import borrowed
 
-FEWEST_BANDS, MOST_BANDS = 3, 32
+FEWEST_BANDS, MOST_BANDS = 2, 32
 """The numbers of bands for which matrix products are the fastest way; with more they round to 1e-14."""
 
 FEWEST_DIRECTIONS = 1000
