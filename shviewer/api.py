@@ -9,6 +9,7 @@ They raise ShviewerError, with one line that says what to do, if an argument is 
 from __future__ import annotations
 
 import os
+import re
 import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -19,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shviewer.analysis.options import options_of, taken, whole
-from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
+from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs, window_of
 from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics import basis, synthesis
 from shviewer.harmonics.basis import Array
@@ -45,7 +46,11 @@ def with_options(*holders: type) -> Callable[[_Function], _Function]:
     """Decorator: list the options of these dataclasses, which the function takes, at the end of its docstring."""
 
     def decorate(function: _Function) -> _Function:
-        rows = [(row.name, row.help) for row in options_of(*holders).values() if row.name not in NAMED_ELSEWHERE]
+        table = options_of(*holders)
+        here = {row.flag: NAMED_ELSEWHERE.get(row.name, row.name) for row in table.values() if row.flag}
+        flag = re.compile("|".join(sorted(map(re.escape, here), key=len, reverse=True)))
+        rows = [(row.name, flag.sub(lambda found: here[found[0]], row.help)) for row in table.values()]
+        rows = [(name, words) for name, words in rows if name not in NAMED_ELSEWHERE]
         rows.append(("compare", "other coefficients in place of the light's own: a path, an array or a light of them"))
         lines = [f"        {name:<16}{words}" for name, words in rows]
         function.__doc__ = "\n".join([f"{function.__doc__}options:", *lines, ""])
@@ -139,6 +144,10 @@ def recipe_of(light: LightLike, bands: int | None, options: dict[str, Any], *oth
         name, flags = unknown[0], {row.flag: row.name for row in table.values()}
         here = NAMED_ELSEWHERE.get(name) or flags.get(f"--{name.replace('_', '-')}", "")
         raise UsageError(f"option {name!r}: {f'it is called {here} here' if here else meant(name, known)}")
+    if isinstance(window := options.get("window"), str) and ":" in window:
+        if options.get("window_width") is not None:
+            raise UsageError(f"window {window!r} and window_width {options['window_width']!r}: give one width")
+        options = options | window_of(window)
     count = None if bands is None else whole(bands, "bands")
     found = find_light(light)
     if count is None:

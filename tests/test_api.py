@@ -83,6 +83,22 @@ def test_a_light_may_be_a_text_a_path_a_function_an_array_or_a_light(tmp_path: P
     np.testing.assert_allclose(shviewer.project(np.ones((8, 16, 3)), 1).coefficients, 2 * np.sqrt(np.pi), rtol=1e-14)
 
 
+def test_options_are_told_and_taken_in_words_of_python_and_of_the_command_line() -> None:
+    for function in (shviewer.project, shviewer.screenshot, shviewer.view):
+        assert "--" not in (function.__doc__ or "")
+    one = shviewer.project("green", 8, window="hann:4", muted="1,3-4")
+    two = shviewer.project("green", 8, window="hann", window_width=4, muted=[1, 3, 4])
+    np.testing.assert_array_equal(one.coefficients, two.coefficients)
+    for wrong in (
+        {"window": "hann:wide"},
+        {"window": "dering:4"},
+        {"window": "hann:4", "window_width": 3},
+        {"muted": "4-3"},
+    ):
+        with pytest.raises(ShviewerError, match=f"^{next(iter(wrong))} "):
+            shviewer.project("green", 8, **wrong)
+
+
 @pytest.mark.parametrize("convention", [*CONVENTIONS, "shviewer,4pi,no-phase,y-up", "unity,by-channel"])
 def test_an_array_is_read_in_the_convention_that_is_named(convention: str) -> None:
     found = shviewer.project("studio", 3)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 from shviewer.errors import UsageError, refused_as
 from shviewer.harmonics.quantities import names
+from shviewer.limits import MAX_BANDS
 from shviewer.words import meant
 
 T = TypeVar("T")
@@ -194,7 +195,10 @@ class Bands(NamedTuple):
     most: int
 
     def taken(self, name: str, value: Any) -> Any:
-        if not isinstance(value, Iterable) or isinstance(value, str):
+        if isinstance(value, str):
+            with refused_as(UsageError, f"{name} "):
+                return bands_in(value)
+        if not isinstance(value, Iterable):
             raise UsageError(f"{name} {value!r}: it must be several bands, such as [1, 3]")
         return frozenset(whole(band, f"{name} band") for band in value)
 
@@ -217,6 +221,21 @@ class Pair(NamedTuple):
 
     def check(self, name: str, value: Any) -> None:
         """Accept any two numbers."""
+
+
+def bands_in(text: str) -> frozenset[int]:
+    """The bands of a text such as "1,3" or "2-4". ValueError if it has others."""
+    bands: set[int] = set()
+    try:
+        for part in filter(str.strip, text.split(",")):
+            low, dash, high = part.partition("-")
+            first, last = int(low), int(high if dash else low)
+            if last < first:
+                raise ValueError
+            bands |= {first, *range(first, min(last, MAX_BANDS) + 1)}  # Bands refuses what is beyond
+    except ValueError:
+        raise ValueError(f"{text!r}: bands are whole numbers and ranges, such as 1,3 or 2-4") from None
+    return frozenset(bands)
 
 
 def whole(value: Any, name: str) -> int:

@@ -32,6 +32,19 @@ METHODS = ("best", "jittered", "gauss-legendre")
 WINDOWS = ("none", "hann", "lanczos", "gauss", "dering")
 
 
+def window_of(text: str) -> dict[str, str | float | None]:
+    """The options that a window is, perhaps with its width, as in "hann:4". UsageError for a width that cannot be."""
+    window, separator, width = text.partition(":")
+    if not separator:
+        return {"window": window, "window_width": None}
+    if window in ("none", "dering"):
+        raise UsageError(f"window {text!r}: {window} has no width; hann, lanczos and gauss have one")
+    try:
+        return {"window": window, "window_width": float(width)}
+    except ValueError:
+        raise UsageError(f"window {text!r}: its width must be a number of bands, such as {window}:4") from None
+
+
 class Shown(NamedTuple):
     """The part of a projection that is shown: the bands in use, the muted ones among them, the window and its width."""
 

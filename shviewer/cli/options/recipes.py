@@ -8,9 +8,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from shviewer.analysis.options import options_of
-from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs
+from shviewer.analysis.recipe import OF_SAMPLES, Recipe, idle, what_it_needs, window_of
 from shviewer.cli.options.inputs import reading_from
-from shviewer.cli.options.values import number_of
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
 from shviewer.words import one_line
@@ -68,10 +67,7 @@ def _asked(options: argparse.Namespace, light: str | Light, start: Recipe) -> Re
     """The recipe as the options say, before the light is read. UsageError for one out of range."""
     chosen = chosen_of(options, Recipe)
     if "window" in chosen:
-        window, separator, width = chosen["window"].partition(":")
-        if separator and window in ("none", "dering"):
-            raise UsageError(f"window {options.window!r}: {window} has no width; hann, lanczos and gauss have one")
-        chosen |= {"window": window, "window_width": number_of(width, "window width") if separator else None}
+        chosen |= window_of(chosen["window"])
     recipe = replace(start, light=light, reading=reading_from(options, start.reading), **chosen)
     recipe.check()
     return recipe

@@ -6,9 +6,9 @@ import argparse
 import math
 from contextlib import suppress
 
+from shviewer.analysis.options import bands_in
 from shviewer.errors import UsageError
 from shviewer.harmonics.quantities.names import quantity_of
-from shviewer.limits import MAX_BANDS
 
 
 def finite(text: str) -> float:
@@ -66,17 +66,10 @@ def whole_or_word(text: str) -> int | str:
 
 
 def band_list(text: str) -> frozenset[int]:
-    bands: set[int] = set()
     try:
-        for part in filter(str.strip, text.split(",")):
-            low, dash, high = part.partition("-")
-            first, last = int(low), int(high if dash else low)
-            if last < first:
-                raise ValueError
-            bands |= {first, *range(first, min(last, MAX_BANDS) + 1)}  # Bands refuses what is beyond
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r}: bands are whole numbers and ranges, such as 1,3 or 2-4") from None
-    return frozenset(bands)
+        return bands_in(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def quantity(text: str) -> str:
