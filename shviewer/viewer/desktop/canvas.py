@@ -17,11 +17,12 @@ from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.kept import Kept
 from shviewer.viewer.gl.renderer import PART_SECONDS, Part, Renderer, surfaces_in
 from shviewer.viewer.gl.warming import Warming
-from shviewer.viewer.overlay.captions import describe_evaluation
 from shviewer.viewer.overlay.directions.marks import mark_layers
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.overlay.layers import Layer
+from shviewer.viewer.overlay.pane_words import describe_evaluation
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
+from shviewer.viewer.overlay.pane_words import describe_evaluation
 from shviewer.viewer.overlay.plots.plane import measured
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State, changed
