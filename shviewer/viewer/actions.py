@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 from shviewer.analysis.options import Choice, options_of
 from shviewer.analysis.recipe import WINDOWS, Recipe, light_name
@@ -23,8 +22,8 @@ from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.beside import besides_of
 from shviewer.viewer.commands import Command
-from shviewer.viewer.state import IN_RECIPE, State, changed
-from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, View
+from shviewer.viewer.state import State, changed, value_of
+from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, STOPPED, View
 
 OPTIONS = options_of(Recipe, View)
 MIN_SAMPLES, MAX_KEY_SAMPLES = 16, 1_000_000
@@ -34,7 +33,7 @@ def next_choice(state: State, name: str) -> State:
     """Give an option of recipe or view the choice after the present one; after the last comes the first."""
     kind = OPTIONS[name].kind
     assert isinstance(kind, Choice)
-    return changed(state, **{name: _after(held(state, name), kind.choices)})
+    return changed(state, **{name: _after(value_of(state, name), kind.choices)})
 
 
 def next_encoding(state: State) -> State:
@@ -79,7 +78,7 @@ def next_third(state: State) -> State:
 
 def toggle(state: State, name: str) -> State:
     """Make a field of recipe or view False if it is True, and True if it is False."""
-    return changed(state, **{name: not held(state, name)})
+    return changed(state, **{name: not value_of(state, name)})
 
 
 def more_bands(state: State, count: int) -> State:
@@ -236,12 +235,7 @@ def escape(state: State) -> State | Command:
     if state.view.sheet:
         return changed(state, sheet="")
     playing = state.view.sweep_to is not None or state.view.turning
-    return changed(state, sweep_to=None, turning="") if playing else Command.LEAVE
-
-
-def held(state: State, name: str) -> Any:
-    """The value of a field of recipe or view."""
-    return getattr(state.recipe if name in IN_RECIPE else state.view, name)
+    return changed(state, **STOPPED) if playing else Command.LEAVE
 
 
 def _after(present: str, choices: tuple[str, ...]) -> str:

@@ -24,6 +24,7 @@ from shviewer.viewer.state import (
     describe_exposure,
     describe_muted,
     describe_sanitizing,
+    value_of,
 )
 from shviewer.viewer.unchanged import as_it_was, not_there
 from shviewer.words import grouped
@@ -57,7 +58,7 @@ def _switch(
 ) -> Binding:
     """The row of a key that turns something off and on, with a word for each. name: the field of recipe or view."""
     turn = action or partial(do.toggle, name=name)
-    return Binding(key, help, {key: turn}, lambda state: words[bool(do.held(state, name))])
+    return Binding(key, help, {key: turn}, lambda state: words[bool(value_of(state, name))])
 
 
 BINDINGS: dict[str, tuple[Binding, ...]] = {

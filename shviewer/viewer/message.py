@@ -22,19 +22,9 @@ class Message(str):
         return made
 
 
-def done(text: str) -> Message:
-    """Something that was asked for and has been done."""
-    return Message(text, DONE)
-
-
 def warning(text: str) -> Message:
     """Something that may be wrong with what is shown; "" stays no message at all."""
     return Message(text, WARNING if text else "")
-
-
-def error(text: str) -> Message:
-    """Something that was asked for and could not be done."""
-    return Message(text, ERROR)
 
 
 def kind_of(text: str) -> str:

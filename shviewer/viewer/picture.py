@@ -41,11 +41,9 @@ from shviewer.viewer.derived import (
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces, map_size
 from shviewer.viewer.state import FRONT, State, changed
 from shviewer.viewer.surface import surfaces
+from shviewer.viewer.view import LOOKED, POINTED, REMEMBERED, SPOKEN
 
-LIVE = (
-    *("camera", "light_rotation", "zoom", "pan", "whole_sphere", "map_centre", "marks", "cursor", "cursor_visible"),
-    *("sweep_to", "turning", "trace", "help_visible", "help_page", "message", "roughness", "layout_tried"),
-)
+LIVE = (*LOOKED, *POINTED, *SPOKEN, *REMEMBERED, "whole_sphere", "marks", "sweep_to", "turning", "trace")
 """Fields of the view on which nothing depends that takes time."""
 
 BETWEEN = 1.1

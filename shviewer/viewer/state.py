@@ -64,6 +64,11 @@ class State:
             raise UsageError(f"size {size[0]} x {size[1]}: each side must be {MIN_SIDE} to {MAX_SIDE} pixels")
 
 
+def value_of(state: State, name: str) -> Any:
+    """The value of a field of recipe or view."""
+    return getattr(state.recipe if name in IN_RECIPE else state.view, name)
+
+
 def changed(state: State, **values: Any) -> State:
     """The state with other values for fields of its recipe or its view. TypeError for a name that neither has.
 

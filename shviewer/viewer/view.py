@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import hypot
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shviewer.analysis.options import Choice, Flag, Number, Pair, check_options, option
 from shviewer.errors import UsageError
@@ -176,3 +176,18 @@ class View:
         if hypot(*self.pan) > self.zoom * ROUNDING:
             far = f"pan {self.pan[0]:g} {self.pan[1]:g}"
             raise UsageError(f"{far}: at zoom {self.zoom:g} a sphere is moved by at most {self.zoom:g} radii")
+
+
+LOOKED = ("camera", "map_centre", "zoom", "pan", "light_rotation")
+"""Fields that say from where it is looked at what."""
+
+POINTED = ("cursor", "cursor_visible")
+PLAYED = ("sweep_to", "turning", "trace", "range_held")
+SPOKEN = ("message", "help_visible", "help_page")
+"""Fields of what points, plays and speaks, which make no step to be undone."""
+
+REMEMBERED = ("roughness", "layout_tried")
+"""Fields that no pixel depends on."""
+
+STOPPED: dict[str, Any] = {"sweep_to": None, "turning": ""}
+"""The values of a view in which nothing plays."""

@@ -12,6 +12,7 @@ import moderngl
 from shviewer.errors import ShviewerError
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.evaluation import Evaluation
+from shviewer.viewer.desktop.unchanged import overlay_key, panes_key
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.kept import Kept
@@ -22,10 +23,8 @@ from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.pane_words import describe_evaluation
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
-from shviewer.viewer.overlay.pane_words import describe_evaluation
-from shviewer.viewer.overlay.plots.plane import measured
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.state import State, changed
+from shviewer.viewer.state import State
 from shviewer.viewer.view import View
 from shviewer.viewer.work import Work
 
@@ -132,7 +131,7 @@ class Canvas:
         self.composition = composition
         hovered = self.band_at(pointer)
         work = work or self._pending
-        key = work, hovered, pace, _overlay_key(picture, composition)
+        key = work, hovered, pace, overlay_key(picture, composition)
         if key != self._overlay_key:
             opengl = self.renderer.version
             self.overlay = draw_overlay(
@@ -168,7 +167,7 @@ class Canvas:
             self.wait(self._pending or Work(UPLOADING), composition)
             self._frame = _Frame(iter(()), composition, False)
             return
-        key = _panes_key(self._shown, composition, self._exact)
+        key = panes_key(self._shown, composition, self._exact)
         frames = self._panes[1] + 1 if key == self._panes[0] else 1
         self._panes = key, frames
         carrier = self.renderer.carrier  # what copies panes may be compiled there
@@ -254,27 +253,3 @@ def _choosable(picture: Picture) -> bool:
 def summed_pixels(composition: Composition) -> float:
     """The number of visible pixels that show the reconstruction or its error."""
     return sum(pane.visible_area for pane in composition.panes[1:])
-
-
-def _panes_key(picture: Picture, composition: Composition, exact: bool) -> object:
-    """A key that is equal as long as no pixel of a pane changes, but for what is written over it."""
-    view = picture.state.view
-    seen = picture.world_from_view.tobytes(), picture.light_from_world.tobytes(), picture.exposure_stops
-    drawn = picture.drawn, picture.beside, picture.error_scale, view.tone, view.marks, exact
-    place = composition.width, composition.height, composition.scale, composition.panes
-    return picture.original, picture.compared, picture.suns, drawn, seen, place
-
-
-def _overlay_key(picture: Picture, composition: Composition) -> object:
-    """A key that is equal as long as no text changes. Turning changes none, unless the help shows the camera.
-
-    Zooming may change it, since text gives way to spheres; the time-error plane changes with every measurement, and figures
-    come after the picture.
-    """
-    state = picture.state
-    if not state.view.help_visible:
-        state = changed(state, camera=View.camera, light_rotation=View.light_rotation, zoom=View.zoom, pan=View.pan)
-    known = measured(picture) if state.view.sheet == "plane" else ()
-    place = composition.width, composition.height, composition.scale, composition.panes
-    figures = picture.figures, picture.needs, picture.verdict, picture.error_scale
-    return state, figures, known, describe_evaluation(picture, timing=True), place

@@ -7,23 +7,18 @@ has placed elsewhere since then stays there. What only plays, speaks or points i
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from shviewer.viewer.state import IN_RECIPE, IN_VIEW, State, changed
-from shviewer.viewer.view import View
+from shviewer.viewer.state import IN_RECIPE, State, changed, value_of
+from shviewer.viewer.view import LOOKED, PLAYED, POINTED, SPOKEN, STOPPED, View
 
 MOST = 100
 """The most steps that are kept."""
 
-PASSING = frozenset(
-    ("message", "help_visible", "help_page", "cursor", "cursor_visible", "sweep_to", "turning", "trace", "range_held")
-)
-"""Fields of the view that make no step by themselves."""
-
-PLACED = frozenset(("camera", "map_centre", "zoom", "pan", "light_rotation", "turn"))
+PLACED = frozenset((*LOOKED, "turn"))
 """Fields that the mouse and time change, too, and only what a key makes of them is a step."""
 
-STEPS = [part.name for part in fields(View) if part.compare and part.name not in PASSING]
+STEPS = [part.name for part in fields(View) if part.compare and part.name not in (*POINTED, *PLAYED, *SPOKEN)]
 
 
 class _Step(NamedTuple):
@@ -51,18 +46,17 @@ class History:
         self.note(state, by_key=False)
         if not self._done:
             return None
-        step = self._done.pop()
-        self._undone.append(step)
-        return self._moved(state, step.after, step.before)
+        self._undone.append(self._done.pop())
+        before, after = self._undone[-1]
+        return self._moved(state, after, before)
 
     def redo(self, state: State) -> State | None:
         """The state after the step that was undone last; None if there is none."""
         self.note(state, by_key=False)
         if not self._undone:
             return None
-        step = self._undone.pop()
-        self._done.append(step)
-        return self._moved(state, step.before, step.after)
+        self._done.append(self._undone.pop())
+        return self._moved(state, *self._done[-1])
 
     def back(self, state: State) -> None:
         """Take a state that is shown again, as what was asked for since could not be: steps away from it were none."""
@@ -73,10 +67,9 @@ class History:
         self._known = state
 
     def _moved(self, state: State, here: State, there: State) -> State:
-        names = _differ(here, there, placed=True)
-        values: dict[str, Any] = {name: _value(there, name) for name in names}
-        stopped = {"sweep_to": None, "turning": "", "trace": (), "message": ""}
-        self._known = replace(changed(state, **stopped, **values), lights=there.lights, entry=there.entry)
+        values = {name: value_of(there, name) for name in _differ(here, there, placed=True)}
+        stopped = changed(state, **STOPPED, trace=(), message="", **values)
+        self._known = replace(stopped, lights=there.lights, entry=there.entry)
         return self._known
 
 
@@ -85,8 +78,4 @@ def _differ(one: State, other: State, *, placed: bool) -> list[str]:
     if one is other:
         return []
     names = (name for name in (*sorted(IN_RECIPE), *STEPS) if placed or name not in PLACED)
-    return [name for name in names if _value(one, name) != _value(other, name)]
-
-
-def _value(state: State, name: str) -> Any:
-    return getattr(state.view if name in IN_VIEW else state.recipe, name)
+    return [name for name in names if value_of(one, name) != value_of(other, name)]

@@ -25,7 +25,7 @@ from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.playing import wants_range
 from shviewer.viewer.state import State, changed, started
-from shviewer.viewer.view import View
+from shviewer.viewer.view import STOPPED, View
 from shviewer.words import one_line
 
 
@@ -199,7 +199,7 @@ class Showing:
         """Go back to a picture, seen as the one now is, with a message; what plays ends."""
         shown = picture.seen(self.state)
         keep_light(shown.state.recipe, shown.subject.whole)
-        self.state = changed(shown.state, message=message, sweep_to=None, turning="")
+        self.state = changed(shown.state, message=message, **STOPPED)
         self.picture = replace(shown, state=self.state)
         self.enough = still(self.state)
 

@@ -15,6 +15,7 @@ from typing import Any
 from shviewer.analysis.figures import Figures, Needs, Pending
 from shviewer.analysis.projections import project, way_of
 from shviewer.analysis.recipe import Recipe
+from shviewer.analysis.reconstruction import Reconstruction
 from shviewer.harmonics.basis import Array
 from shviewer.lights.find import file_of, version_of_light
 from shviewer.lights.light import Light
@@ -22,20 +23,18 @@ from shviewer.lights.suns.sun import Sun
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.version import __version__
 from shviewer.viewer.colour.colour_maps import map_of
+from shviewer.viewer.colour.error_scale import ErrorScale
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.file_marks import mark_of
 from shviewer.viewer.state import State
-from shviewer.viewer.view import View
+from shviewer.viewer.view import REMEMBERED, View
 
 SCHEMA = 1
 
 EVALUATED = {DirectSum: "direct", Encoded: "formula", SplineMap: "map", Surfaces: "surfaces"}
 """The word in a stamp for each way to draw the reconstruction."""
-
-NOT_SEEN = ("roughness", "layout_tried")
-"""Fields of the view that no pixel depends on."""
 
 LIMITS = ("side", "texels", "file_bytes")
 """The limits that a stamp tells: that of memory is for the machine to say."""
@@ -47,6 +46,7 @@ DIGITS = 9
 def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay: bool = True) -> str:
     """Everything that made the picture, and the figures that are there, as one JSON text; equal arguments give equal text."""
     state, figures, projection = picture.state, picture.figures, picture.projection
+    recipe, view = state.recipe, state.view
     scale, beside = picture.error_scale, picture.beside
     panes = "original", "reconstruction", "error" if beside is None else "beside"
     description: dict[str, Any] = {
@@ -54,55 +54,40 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
         "version": __version__,
         "state": _recorded(state),
         "light": picture.light.name,
-        "light_argument": state.recipe.light if isinstance(state.recipe.light, str) else None,
+        "light_argument": recipe.light if isinstance(recipe.light, str) else None,
         "light_notes": list(picture.light.notes),
         "files": _files(picture),
-        "bands": state.recipe.n_bands,
-        "muted": list(state.recipe.muted_shown),
-        "quantity": state.recipe.quantity,
-        "compare": state.recipe.compare
-        and {"name": state.recipe.compare.name, "convention": state.recipe.compare.convention},
+        "bands": recipe.n_bands,
+        "muted": list(recipe.muted_shown),
+        "quantity": recipe.quantity,
+        "compare": _compared(recipe),
         "verdict": picture.verdict,
-        "split_sun": state.recipe.split_sun,
+        "split_sun": recipe.split_sun,
         "suns": [_described(sun) for sun in picture.subject.suns],
-        "window": state.recipe.window,
-        "window_width": state.recipe.window_width,
+        "window": recipe.window,
+        "window_width": recipe.window_width,
         "factors": list(figures.factors),
-        "method": state.recipe.method,
+        "method": recipe.method,
         "method_words": projection.method,
-        "samples_asked": None if state.recipe.method == "best" else state.recipe.samples,
+        "samples_asked": None if recipe.method == "best" else recipe.samples,
         "samples": projection.evaluations,
-        "seed": state.recipe.seed if state.recipe.method == "jittered" else None,
-        "sanitize": state.recipe.reading.sanitize,
-        "layout": state.recipe.reading.layout,
+        "seed": recipe.seed if recipe.method == "jittered" else None,
+        "sanitize": recipe.reading.sanitize,
+        "layout": recipe.reading.layout,
         "exposure_stops": picture.exposure_stops,
-        "tone": state.view.tone,
-        "error": None
-        if scale is None
-        else {
-            "kind": scale.kind,
-            "range": scale.end,
-            "floor": scale.floor if scale.kind == "relative" else None,
-            "largest": scale.largest,
-            "largest_direction_in_light": scale.direction.tolist(),
-            "colour_map": map_of(scale.kind),
-        },
-        "beside": beside
-        and {
-            "kind": state.view.beside,
-            "method_words": beside.found.projection.method,
-            "relative_l2": beside.found.sums.relative_l2,
-        },
+        "tone": view.tone,
+        "error": None if scale is None else _error(scale),
+        "beside": None if beside is None else _beside(view.beside, beside.found),
         "overlay": overlay,
-        "marks": state.view.marks,
-        "sheet": state.view.sheet,
-        "lobe_view": state.view.lobe_view,
-        "basis": state.view.basis,
+        "marks": view.marks,
+        "sheet": view.sheet,
+        "lobe_view": view.lobe_view,
+        "basis": view.basis,
         "encoding": picture.stored and {"name": picture.stored.name, "numbers": _rounded(picture.stored.numbers)},
         "evaluated": EVALUATED[type(picture.drawn)],
         "size": [composition.width, composition.height],
         "camera_degrees": picture.placed(state).view.camera,
-        "zoom": state.view.zoom,
+        "zoom": view.zoom,
         "world_from_view": picture.world_from_view.tolist(),
         "light_from_world": picture.light_from_world.tolist(),
         "spheres": {
@@ -127,6 +112,26 @@ def metadata(picture: Picture, composition: Composition, opengl: str, *, overlay
     }
     description["coefficients"] = _coefficients(picture)  # last, since they may be many
     return json.dumps(_finite(description), allow_nan=False)
+
+
+def _error(scale: ErrorScale) -> dict[str, Any]:
+    return {
+        "kind": scale.kind,
+        "range": scale.end,
+        "floor": scale.floor if scale.kind == "relative" else None,
+        "largest": scale.largest,
+        "largest_direction_in_light": scale.direction.tolist(),
+        "colour_map": map_of(scale.kind),
+    }
+
+
+def _beside(kind: str, second: Reconstruction) -> dict[str, Any]:
+    return {"kind": kind, "method_words": second.projection.method, "relative_l2": second.sums.relative_l2}
+
+
+def _compared(recipe: Recipe) -> dict[str, Any] | None:
+    given = recipe.compare
+    return None if given is None else {"name": given.name, "convention": given.convention}
 
 
 def _files(picture: Picture) -> dict[str, Any]:
@@ -211,12 +216,12 @@ def _finite(value: Any) -> Any:
 def _recorded(state: State) -> dict[str, Any]:
     """Every field of recipe and view, as JSON."""
     recipe = {part.name: getattr(state.recipe, part.name) for part in fields(Recipe)}
-    view = {part.name: getattr(state.view, part.name) for part in fields(View) if part.name not in NOT_SEEN}
-    given, reading = state.recipe.compare, state.recipe.reading
+    view = {part.name: getattr(state.view, part.name) for part in fields(View) if part.name not in REMEMBERED}
+    reading = state.recipe.reading
     recipe |= {
         "light": state.recipe.light if isinstance(state.recipe.light, str) else None,
         "muted": sorted(state.recipe.muted),
-        "compare": given and {"name": given.name, "convention": given.convention},
+        "compare": _compared(state.recipe),
         "reading": {
             "sanitize": reading.sanitize,
             "layout": reading.layout,

@@ -57,7 +57,9 @@ PICTURES = Lazily(
         "black": lambda: picture_of(BLACK),
         "constant": lambda: picture_of("constant", n_bands=1),
         "message": lambda: picture_of(
-            message=message.error("a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); export it again")
+            message=message.Message(
+                "a-rather-long-path/" * 12 + "bad.hdr: an empty file (0 bytes); export it again", message.ERROR
+            )
         ),
         "signed error": lambda: picture_of(error="signed"),
         "relative error": lambda: picture_of("venice_sunset", n_bands=9, error="relative", tone="log"),
@@ -407,14 +409,18 @@ def test_a_long_message_takes_the_place_of_the_legend_before_it_is_cut() -> None
 def test_what_went_wrong_is_said_in_full_in_small_windows_too(size: tuple[int, int], error: str) -> None:
     """It was cut in its middle, which is where the reason stands."""
     words = "sky.hdr: 256 x 128 is not square, as angular must be: crop it to the disc or press L for another layout"
-    shown = picture_of(message=message.error(words), error=error)
+    shown = picture_of(message=message.Message(words, message.ERROR), error=error)
     drawn = draw_overlay(shown, frame(shown, size))
     assert " ".join(text.text for text in texts_of(drawn) if text.name.startswith("message")) == words
 
 
 @pytest.mark.parametrize(
     ("said", "ink", "marks"),
-    [(message.done("saved a.png"), INK, 1), (message.warning("2 texels repaired"), WARNING, 1), ("a note", INK, 0)],
+    [
+        (message.Message("saved a.png", message.DONE), INK, 1),
+        (message.warning("2 texels repaired"), WARNING, 1),
+        ("a note", INK, 0),
+    ],
 )
 def test_the_kind_of_a_message_has_a_shape_and_a_colour(said: str, ink: Ink, marks: int) -> None:
     pieces = foot_pieces(compose(1280, 640), said)
@@ -425,7 +431,7 @@ def test_the_kind_of_a_message_has_a_shape_and_a_colour(said: str, ink: Ink, mar
 
 
 def test_an_error_has_a_cross() -> None:
-    pieces = foot_pieces(compose(1280, 640), message.error("cannot read a.exr"))
+    pieces = foot_pieces(compose(1280, 640), message.Message("cannot read a.exr", message.ERROR))
     assert len([piece for piece in pieces if piece.name.startswith("mark")]) == 2
     assert {piece.ink for piece in pieces} == {ERROR}  # type: ignore[union-attr]
 

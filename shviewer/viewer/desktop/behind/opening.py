@@ -17,6 +17,7 @@ from shviewer.viewer.desktop.behind.errands import Errands
 from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
+from shviewer.viewer.view import STOPPED
 
 MOST_DROPPED = 100
 
@@ -42,7 +43,7 @@ def opened(state: State, *, as_image: bool) -> State:
     words = "; ".join(filter(None, (state.view.message, picture.said or picture.state.view.message)))
     message = Message(words, WARNING if picture.said else "")
     reading = replace(shown.recipe.reading, isolated=True)
-    return started(changed(shown, reading=reading, sweep_to=None, turning="", message=message))
+    return started(changed(shown, reading=reading, message=message, **STOPPED))
 
 
 def _as_irradiance(state: State, light: str) -> State:
