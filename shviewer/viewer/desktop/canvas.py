@@ -21,7 +21,6 @@ from shviewer.viewer.gl.warming import Warming
 from shviewer.viewer.overlay.directions.marks import mark_layers
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.pane_words import describe_evaluation
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import State
