@@ -219,7 +219,7 @@ MODES: dict[str, dict[str, object]] = {
     "32 bands, the whole sphere, relative error": {"n_bands": 32, "error": "relative", "whole_sphere": True},
     "32 bands beside 32 without a window": {"n_bands": 32, "window": "hann", "beside": "no-window"},
     "irradiance": {"n_bands": 3, "quantity": "irradiance"},
-    "as an engine stores it": {"n_bands": 3, "quantity": "irradiance", "encode": "zh3-hallucinated"},
+    "as an engine stores it": {"n_bands": 3, "quantity": "irradiance", "encode": "hallucinated"},
     "surfaces, 5 bands": {"n_bands": 5, "lobe_view": True},
     "surfaces, 32 bands, error": {"n_bands": 32, "lobe_view": True, "error": "signed"},
     "surfaces, 128 bands, error": {"n_bands": 128, "lobe_view": True, "error": "signed"},

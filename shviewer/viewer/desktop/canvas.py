@@ -176,10 +176,8 @@ class Canvas:
 
     def _parts(self, composition: Composition, pointer: Point | None, kept: object) -> Iterator[Part]:
         """Draw a frame part by part, first what is written. kept: the key of panes that are copied."""
-        start = perf_counter()
         for _ in self.overlay.drawing() if self.overlay is not None else ():
-            yield Part(0.0, perf_counter() - start, True)
-            start = perf_counter()
+            yield Part(0.0, 0.0, False)
         layers = self.layers(composition, pointer)
         if kept is not None:
             yield from self._kept.parts(kept, self.screen, composition, layers, PART_SECONDS)

@@ -15,13 +15,13 @@ from contextlib import suppress
 from functools import partial
 from queue import SimpleQueue
 from threading import Event, Thread
-from typing import Any, Protocol
 
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.errors import GraphicsError
+from shviewer.viewer.gl.calls import Side, calls_of
 
 CARRIED_BYTES = 2**24
 """What goes up at a time: a driver may let nobody draw meanwhile, which takes some milliseconds."""
@@ -32,37 +32,6 @@ FORMATS = {3: 0x1907, 4: 0x1908}
 
 STORED = {(3, "f2"): 0x881B, (4, "f2"): 0x881A, (3, "f4"): 0x8815, (4, "f4"): 0x8814}
 TYPES = {"f2": 0x140B, "f4": 0x1406}
-
-_INT, _POINTER = ctypes.c_int, ctypes.c_void_p
-_CALLS: dict[str, tuple[type[Any], ...]] = {
-    "glGenTextures": (_INT, _POINTER),
-    "glDeleteTextures": (_INT, _POINTER),
-    "glBindTexture": (_INT, _INT),
-    "glTexParameteri": (_INT, _INT, _INT),
-    "glPixelStorei": (_INT, _INT),
-    "glTexStorage2D": (_INT,) * 5,
-    "glTexSubImage2D": (*(_INT,) * 8, _POINTER),
-    "glTextureView": (_INT,) * 8,
-    "glUseProgram": (_INT,),
-    "glBindVertexArray": (_INT,),
-    "glDrawArrays": (_INT,) * 3,
-    "glDrawElements": (_INT, _INT, _INT, _POINTER),
-    "glFinish": (),
-    "glGetError": (),
-}
-
-
-class Side(Protocol):
-    """A second context that shares its textures with the one that draws."""
-
-    def enter(self) -> None:
-        """Make it current in the calling thread. GraphicsError if that cannot be."""
-
-    def leave(self) -> None:
-        """Make it current nowhere."""
-
-    def load(self, function: str) -> int:
-        """Where a function of OpenGL is; moderngl asks for it by this name."""
 
 
 class Load:
@@ -115,8 +84,8 @@ class Carrier:
         """
         self.context = context
         self.side = side
-        self.calls = _functions(context, side)
-        """Functions of OpenGL for that thread."""
+        self.calls = calls_of(context, side)
+        """For that thread."""
         self._arrived = arrived
         self._retired: list[Load] = []
         self._works: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
@@ -241,7 +210,7 @@ class Carrier:
             data = rows.astype(np.float16) if load.dtype == "f2" else np.ascontiguousarray(rows)
             place = 0, top, width, len(rows)
             calls["glTexSubImage2D"](
-                TEXTURE_2D, 0, *place, FORMATS[components], TYPES[load.dtype], _POINTER(data.ctypes.data)
+                TEXTURE_2D, 0, *place, FORMATS[components], TYPES[load.dtype], ctypes.c_void_p(data.ctypes.data)
             )
             load.share = (top + len(rows)) / height
             if load.unwanted:
@@ -256,14 +225,3 @@ class Carrier:
                 self.calls["glDeleteTextures"](1, ctypes.byref(name))
                 load.names[place] = 0
         self.calls["glFinish"]()
-
-
-def _functions(context: moderngl.Context, side: Side) -> dict[str, Callable[..., int]]:
-    """The functions of OpenGL by name; they leave Python's lock to others. Without glTextureView where it is too new."""
-    kind = getattr(ctypes, "WINFUNCTYPE", ctypes.CFUNCTYPE)
-    views = context.version_code >= 430 or "GL_ARB_texture_view" in context.extensions
-    return {
-        name: kind(ctypes.c_int if name == "glGetError" else None, *types)(side.load(name))
-        for name, types in _CALLS.items()
-        if views or name != "glTextureView"
-    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import moderngl
 
@@ -21,17 +21,28 @@ class LayerRenderer:
         self._held: dict[int, tuple[Layer, ArrayTexture]] = {}
         """The layers of the last frame and their textures, by the identity of the image."""
 
-    def draw(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
-        """Draw layers one over the other; the texture of an image lives as long as it is drawn in every frame."""
+    def bring(self, layers: Sequence[Layer]) -> Iterator[None]:
+        """Upload layers one after the other; the texture of an image lives as long as it is in every frame."""
         wanted = {id(layer.image) for layer in layers}
         spare = [self._held.pop(key)[1] for key in list(self._held) if key not in wanted]
+        try:
+            for layer in layers:
+                if id(layer.image) not in self._held:
+                    texture = spare.pop() if spare else ArrayTexture(self._context)
+                    texture.follow(layer.image)
+                    self._held[id(layer.image)] = layer, texture
+                    yield
+        finally:
+            for texture in spare:
+                texture.release()
+
+    def draw(self, target: moderngl.Framebuffer, composition: Composition, layers: Sequence[Layer]) -> None:
+        """Draw layers one over the other."""
+        for _ in self.bring(layers):
+            pass
         self._context.enable(moderngl.BLEND)
         self._context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
         for layer in layers:
-            if id(layer.image) not in self._held:
-                texture = spare.pop() if spare else ArrayTexture(self._context)
-                texture.follow(layer.image)
-                self._held[id(layer.image)] = layer, texture
             self._held[id(layer.image)][1].use(SAMPLERS["layer"])
             height, width = layer.image.shape[:2]
             corner = layer.left, composition.height - layer.top
@@ -40,8 +51,6 @@ class LayerRenderer:
             self._program.draw()
         self._context.disable(moderngl.BLEND)
         target.viewport = (0, 0, composition.width, composition.height)
-        for texture in spare:
-            texture.release()
 
     def release(self) -> None:
         """Free everything this object made."""

@@ -142,10 +142,14 @@ class Renderer:
                         yield Part((done + area * at / steps) / total, took, at == count)
                         count = max(int(count * min(GROWTH, seconds / max(took, 1e-9))), 1)
             done += area
+        written = layers if layers and not linear else ()
+        for _ in self.layers.bring(written) if written else ():
+            if seconds is not None:
+                yield Part(1.0, 0.0, False)
         target.use()
         target.viewport = (0, 0, composition.width, composition.height)
-        if layers is not None and not linear:
-            self.layers.draw(target, composition, layers)
+        if written:
+            self.layers.draw(target, composition, written)
         if self.carrier is not None:
             self.carrier.drawn()
 

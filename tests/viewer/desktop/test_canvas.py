@@ -71,7 +71,7 @@ def test_turning_writes_nothing_anew_and_a_band_does(canvas: Canvas) -> None:
 
 def test_the_first_help_is_written_a_text_at_a_time(canvas: Canvas) -> None:
     """Each go_on without time to spare draws one part; a text may be drawn with a casing, too."""
-    shown, passes, most = picture_of(help_visible=True), 0, 0
+    shown, passes, most = picture_of(help_visible=True, evaluate="direct"), 0, 0
     frame = frame_of(shown, 717, 411)  # of a size that no other test has written in
     with offscreen(canvas.renderer, frame) as target:
         canvas.screen = target
