@@ -1,4 +1,4 @@
-"""Lights that are projected by mistake: without solid angles, clamped at 1, encoded for a display, or only the upper half."""
+"""Lights that are projected by mistake: without solid angles, clamped, made for a display, or only the upper half."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ BLOCK_ROWS = 64
 """Rows of an image that are spoiled at a time."""
 
 CLAMPED, ENCODED, UPPER = "clamped at 1", "encoded for a display", "black below the horizon"
-SPOILED = ((), (CLAMPED,), (ENCODED,), (CLAMPED, ENCODED), (UPPER,))
+TONED = "tone-mapped, x/(1 + x)"
+SPOILED = ((), (CLAMPED,), (ENCODED,), (CLAMPED, ENCODED), (TONED,), (TONED, ENCODED), (UPPER,))
 """What is done to the values, in words."""
 
 MISTAKES = 2 * len(SPOILED) - 1
@@ -66,8 +67,11 @@ def _spoiled(pixels: NDArray[np.float32], layout: Layout, how: tuple[str, ...]) 
         for one in how:
             if one == UPPER:
                 block = block * above[start * step : (start + BLOCK_ROWS) * step]
+            elif one == CLAMPED:
+                block = np.minimum(block, 1)
             else:
-                block = np.minimum(block, 1) if one == CLAMPED else srgb_from_linear(np.maximum(block, 0))
+                block = np.maximum(block, 0)
+                block = block / (1 + block) if one == TONED else srgb_from_linear(block)
         taken[start : start + BLOCK_ROWS] = block.reshape(-1, step, width // step, step, 3).mean(axis=(1, 3))
     return taken, LatLongLayout(*taken.shape[:2]) if step > 1 else layout
 

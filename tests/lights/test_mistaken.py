@@ -52,6 +52,8 @@ def test_the_usual_mistakes_with_an_image_are_named(n_bands: int, seed: int) -> 
         (np.minimum(pixels, 1), True, "radiance is clamped at 1"),
         (to_srgb(pixels), True, "radiance is encoded for a display"),
         (to_srgb(np.minimum(pixels, 1)), True, "radiance is clamped at 1 and encoded for a display"),
+        (pixels / (1 + pixels), True, "radiance is tone-mapped, x/(1 + x)"),
+        (to_srgb(pixels / (1 + pixels)), True, "radiance is tone-mapped, x/(1 + x) and encoded for a display"),
         (pixels * (row_angles(48) < np.pi / 2)[:, None, None], True, "radiance is black below the horizon"),
         (np.minimum(pixels, 1), False, "radiance is clamped at 1 and all texels count alike, without sin(theta)"),
     ):

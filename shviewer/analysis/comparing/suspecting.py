@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shviewer.coefficients.convention import Convention
-from shviewer.coefficients.diagnosis.bent import bent
+from shviewer.coefficients.diagnosis.bent import NEAR, Bending, Bent
 from shviewer.coefficients.diagnosis.chance import CHANCE
 from shviewer.coefficients.diagnosis.search import ALIKE, CLEAN, EXPLAINED, TINY, Explanation, explain
 from shviewer.coefficients.diagnosis.sentences import differences, slips_in_words, words
@@ -26,6 +26,9 @@ from shviewer.words import all_of
 
 FITS = 0.02
 """Given coefficients that are off by more than this share of the light's own, in the same bands, are examined."""
+
+MOST_NEAR = 6
+"""The most lights to which several things are done at once."""
 
 MANY = 3
 """So many wrong rows are asked whether not all of a band is."""
@@ -78,19 +81,38 @@ def suspect(listed: Listed, exact: Array, named: Convention | None, others: Othe
 
     others: asked where the light itself does not fit.
     """
-    best = _suspicion(listed, exact, named, [])
+    best = _suspicion(listed, named, Bent([], exact))
     fits = best is not None and best.error <= FITS
     if best is not None and fits and len(best.explanation.slips) < MANY:
         return best
+    lights = [Bent([], exact)]
     for said, coefficients in () if fits else others():
-        found = _suspicion(listed, coefficients, named, said)
+        lights.append(Bent(said, coefficients, MISTAKES + 1))
+        found = _suspicion(listed, named, lights[-1])
         if found and found.error <= EXPLAINED and (best is None or found.error < best.error / ALIKE):
             best = found
-    if best is None or best.error > CLEAN or fits:
-        cost, found = _of_another_light(listed, exact, named)
-        if found and (best is None or not fits or cost < best.explanation.cost):
+    bending = Bending(listed, count_bands(exact))
+    plain = bending.plain(lights[0])
+    single = [light for one in plain for light in ([one, *bending.bent(one)] if not one.said else [one]) if light.said]
+    if one := _simplest(listed, named, single):
+        cost, found = one
+        if best is None or (cost < best.explanation.cost if fits else found.error < best.error / ALIKE):
             best = found
-    return best
+    if fits or (best is not None and best.error <= FITS):
+        return best
+    several = _simplest(listed, named, _several(bending, lights))
+    left = EXPLAINED * (best.error if best is not None else 1.0)
+    return several[1] if several and several[1].error <= max(left, TINY) else best
+
+
+def _several(bending: Bending, lights: list[Bent]) -> Iterator[Bent]:
+    """Lights to which two things were done or more, of those that come nearest to the list by them."""
+    bases = [one for light in lights for one in bending.plain(light)]
+    near = sorted(((1 - bending.nearness(one), number) for number, one in enumerate(bases)))
+    for far, number in near[:MOST_NEAR]:
+        if far > min(max(ALIKE * near[0][0], TINY), 1 - NEAR):
+            break
+        yield from (light for light in [bases[number], *bending.bent(bases[number])] if len(light.said) > 1)
 
 
 def held_as(exact: Array, quantity: str) -> Array:
@@ -105,31 +127,28 @@ def error_of(exact: Array, coefficients: Array, quantity: str) -> float:
     return float(np.linalg.norm(coefficients - wanted)) / norm if norm else np.inf
 
 
-def _of_another_light(listed: Listed, exact: Array, named: Convention | None) -> tuple[float, Suspicion | None]:
-    """The simplest of those that have numbers of their own, an angle or factors, if it leaves little, and its cost."""
+def _simplest(listed: Listed, named: Convention | None, lights: Iterable[Bent]) -> tuple[float, Suspicion] | None:
+    """The simplest of lights to which something was done that leaves little, if one does, and its cost."""
     found: list[tuple[float, Suspicion]] = []
-    for light in bent(listed, exact):
-        one = _suspicion(listed, light.coefficients, named, [light.said], light.choices)
+    for light in lights:
+        one = _suspicion(listed, named, light)
         if one and one.error <= CLEAN:
             found.append((one.explanation.cost + light.cost, one))
     good = max(ALIKE * min((one.error for _, one in found), default=0.0), TINY)
-    near = [(cost, one) for cost, one in found if one.error <= good]
-    return min(near, key=lambda each: each[0]) if near else (np.inf, None)
+    return min((each for each in found if each[1].error <= good), key=lambda each: each[0], default=None)
 
 
-def _suspicion(
-    listed: Listed, exact: Array, named: Convention | None, of_light: list[str], choices: int = MISTAKES + 1
-) -> Suspicion | None:
-    found = explain(listed, exact, named)
-    if found is None or found.chance * (choices if of_light else 1) > CHANCE or (of_light and found.slips):
+def _suspicion(listed: Listed, named: Convention | None, light: Bent) -> Suspicion | None:
+    found = explain(listed, light.coefficients, named)
+    if found is None or found.chance * light.choices > CHANCE or (light.said and found.slips):
         return None
     try:
         file = interpreted(listed, convention_text(found.convention), overrule=True)
         coefficients = file.coefficients
         if found.slips:
-            wanted = np.asarray(file.convention.from_ours(exact[: len(coefficients)]))
+            wanted = np.asarray(file.convention.from_ours(light.coefficients[: len(coefficients)]))
             coefficients = file.convention.to_ours(mended(np.asarray(file.numbers), found.slips, wanted))
-        return Suspicion(found, file, error_of(exact, coefficients, file.quantity), of_light)
+        return Suspicion(found, file, error_of(light.coefficients, coefficients, file.quantity), light.said)
     except LightError:  # of numbers that are too large, read so
         return None
 
