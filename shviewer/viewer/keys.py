@@ -14,6 +14,7 @@ from shviewer.harmonics.quantities.names import in_words
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer import actions as do
 from shviewer.viewer.commands import Command
+from shviewer.viewer.idle import as_it_was, not_there
 from shviewer.viewer.placing import face_light
 from shviewer.viewer.playing import toggle_sweep, turn_light
 from shviewer.viewer.state import (
@@ -26,7 +27,6 @@ from shviewer.viewer.state import (
     describe_sanitizing,
     value_of,
 )
-from shviewer.viewer.unchanged import as_it_was, not_there
 from shviewer.words import grouped
 
 ROUGHER = 0.05

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.keys import BINDINGS, Binding
-from shviewer.viewer.overlay.inks import FAINT, GREY, GROUND, INK, RULE
+from shviewer.viewer.overlay.inks import FAINT, GREY, GROUND, INK, RULE, Ink
 from shviewer.viewer.overlay.lettering import MEDIUM, SEMIBOLD, shortened_to, width_of
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
@@ -42,10 +42,11 @@ class Type(NamedTuple):
     row: float
 
 
-def help_blocks(state: State, at: Composition, foot: str, page: int = 0) -> list[list[Piece]]:
+def help_blocks(state: State, at: Composition, foot: str, page: int = 0, ink: Ink = FAINT) -> list[list[Piece]]:
     """The sheet, which covers the frame, its columns, and present values, each a block: turning the camera changes two of them.
 
-    foot: what stands under it, if there is room; page: how often PageDown was pressed.
+    foot: what stands under it, if there is room, or if it is in an ink of its own in place of the title where there is none;
+    page: how often PageDown was pressed.
     """
     pieces: list[Piece] = [Fill(Box(0, 0, at.width, at.height), GROUND)]
     margin = at.margin
@@ -75,7 +76,10 @@ def help_blocks(state: State, at: Composition, foot: str, page: int = 0) -> list
     last = at.height - at.px(12)
     if foot and last - at.px(14) > lowest - step:
         words = shortened_to(foot, at.width - 2 * margin, at.px(12))
-        pieces.append(Text("help_foot", margin, round(last), words, at.px(12), FAINT))
+        pieces.append(Text("help_foot", margin, round(last), words, at.px(12), ink))
+    elif foot and ink != FAINT:
+        words = shortened_to(foot, x - at.px(12) - margin, at.px(12))
+        pieces[1] = Text("help_foot", margin, round(top), words, at.px(12), ink)
     return [pieces, *columns, *values]
 
 

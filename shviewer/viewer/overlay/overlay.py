@@ -13,15 +13,17 @@ from functools import cached_property
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
+from shviewer.viewer.message import kind_of
 from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
 from shviewer.viewer.overlay.drawing import layer_of, lettering
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
-from shviewer.viewer.overlay.foot import foot_pieces, proposed_key, said_of, takes_legend
+from shviewer.viewer.overlay.foot import INKS, foot_pieces, proposed_key, said_of, takes_legend
 from shviewer.viewer.overlay.help_sheet import help_blocks
 from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import SEMIBOLD
+from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Piece, Text
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots
@@ -82,8 +84,10 @@ def draw_overlay(
     """
     at, state = composition, picture.state
     if state.view.help_visible:
-        at_foot = opengl if work is None else f"{work.words}; Esc stops"
-        return _overlay(help_blocks(state, at, at_foot, state.view.help_page))
+        said, page = state.view.message if work is None else "", state.view.help_page
+        if said:
+            return _overlay(help_blocks(state, at, typeset(said), page, INKS[kind_of(said)]))
+        return _overlay(help_blocks(state, at, opengl if work is None else f"{work.words}; Esc stops", page))
     numbers = at.numbers
     heads, feet, unsaid = caption_blocks(picture, at, timing)
     blocks = [*heads, colour_bar_pieces(picture, at), *azimuth_pieces(at)]

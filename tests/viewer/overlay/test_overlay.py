@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from helpers import Lazily, frame_of, from_srgb, overlap, picture_of
 from numpy.typing import NDArray
-from viewer.overlay.collisions import shrunk
+from viewer.overlay.collisions import faults, shrunk
 from viewer.overlay.written import image_of, pieces_of, texts_of
 
 from shviewer.lights.environment import EnvironmentLight
@@ -526,6 +526,15 @@ def test_settings_stand_at_the_right_end_of_their_column_and_sentences_begin_in_
     assert len(columns) == 3
     for ends in columns.values():
         assert max(ends) - min(ends) <= 1
+
+
+@pytest.mark.parametrize("size", [(1280, 640), (400, 300)])
+def test_what_is_said_while_the_help_is_shown_is_seen(size: tuple[int, int]) -> None:
+    """It was gone before the help was closed."""
+    shown = picture_of(help_visible=True, message=message.warning("no path of a file is copied"))
+    drawn = draw_overlay(shown, compose(*size), opengl="OpenGL 4.5")
+    assert "no path of a file is copied" in text_of(drawn)
+    assert faults(shown, compose(*size), drawn) == []
 
 
 def test_turning_under_the_help_draws_anew_only_the_values_that_changed() -> None:
