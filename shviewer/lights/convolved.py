@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS
 from shviewer.lights.lat_long import MAP_ROWS, LatLongMap
-from shviewer.lights.light import About, Light, LightBase
+from shviewer.lights.light import Light, LightBase
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -33,6 +34,11 @@ ROUNDING = 1e-13
 """The share of the norm of its source below which a convolved light is rounding."""
 
 
+def _of_source(name: str) -> Any:
+    """An attribute that is that of the source."""
+    return property(lambda light: getattr(light.source, name))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class ConvolvedLight(LightBase):
     """`source` convolved with `kernel`."""
@@ -41,31 +47,14 @@ class ConvolvedLight(LightBase):
     kernel: Kernel
 
     lobes = ()
+    name, description, notes = map(_of_source, ("name", "description", "notes"))
+    about, best_method, landmarks = map(_of_source, ("about", "best_method", "landmarks"))
+    irradiance_up, most_bands, kept_bands = map(_of_source, ("irradiance_up", "most_bands", "kept_bands"))
 
     @cached_property
     def bands(self) -> int:
         """The number of its bands: of those beyond, kernel or source holds little."""
         return min(self.kernel.bands, self.source.most_bands)
-
-    @property
-    def name(self) -> str:
-        return self.source.name
-
-    @property
-    def description(self) -> str:
-        return self.source.description
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        return self.source.notes
-
-    @property
-    def about(self) -> About:
-        return self.source.about
-
-    @property
-    def best_method(self) -> str:
-        return self.source.best_method
 
     @property
     def quantity(self) -> str:
@@ -74,24 +63,13 @@ class ConvolvedLight(LightBase):
     def through(self, quantity: str) -> Light:
         return self if quantity == self.quantity else self.source.through(quantity)
 
-    def irradiance_up(self) -> Array:
-        return self.source.irradiance_up()
-
     def from_source(self, coefficients: Array) -> Array:
         """As in Light. What is only the rounding of the source, as all that surfaces see of Y(3, m), is nothing."""
         found = coefficients * per_coefficient(self.kernel.factors(count_bands(coefficients)))
         return found if (found**2).sum() > ROUNDING**2 * np.trace(self.source.products()) else 0 * found
 
-    @property
-    def most_bands(self) -> int:
-        return self.source.most_bands
-
     def coefficients(self, n_bands: int) -> Array:
         return self.from_source(self.source.coefficients(n_bands))
-
-    @property
-    def kept_bands(self) -> int:
-        return self.source.kept_bands
 
     def products(self) -> Array:
         return self._products
@@ -100,9 +78,6 @@ class ConvolvedLight(LightBase):
     def _products(self) -> Array:
         coefficients = self.coefficients(self.bands)
         return np.asarray(coefficients.T @ coefficients)
-
-    def landmarks(self) -> Array:
-        return self.source.landmarks()
 
     @property
     def map_rows(self) -> int:
