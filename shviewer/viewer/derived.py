@@ -1,11 +1,10 @@
-"""Things derived from a light for drawing, each computed once: exposure, camera, peak, map, scale of the error."""
+"""Things derived from a light for drawing, each computed once: exposure, camera, peak, scale of the error."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shviewer.analysis.cache import remember
 from shviewer.analysis.figures import error_grid, grid_rows, sums
@@ -117,21 +116,9 @@ def peak(light: Light) -> Peak | None:
     return found if found.radiance > PEAK * abs(mean) else None
 
 
-@remember(most=2, doing="drawing the map")
-def reconstruction_map(
-    light: Light, projection: Projection, shown: Shown, size: tuple[int, int]
-) -> NDArray[np.float32]:
-    """The map of the reconstruction with (rows, columns) `size`: spline coefficients (rows, columns, 4)."""
-    return Synthesis(sums(light, projection, shown)[0]).spline_map(*size)
-
-
 @remember(most=16)
 def error_scale(
-    light: Light,
-    projection: Projection,
-    shown: Shown,
-    kind: str,
-    found: Extremes | None = None,
+    light: Light, projection: Projection, shown: Shown, kind: str, found: Extremes | None = None
 ) -> ErrorScale:
     """The scale of the error, from the grid of the figures. The largest relative error is no figure: it is searched for here.
 

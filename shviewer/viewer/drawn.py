@@ -1,28 +1,33 @@
-"""The ways to draw the reconstruction. `prepare` decides once; its choice is passed to the renderer and the overlay."""
+"""What the shader evaluates: a light, and one of the ways to draw its reconstruction, which `prepare` chooses."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quantities.encodings import Stored
+from shviewer.lights.lat_long import LatLongMap
+from shviewer.lights.light import Light
+from shviewer.lights.lobe import Lobe
 from shviewer.viewer.surface import Surface
 
-MAP_COLUMNS = (512, 1024, 2048)
-"""Widths that a map can have."""
 
-MAP_ERROR = 0.25 / 255
-"""How far its splines may be off, in units of white: half of what could be seen. Where no width is enough, the widest."""
+class Source(NamedTuple):
+    """The form in which the shader evaluates a light: its lobes, or a map."""
 
-SPLINE_ERROR = 0.012
-"""The spline of a wave of w radians a column is off by at most this times w^3 of its height (Synthesis.spline_map)."""
+    lobes: tuple[Lobe, ...]
+    map: LatLongMap | None
 
-LONGEST_STEP = 0.7
-"""Radians a column of the shortest wave for which that bound holds."""
+
+def source_of(light: Light) -> Source:
+    """The form of a light for the shader. How its texels are held is found out here, so that OpenGL's thread need not."""
+    if light.map is not None:
+        _ = light.map.halves
+    return Source(light.lobes, light.map)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,15 +59,3 @@ class Surfaces:
 
 
 Drawn: TypeAlias = DirectSum | Encoded | SplineMap | Surfaces
-
-
-def map_size(n_bands: int, peak: float) -> tuple[int, int]:
-    """Rows and columns of the map of a reconstruction, no finer than needed. peak: its largest magnitude, in units of white."""
-    waves = {columns: 2 * np.pi * (n_bands - 1) / columns for columns in MAP_COLUMNS}
-    good = (
-        columns
-        for columns, wave in waves.items()
-        if wave <= LONGEST_STEP and SPLINE_ERROR * wave**3 * peak <= MAP_ERROR
-    )
-    columns = next(good, MAP_COLUMNS[-1])
-    return columns // 2 + 1, columns

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from shviewer.analysis.comparing.comparison import verdict_of
-from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, error_grid, figures_of, grid_rows, needs
+from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, figures_of, needs
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.reconstruction import Reconstruction, values_at
 from shviewer.analysis.subjects import Subject, subject
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.quantities.encodings import Stored
-from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
 from shviewer.lights.lobe import Lobe
 from shviewer.lights.lobes import LobeLight
@@ -34,11 +31,11 @@ from shviewer.viewer.derived import (
     error_scale,
     exposure_stops,
     peak,
-    reconstruction_map,
     reconstruction_shown,
     stands,
 )
-from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces, map_size
+from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, Source, SplineMap, Surfaces, source_of
+from shviewer.viewer.splines import splines_of
 from shviewer.viewer.state import FRONT, State, changed
 from shviewer.viewer.surface import surfaces
 from shviewer.viewer.view import LOOKED, POINTED, REMEMBERED, SPOKEN
@@ -46,17 +43,7 @@ from shviewer.viewer.view import LOOKED, POINTED, REMEMBERED, SPOKEN
 LIVE = (*LOOKED, *POINTED, *SPOKEN, *REMEMBERED, "whole_sphere", "marks", "sweep_to", "turning", "trace")
 """Fields of the view on which nothing depends that takes time."""
 
-BETWEEN = 1.1
-"""A reconstruction is at most this many times as large as on its grid, which has eight points to its shortest wave."""
-
 EXPOSURE = ("exposure_stops", "exposure_offset")
-
-
-class Source(NamedTuple):
-    """The form in which the shader evaluates a light: its lobes, or a map."""
-
-    lobes: tuple[Lobe, ...]
-    map: LatLongMap | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,17 +209,15 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
         if one.stored is not None and view.evaluate != "map":
             return Encoded(one.stored)
         if by_map or view.evaluate == "map" or recipe.n_bands > MAX_DIRECT_BANDS:
-            largest = _largest(light, one.coefficients, recipe.n_bands)
-            size = map_size(recipe.n_bands, _height(largest, scale, 2.0**stops * steepest(view.tone)))
-            return SplineMap(reconstruction_map(light, one.projection, one.recipe.shown, size))
+            return SplineMap(splines_of(one, 2.0**stops * steepest(view.tone), scale))
         return DirectSum(one.coefficients)
 
     drawn = drawn_as(found)
     return Picture(
         state=state,
         subject=found.subject,
-        original=_source(whole),
-        compared=_source(light),
+        original=source_of(whole),
+        compared=source_of(light),
         suns=_sun_lobes(found.subject, recipe.quantity),
         coefficients=found.coefficients,
         drawn=drawn,
@@ -246,13 +231,6 @@ def first_picture(state: State, *, by_map: bool = False, ahead: int = 0) -> Pict
         peak=peak(whole),
         needs_unsplit=PENDING if found.subject.suns else None,
     )
-
-
-def _source(light: Light) -> Source:
-    """The form of a light for the shader. How its texels are held is found out here, so that OpenGL's thread need not."""
-    if light.map is not None:
-        _ = light.map.halves
-    return Source(light.lobes, light.map)
 
 
 def error_end(state: State) -> float:
@@ -269,19 +247,6 @@ def _scale(state: State, light: Light, projection: Projection, found: Extremes |
         return None
     scale = error_scale(light, projection, state.recipe.shown, state.view.error, found)
     return scale if state.view.error_range is None else replace(scale, end=state.view.error_range)
-
-
-def _largest(light: Light, coefficients: Array, n_bands: int) -> float:
-    """A bound of the reconstruction's magnitude, from the grid of its figures."""
-    grid = error_grid(light, grid_rows(n_bands))
-    return BETWEEN * float(np.abs(Synthesis(coefficients).on_rows(grid.theta, len(grid.phi))).max())
-
-
-def _height(largest: float, scale: ErrorScale | None, exposure: float) -> float:
-    """The reconstruction's magnitude in units of the full range of colours: white, or the end of the error's."""
-    if scale is None:
-        return largest * exposure
-    return largest * max(exposure, 1 / (scale.end * (scale.floor if scale.kind == "relative" else 1.0)))
 
 
 def _sun_lobes(shown: Subject, quantity: str) -> tuple[Lobe, ...]:

@@ -17,10 +17,11 @@ from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.drawn import MAP_COLUMNS, DirectSum, SplineMap, map_size
+from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.screenshot import render_rgb
+from shviewer.viewer.splines import MAP_COLUMNS, map_size
 from shviewer.viewer.state import state_of
 
 

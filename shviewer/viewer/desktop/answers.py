@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from shviewer.analysis.figures import Pending
+from shviewer.analysis.figures import Needs
 from shviewer.viewer.actions import with_bands
 from shviewer.viewer.overlay.directions.marks import marks_of
 from shviewer.viewer.picture import Picture
@@ -13,8 +13,7 @@ from shviewer.viewer.state import State, changed
 def fit(state: State, picture: Picture) -> State:
     """Use as many bands as the tolerance needs; where none are enough, say what is the best there is."""
     found = picture.needs
-    if isinstance(found, Pending):  # never, once the picture is complete
-        return state
+    assert isinstance(found, Needs), "the picture is not complete"
     if found.shown is not None:
         return with_bands(state, found.shown)
     best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"

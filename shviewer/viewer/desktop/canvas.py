@@ -11,6 +11,7 @@ import moderngl
 
 from shviewer.errors import ShviewerError
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.desktop.behind.task import Wake
 from shviewer.viewer.desktop.evaluation import Evaluation
 from shviewer.viewer.desktop.unchanged import overlay_key, panes_key
 from shviewer.viewer.drawn import DirectSum
@@ -44,10 +45,7 @@ MOST_SUMMED = 0.05
 class Canvas:
     """Frames on the screen of a context. release() at the end."""
 
-    def __init__(
-        self, context: moderngl.Context, carrier: Carrier | None = None, wake: Callable[[], None] | None = None
-    ) -> None:
-        """wake: called from another thread when something has been made for the next frame."""
+    def __init__(self, context: moderngl.Context, carrier: Carrier | None = None, wake: Wake = None) -> None:
         self.renderer = Renderer(context, carrier)
         if carrier is not None:
             self.renderer.compiled = Warming(carrier).ready

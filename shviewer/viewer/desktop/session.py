@@ -17,6 +17,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.behind.opening import MOST_DROPPED
 from shviewer.viewer.desktop.behind.saving import Saving, Written, save_coefficients
+from shviewer.viewer.desktop.behind.task import Wake
 from shviewer.viewer.desktop.history import History
 from shviewer.viewer.desktop.showing import PLAIN, Settings, Showing
 from shviewer.viewer.desktop.watching import Watch
@@ -39,13 +40,8 @@ class Session(Showing):
     """What keys, files and time ask of a picture: states, commands that wait for it, and what plays."""
 
     def __init__(
-        self,
-        state: State,
-        first: Picture | None = None,
-        settings: Settings = PLAIN,
-        wake: Callable[[], None] | None = None,
+        self, state: State, first: Picture | None = None, settings: Settings = PLAIN, wake: Wake = None
     ) -> None:
-        """As for `Showing`."""
         super().__init__(state, first, settings, wake)
         self.metronome = Metronome()
         self.saving = Saving(wake, self._written, self._failed)
@@ -88,26 +84,26 @@ class Session(Showing):
     def do(self, command: Command) -> Command | None:
         """Carry a command out; one that only a window can carry out is returned."""
         self.state = changed(self.state, message="")
-        if command is Command.RELOAD:
-            self.reading = Event()
-        elif command is Command.FIT:
-            self.when_ready(self._fit)
-        elif command is Command.FACE_MARK:
-            self.when_ready(self._face_mark)
-        elif command in (Command.UNDO, Command.REDO):
-            self._go_back(command)
-        elif command is Command.EXPORT:
-            self.when_ready(lambda: self.saving.write("writing the coefficients", save_coefficients, self.picture))
-        else:
-            return command
+        match command:
+            case Command.RELOAD:
+                self.reading = Event()
+            case Command.FIT:
+                self.when_ready(self._fit)
+            case Command.FACE_MARK:
+                self.when_ready(self._face_mark)
+            case Command.UNDO | Command.REDO:
+                self._go_back(undo=command is Command.UNDO)
+            case Command.EXPORT:
+                self.when_ready(lambda: self.saving.write("writing the coefficients", save_coefficients, self.picture))
+            case _:
+                return command
         return None
 
-    def _go_back(self, command: Command) -> None:
+    def _go_back(self, *, undo: bool) -> None:
         """Undo the last step, or do again what was undone."""
         if self.opening.working:  # a light that is not there yet is no step
             self.stop()
             return
-        undo = command is Command.UNDO
         found = self._history.undo(self.state) if undo else self._history.redo(self.state)
         if found is None:
             self.say("there is nothing to undo" if undo else "nothing was undone that could be done again")

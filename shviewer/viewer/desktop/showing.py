@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from threading import Event
 from typing import NamedTuple
@@ -20,6 +20,7 @@ from shviewer.lights.light import Light
 from shviewer.viewer.animation.turning import followed, is_next, only_turned
 from shviewer.viewer.desktop.behind.making import Making
 from shviewer.viewer.desktop.behind.opening import Opening
+from shviewer.viewer.desktop.behind.task import Wake
 from shviewer.viewer.desktop.messages import notes_of, reading_news, why_whole, with_keys
 from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.picture import Picture, prepare, still
@@ -47,16 +48,9 @@ class Showing:
     """The state, and its picture or that of the last state that could be shown."""
 
     def __init__(
-        self,
-        state: State,
-        first: Picture | None = None,
-        settings: Settings = PLAIN,
-        wake: Callable[[], None] | None = None,
+        self, state: State, first: Picture | None = None, settings: Settings = PLAIN, wake: Wake = None
     ) -> None:
-        """first: the picture of the state; without it, it is made here: LightError or UsageError if that is impossible.
-
-        wake: called from another thread when a task has ended.
-        """
+        """first: the picture of the state; without it, it is made here: LightError or UsageError if that is impossible."""
         first = first or prepare(state)
         reading = state.recipe.reading  # from now on no pipe is waited for: it was read where the command line named it
         isolated = replace(reading, isolated=True, limits=replace(reading.limits, pipe_seconds=0))

@@ -14,11 +14,11 @@ from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.lobe import Lobe
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Pane, Pixels, Sphere
-from shviewer.viewer.drawn import Drawn, Encoded, SplineMap, Surfaces
+from shviewer.viewer.drawn import Drawn, Encoded, Source, SplineMap, Surfaces
 from shviewer.viewer.gl.held import Held, kind_of
 from shviewer.viewer.gl.programs import Program
 from shviewer.viewer.gl.shared import CHOICES, FLOATS, profile_bits
-from shviewer.viewer.picture import Picture, Source
+from shviewer.viewer.picture import Picture
 from shviewer.viewer.view import ERRORS
 
 MOST_SAMPLES = 6

@@ -341,7 +341,7 @@ def test_who_is_told_of_a_result_finds_it_and_who_is_told_of_the_end_finds_the_t
         made.wait(60)
         found.append(task[0].finished)
 
-    task.append(Task(lambda: [None], done=done))
+    task.append(Task(lambda: [None], wake=done))
     made.set()
     task[0]._thread.join()
     assert found == [False, True]

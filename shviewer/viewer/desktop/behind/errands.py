@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from shviewer.errors import ShviewerError
 from shviewer.progress import Stopped, tell
-from shviewer.viewer.desktop.behind.task import Task
+from shviewer.viewer.desktop.behind.task import Task, Wake
 from shviewer.viewer.work import Work
 
 T = TypeVar("T")
@@ -20,8 +20,7 @@ AT_ONCE = 0.02
 class Errands:
     """Errands done behind the window, one after the other. What comes of each is taken in the window's thread."""
 
-    def __init__(self, wake: Callable[[], None] | None = None) -> None:
-        """wake: called from another thread when one is done."""
+    def __init__(self, wake: Wake = None) -> None:
         self._wake = wake
         self._begun: list[tuple[Task[Any], Callable[[Any], None], Callable[[ShviewerError], None]]] = []
 

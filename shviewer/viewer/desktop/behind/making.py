@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from threading import Event
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import read_again, read_once
 from shviewer.viewer.animation.animation import ranged
-from shviewer.viewer.desktop.behind.task import Task
+from shviewer.viewer.desktop.behind.task import Task, Wake
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, stages, still
 from shviewer.viewer.playing import wants_range
@@ -26,8 +26,7 @@ SHOWN: dict[str, Any] = {
 class Making:
     """The task at work. The newest wish wins: a task whose pictures nobody wants any more is ended before the next begins."""
 
-    def __init__(self, wake: Callable[[], None] | None) -> None:
-        """wake: called from another thread when a picture has been made, and at the end."""
+    def __init__(self, wake: Wake) -> None:
         self._wake = wake
         self._task: Task[Picture] | None = None
         self._ended: Task[Picture] | None = None

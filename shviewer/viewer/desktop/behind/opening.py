@@ -14,6 +14,7 @@ from shviewer.lights.find import built_in_lights, find_light, split_light
 from shviewer.lights.light import Light
 from shviewer.viewer.actions import show_light
 from shviewer.viewer.desktop.behind.errands import Errands
+from shviewer.viewer.desktop.behind.task import Wake
 from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.saving.restoring import restored
 from shviewer.viewer.state import State, changed, started
@@ -62,7 +63,7 @@ class Opening(Errands):
     A picture may have to look at the whole file of its light.
     """
 
-    def __init__(self, wake: Callable[[], None] | None = None, *, as_image: bool = False) -> None:
+    def __init__(self, wake: Wake = None, *, as_image: bool = False) -> None:
         super().__init__(wake)
         self._as_image = as_image
         self._then: Callable[[State], None]

@@ -20,7 +20,7 @@ from shviewer.outputs import file_stem, write_atomically
 from shviewer.viewer import camera
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.behind.errands import Errands
-from shviewer.viewer.desktop.behind.task import QUIET
+from shviewer.viewer.desktop.behind.task import QUIET, Wake
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_numbered, write_png
@@ -45,12 +45,7 @@ class Written(NamedTuple):
 class Saving(Errands):
     """Pictures, coefficients and texts that were asked for. A picture that is drawn has its maps in OpenGL until it is."""
 
-    def __init__(
-        self,
-        wake: Callable[[], None] | None,
-        written: Callable[[Written], None],
-        failed: Callable[[ShviewerError], None],
-    ) -> None:
+    def __init__(self, wake: Wake, written: Callable[[Written], None], failed: Callable[[ShviewerError], None]) -> None:
         """written, failed: hear of every file that was written, and of whatever could not be."""
         super().__init__(wake)
         self._written, self._failed = written, failed

@@ -6,12 +6,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from threading import Event, Thread
 from time import perf_counter
-from typing import Generic, TypeVar
+from typing import Generic, TypeAlias, TypeVar
 
 from shviewer.progress import Stopped, in_words, listening
 from shviewer.viewer.work import Work
 
 T = TypeVar("T")
+
+Wake: TypeAlias = Callable[[], None] | None
+"""Called from another thread when it has made something, so that the window's thread takes it."""
 
 QUIET = 0.3
 """Seconds after which a task is spoken of."""
@@ -25,16 +28,8 @@ LEAST_DONE = 0.03
 class Task(Generic[T]):
     """One computation, of results each better than the one before. It begins when the task before it has ended."""
 
-    def __init__(
-        self,
-        make: Callable[[], Iterable[T | None]],
-        after: Task[T] | None = None,
-        done: Callable[[], None] | None = None,
-    ) -> None:
-        """make: gives the results, at least one, and None where a step is over without one.
-
-        done: called from the thread at every step, and at the end in any case.
-        """
+    def __init__(self, make: Callable[[], Iterable[T | None]], after: Task[T] | None = None, wake: Wake = None) -> None:
+        """make: gives the results, at least one, and None where a step is over without one."""
         self.started = perf_counter()
         self._before = after
         self._status, self._words = "", ""
@@ -45,11 +40,11 @@ class Task(Generic[T]):
         self._steps = self._needed = 0
         """How many are over, and how many have to be before it may stop."""
         self._over = Event()
-        """Set before `done` is called, which must find the task finished."""
+        """Set before `wake` is called, which must find the task finished."""
         self.latest: T | None = None
         """The best result so far."""
         self._error: BaseException | None = None
-        self._thread: Thread = Thread(target=self._run, args=(make, after and after._thread, done), daemon=True)
+        self._thread: Thread = Thread(target=self._run, args=(make, after and after._thread, wake), daemon=True)
         self._thread.start()
 
     @property
@@ -112,9 +107,8 @@ class Task(Generic[T]):
             raise self._error
         return self.latest  # type: ignore[return-value]  # without an error, it was made
 
-    def _run(
-        self, make: Callable[[], Iterable[T | None]], before: Thread | None, done: Callable[[], None] | None
-    ) -> None:
+    def _run(self, make: Callable[[], Iterable[T | None]], before: Thread | None, wake: Wake) -> None:
+        """Make the results, and wake at every step, and at the end in any case."""
         if before is not None:
             before.join()
         self._before = None
@@ -124,13 +118,13 @@ class Task(Generic[T]):
                 for result in make():
                     self.latest = result if result is not None else self.latest
                     self._steps += 1
-                    if done is not None:
-                        done()
+                    if wake is not None:
+                        wake()
         except BaseException as error:
             self._error = error
         self._over.set()
-        if done is not None:
-            done()
+        if wake is not None:
+            wake()
 
     def _hear(self, what: str, share: float | None) -> None:
         if self._stopped and self._steps >= self._needed:
