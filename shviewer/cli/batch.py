@@ -103,7 +103,10 @@ def summary(rows: Sequence[SummaryRow]) -> str:
     """A table: light, bands, relative L2 errors of the quantities, the minimum of the one that is written, and the file."""
     width = max(len("light"), *(min(len(row.light), 40) for row in rows))
     done = [row.projected for row in rows if row.projected is not None]
-    quantities = list(done[0].relative_l2_as) if done else [RADIANCE, IRRADIANCE]
+    quantities = list(dict.fromkeys(of for projected in done for of in projected.relative_l2_as)) or [
+        RADIANCE,
+        IRRADIANCE,
+    ]
     heads = "  ".join(f"{in_words(quantity):>10}" for quantity in quantities)
     count = "numbers" if done and done[0].stored is not None else "  bands"
     lines = [f"{'light':<{width}}  {count} {heads}     minimum  file"]
@@ -112,10 +115,9 @@ def summary(rows: Sequence[SummaryRow]) -> str:
         if row.projected is None:
             lines.append(f"{label:<{width}}  failed")
             continue
-        errors = "  ".join(
-            f"{error_in_percent(row.projected, quantity):>{max(10, len(in_words(quantity)))}}"
-            for quantity in quantities
-        )
+        known = row.projected.relative_l2_as
+        said = [(of, error_in_percent(row.projected, of) if of in known else "-") for of in quantities]
+        errors = "  ".join(f"{error:>{max(10, len(in_words(of)))}}" for of, error in said)
         minimum = row.projected.lows.minimum
         held = row.projected.n_bands if row.projected.stored is None else len(row.projected.stored.numbers)
         numbers = f"{held:>7} {errors}  {minimum:>10.4g}"

@@ -481,6 +481,21 @@ def test_an_option_that_is_wrong_for_any_light_is_said_once_before_one_is_read(
     assert not (tmp_path / "new").exists()
 
 
+@pytest.mark.parametrize("first", ["green", "glossy.json"])
+def test_a_batch_may_mix_lights_with_files_of_other_quantities(
+    first: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert project("studio", "--for", "glossy:0.4", "-o", "glossy.json") == 0
+    lights = sorted(["green", "glossy.json"], key=lambda light: light != first)
+    assert project(*lights, "-o", "out") == 0
+    head, *rows, written = capsys.readouterr().out.splitlines()[1:]
+    assert written == "2 of 2 written"
+    assert {"radiance", "irradiance", "glossy:0.4"} <= set(head.replace("roughness 0.4", "glossy:0.4").split())
+    green = next(row for row in rows if row.startswith("green"))
+    assert green.split("%")[-1].split()[0] == "-"
+
+
 def test_notes_of_a_batch_tell_lights_of_the_same_name_apart(tmp_path: Path, capsys: Capture) -> None:
     for folder in "ab":
         (tmp_path / folder).mkdir()
