@@ -189,7 +189,7 @@ class Quantity:
             raise UsageError(f"{name} {value!r}: it is written {self.taken(name, value)!r}")
 
 
-class Bands(NamedTuple):
+class BandSet(NamedTuple):
     """Several bands, each counted from 0."""
 
     most: int

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from shviewer.analysis.options import (
-    Bands,
+    BandSet,
     Choice,
     Flag,
     Number,
@@ -105,7 +105,7 @@ class Recipe:
         "width of the window in bands; as many as are shown unless given",
     )
     muted: frozenset[int] = option(
-        frozenset(), Bands(MAX_BANDS), "bands to leave out, such as 1,3 or 2-4", "--mute L,L"
+        frozenset(), BandSet(MAX_BANDS), "bands to leave out, such as 1,3 or 2-4", "--mute L,L"
     )
     method: str = option(
         "best", Choice(METHODS), "best (of this light), jittered (the paper's) or gauss-legendre", "--method M"

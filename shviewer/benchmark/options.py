@@ -17,7 +17,7 @@ from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.words import meant
 
 
-class Size(NamedTuple):
+class ReportSize(NamedTuple):
     """How much a report measures."""
 
     budget: float
@@ -34,7 +34,7 @@ class Size(NamedTuple):
     """The least repeats of what a user waits for."""
 
 
-FULL = Size(
+FULL = ReportSize(
     budget=120.0,
     lights=("green", "hemisphere", "sun-sky", "film_studio", "venice_sunset"),  # edges, a small source, photographs
     bands=(3, 5, 9, 16, 32),
@@ -44,7 +44,7 @@ FULL = Size(
     reconstructed=RECONSTRUCTED,
     repeats=5,
 )
-QUICK = Size(
+QUICK = ReportSize(
     budget=11.0,
     lights=("green", "film_studio"),
     bands=(3, 9),
@@ -105,7 +105,7 @@ class Options:
                 raise UsageError(f"section {name!r}: {meant(name, SECTIONS)}")
 
     @property
-    def size(self) -> Size:
+    def size(self) -> ReportSize:
         return QUICK if self.quick else FULL
 
     def seconds(self) -> dict[str, float]:

@@ -16,7 +16,7 @@ from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.axes import Axes, turn
 from shviewer.coefficients.programs import OURS
 from shviewer.coefficients.shader_code import glsl_table
-from shviewer.coefficients.table import Row, Table
+from shviewer.coefficients.table import Table, TableRow
 from shviewer.coefficients.texts import convention_text
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import LUMINANCE
@@ -135,10 +135,10 @@ def check_stored(encoding: Encoding, convention: Convention) -> None:
         )
 
 
-def stored_rows(encoding: Encoding, numbers: NDArray[np.generic]) -> list[Row]:
+def stored_rows(encoding: Encoding, numbers: NDArray[np.generic]) -> list[TableRow]:
     """The numbers as rows of a table."""
     places = zip(encoding.places, numbers.tolist(), strict=True)
-    return [Row((("number", place),), [repr(value) for value in row]) for place, row in places]
+    return [TableRow((("number", place),), [repr(value) for value in row]) for place, row in places]
 
 
 def glsl_decoder(table: Table) -> str:

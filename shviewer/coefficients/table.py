@@ -13,7 +13,7 @@ from shviewer.coefficients.stamp import Value
 from shviewer.harmonics.quantities.encodings import Stored
 
 
-class Row(NamedTuple):
+class TableRow(NamedTuple):
     """A row of a table: what it is, such as ("l", 0) and ("m", 0), and its numbers as text."""
 
     place: tuple[tuple[str, object], ...]
@@ -35,7 +35,7 @@ class Table(NamedTuple):
     convention: Convention
     name: str
     """The name of the light."""
-    rows: list[Row]
+    rows: list[TableRow]
     """The numbers as text, each row with its place."""
     stored: Stored | None = None
     """What the numbers are of, if they are no coefficients alone."""

@@ -18,7 +18,7 @@ from shviewer.coefficients.shader_code import glsl_source, hlsl_of
 from shviewer.coefficients.source_code import c_header, csharp_class, javascript_module
 from shviewer.coefficients.stamp import Value
 from shviewer.coefficients.stored_code import FORMULAS, check_stored, glsl_decoder, in_axes, stored_rows
-from shviewer.coefficients.table import Row, Table
+from shviewer.coefficients.table import Table, TableRow
 from shviewer.coefficients.use import with_use
 from shviewer.errors import UsageError
 from shviewer.harmonics.basis import count_bands, degree_order
@@ -120,10 +120,10 @@ _ENCODERS: dict[str, Callable[[Table], bytes]] = {
 }
 
 
-def _rows(numbers: NDArray[np.generic], convention: Convention) -> list[Row]:
+def _rows(numbers: NDArray[np.generic], convention: Convention) -> list[TableRow]:
     """Each row of the file with its l and m, from first to last."""
     places = convention.rows(count_bands(numbers)).tolist()
     return [
-        Row(tuple(zip("lm", degree_order(place), strict=True)), [repr(value) for value in row])
+        TableRow(tuple(zip("lm", degree_order(place), strict=True)), [repr(value) for value in row])
         for place, row in zip(places, real_columns(numbers).tolist(), strict=True)
     ]

@@ -22,7 +22,7 @@ from shviewer.harmonics.extremes.bands import band_heights
 from shviewer.harmonics.extremes.both_sides import largest_magnitude
 from shviewer.harmonics.extremes.error_grid import ErrorGrid, Extremes
 from shviewer.harmonics.extremes.raster import Raster
-from shviewer.harmonics.extremes.zonal_table import Table
+from shviewer.harmonics.extremes.zonal_table import ZonalTable
 from shviewer.harmonics.filters import per_coefficient, window
 from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
@@ -239,7 +239,7 @@ def test_no_derivative_passes_what_the_bands_allow() -> None:
 def test_no_second_derivative_between_the_ends_of_a_bin_passes_its_table(profile: Profile, n_bands: int) -> None:
     """Against the sums themselves, at seven places in each bin that holds no edge."""
     zonal = profile.zonal(n_bands)
-    table = Table.make(profile, zonal)
+    table = ZonalTable.make(profile, zonal)
     bins = table.ranges.shape[1]
     angle = np.linspace(0, np.pi, 8 * bins + 1)
     l = np.arange(n_bands)[:, None]

@@ -9,9 +9,9 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from shviewer.analysis.options import Bands, Number, Option, Pair, Quantity, Share, Whole, WholeOr, options_of
+from shviewer.analysis.options import BandSet, Number, Option, Pair, Quantity, Share, Whole, WholeOr, options_of
 from shviewer.analysis.recipe import Recipe
-from shviewer.cli.options.parsers import Group, Row, row
+from shviewer.cli.options.parsers import Argument, Group, row
 from shviewer.cli.options.values import (
     band_list,
     count,
@@ -41,18 +41,18 @@ READERS: dict[type, Callable[[str], object]] = {
     Share: tolerance,
     WholeOr: whole_or_word,
     Number: finite,
-    Bands: band_list,
+    BandSet: band_list,
     Quantity: quantity,
 }
 """How the values of each kind of option are read; others are texts."""
 
 
-def rows_of(holder: type) -> list[Row]:
+def rows_of(holder: type) -> list[Argument]:
     """The options that a dataclass holds. An option that is not given is None."""
     return [_row(option) for option in options_of(holder).values() if option.called]
 
 
-def _row(option: Option) -> Row:
+def _row(option: Option) -> Argument:
     help_line = option.help.replace("%", "%%")
     if option.const is not None:
         return row(option.called, help_line, dest=option.name, action="store_const", const=option.const)
@@ -81,7 +81,7 @@ JOBS = row(
 )
 
 
-def _shown() -> tuple[Row, ...]:
+def _shown() -> tuple[Argument, ...]:
     from shviewer.viewer.view import View  # modes that draw nothing load nothing of the viewer
 
     compare = (

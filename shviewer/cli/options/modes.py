@@ -16,7 +16,7 @@ from shviewer.cli.options.groups import (
     TURN,
     reading,
 )
-from shviewer.cli.options.parsers import Group, OneLineParser, Paragraphs, Row, row
+from shviewer.cli.options.parsers import Argument, Group, OneLineParser, Paragraphs, row
 from shviewer.cli.options.values import finite, quantity, share, whole
 from shviewer.version import __version__
 
@@ -36,7 +36,7 @@ class Mode(NamedTuple):
 
     usage: str
     description: str
-    options: tuple[Row | Group, ...]
+    options: tuple[Argument | Group, ...]
     epilog: str = ""
     """What the help ends with, after the exit codes."""
 

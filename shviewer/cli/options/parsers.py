@@ -9,14 +9,14 @@ from typing import Any, NamedTuple, NoReturn
 from shviewer.words import near, one_line
 
 
-class Row(NamedTuple):
+class Argument(NamedTuple):
     """What argparse is told of one option."""
 
     names: tuple[str, ...]
     keywords: dict[str, Any]
 
 
-def row(called: str, help: str, read: Callable[[str], object] | None = None, **keywords: Any) -> Row:
+def row(called: str, help: str, read: Callable[[str], object] | None = None, **keywords: Any) -> Argument:
     """An option: its names and what stands for its values, as in "-o --output DIR"; without values it is a switch.
 
     read: how a value is read; None for a text. keywords: further ones of argparse.
@@ -24,18 +24,18 @@ def row(called: str, help: str, read: Callable[[str], object] | None = None, **k
     words = called.split()
     names, values = tuple(word for word in words if word[0] == "-"), [word for word in words if word[0] != "-"]
     if not values:
-        return Row(names, {"action": "store_true", "help": help} | keywords)
+        return Argument(names, {"action": "store_true", "help": help} | keywords)
     keywords = {"metavar": values[0], "type": read, "help": help} | keywords
     if len(values) > 1:
         keywords |= {"metavar": tuple(values), "nargs": len(values)}
-    return Row(names or (keywords.pop("dest", called.lower()),), keywords)
+    return Argument(names or (keywords.pop("dest", called.lower()),), keywords)
 
 
 class Group(NamedTuple):
     """Options that stand under a title in the help. rows: asked for when they are needed, as those of `View` load it."""
 
     title: str
-    rows: Callable[[], Sequence[Row]]
+    rows: Callable[[], Sequence[Argument]]
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -53,10 +53,10 @@ class OneLineParser(argparse.ArgumentParser):
             self.exit(2, f"shviewer: {one_line(message)}\n")
         self.exit(2, f"shviewer: {one_line(message)}; see {self.prog} --help\n")
 
-    def add(self, table: Iterable[Row | Group]) -> None:
+    def add(self, table: Iterable[Argument | Group]) -> None:
         """Add the options of a table, in its order."""
         for part in table:
-            if isinstance(part, Row):
+            if isinstance(part, Argument):
                 self.add_argument(*part.names, **part.keywords)
                 continue
             group = self.add_argument_group(part.title)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands
 from shviewer.harmonics.extremes.bands import band_heights
-from shviewer.harmonics.extremes.zonal_table import Table, Tables, around_edge, beside, perpendicular
+from shviewer.harmonics.extremes.zonal_table import Tables, ZonalTable, around_edge, beside, perpendicular
 from shviewer.harmonics.filters import per_coefficient
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.zonal import Constant, Profile, orient
@@ -102,7 +102,7 @@ class Lobes:
         return np.where(constant[:, None], self.axes[int(constant.argmin())], self.axes)
 
     def _sum(self, profiles: Sequence[Profile | None], zonal: Array) -> ZonalSum:
-        tables = [Table.make(*lobe) for lobe in zip(profiles, zonal, strict=True)]
+        tables = [ZonalTable.make(*lobe) for lobe in zip(profiles, zonal, strict=True)]
         return ZonalSum(tables, self._axes, self.radiance, self.on_one_axis)
 
 
@@ -110,7 +110,7 @@ class Lobes:
 class ZonalSum:
     """D(x) = sum of radiance(i) table(i)(angle of x and axis i); axes (k, 3), radiance (k, 3)."""
 
-    tables: Sequence[Table]
+    tables: Sequence[ZonalTable]
     axes: Array
     radiance: Array
     on_one_axis: bool

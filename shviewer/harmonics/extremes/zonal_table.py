@@ -25,7 +25,7 @@ EDGE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class ZonalTable:
     """A function d of the angle to an axis, in bins of equal width from 0 to pi; at an edge it may jump or bend."""
 
     width: float
@@ -41,7 +41,7 @@ class Table:
     """Values just inside and just outside of the edge."""
 
     @classmethod
-    def make(cls, profile: Profile | None, zonal: Array) -> Table:
+    def make(cls, profile: Profile | None, zonal: Array) -> ZonalTable:
         """The table of profile - sum of zonal(l) (2l+1)/4pi P(l), zonal: (n,); without a profile, of minus that sum."""
         n_bands = len(zonal)
         bins = max(FEWEST_BINS, 1 << int(np.ceil(np.log2(BINS_A_BAND * n_bands))))
@@ -76,7 +76,7 @@ class Table:
 class Tables:
     """Several tables with as many bins as one array, (tables, ...)."""
 
-    def __init__(self, tables: Sequence[Table]) -> None:
+    def __init__(self, tables: Sequence[ZonalTable]) -> None:
         self.width, self.count = tables[0].width, len(tables)
         self.ends, self.ranges = (
             np.stack([table.ends for table in tables]),
