@@ -232,7 +232,7 @@ def bands_in(text: str) -> frozenset[int]:
             first, last = int(low), int(high if dash else low)
             if last < first:
                 raise ValueError
-            bands |= {first, *range(first, min(last, MAX_BANDS) + 1)}  # Bands refuses what is beyond
+            bands |= {first, *range(first, min(last, MAX_BANDS) + 1)}  # BandSet refuses what is beyond
     except ValueError:
         raise ValueError(f"{text!r}: bands are whole numbers and ranges, such as 1,3 or 2-4") from None
     return frozenset(bands)
