@@ -223,8 +223,8 @@ def _answers_and_figures(area: Box, *, compact: bool, roomy: bool) -> Numbers:
 
 def _in_cell(found: Numbers, cell: Box) -> Numbers:
     """The same with the curve in a cell among the panes."""
-    legend = Line(cell.left, cell.right, cell.bottom + 32) if cell.width >= 470 else None
     curve = Box(cell.left, cell.top + 12, cell.right, cell.bottom - (4 if cell.width >= 300 else 20))
+    legend = Line(cell.left, cell.right, curve.bottom + 36) if found.foot else None
     return replace(found, curve=curve, legend=legend)
 
 

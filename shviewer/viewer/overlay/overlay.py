@@ -37,6 +37,9 @@ from shviewer.viewer.picture import Picture
 from shviewer.viewer.work import Work
 
 NOT_TIMED = "nothing was projected that could be timed; M changes the method"
+SENTENCE = 470.0
+"""Room for the sentences that explain what is plotted, in pixels of the design."""
+
 NO_ROOM = "no room for {}: enlarge the window; {} closes it"
 
 
@@ -105,7 +108,7 @@ def draw_overlay(
         foot = turning_pieces(at, picture, pace)
     elif work is not None:
         foot = work_pieces(at, work)
-    elif line is None and explained and not said:  # in place of keys
+    elif explained and not said and (line is None or line.right - line.left < at.px(SENTENCE)):  # in place of keys
         line, exposure = numbers.foot, [] if shared else exposure
     else:
         after = round(max((piece.box.right for piece in exposure), default=0) + at.px(18)) if shared else 0

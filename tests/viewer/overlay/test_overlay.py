@@ -404,6 +404,16 @@ def test_a_long_message_takes_the_place_of_the_legend_before_it_is_cut() -> None
         assert ("legend_radiance" in drawn.boxes) == kept
 
 
+@pytest.mark.parametrize("size", [(500, 900), (720, 720), (900, 900)], ids=str)
+def test_a_curve_among_the_panes_says_what_its_lines_are_and_sentences_stand_in_the_foot(size: tuple[int, int]) -> None:
+    shown, steps = PICTURES["signed error"], picture_of(error="signed", by_roughness=True)
+    at = frame(shown, size)
+    assert {"legend_radiance", "legend_shading"} <= draw_overlay(shown, at).boxes.keys()
+    sentence = draw_overlay(steps, at).boxes["steps_sentence"]
+    assert at.numbers.foot is not None
+    assert abs(sentence.bottom - at.numbers.foot.baseline) < 6
+
+
 @pytest.mark.parametrize("size", [(500, 300), (700, 400), (500, 900), (400, 1200), (720, 720)], ids=str)
 @pytest.mark.parametrize("error", ["off", "signed"])
 def test_what_went_wrong_is_said_in_full_in_small_windows_too(size: tuple[int, int], error: str) -> None:
