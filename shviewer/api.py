@@ -173,9 +173,8 @@ def _fitted(recipe: Recipe) -> Recipe:
 
     found = needs(recipe)
     if found.shown is None:
-        best = f"{100 * found.best:.3g} % with {found.best_bands} bands"
         warnings.warn(
-            f"no count up to {found.searched} is within {100 * found.tolerance:g} %: the best is {best}", stacklevel=4
+            f"no count up to {found.searched} is within {100 * found.tolerance:g} %: {found.best_words}", stacklevel=4
         )
     return replace(recipe, n_bands=found.shown or found.best_bands)
 

@@ -38,6 +38,7 @@ from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
+from shviewer.words import counted
 
 MIN_ESTIMATE = 256
 """Fewer samples than this do not even tell how noisy they are."""
@@ -71,6 +72,11 @@ class Needs:
     best_bands: int
     searched: int
     """The number of bands up to which was searched: fewer for samples, and of given coefficients all that there are."""
+
+    @property
+    def best_words(self) -> str:
+        """ "the best is 7.31 % with 12 bands", of the quantity shown"""
+        return f"the best is {100 * self.best:.3g} % with {counted(self.best_bands, 'band')}"
 
 
 @dataclass(frozen=True)
@@ -192,7 +198,7 @@ def lows_of(light: Light, projection: Projection, what: Shown) -> Lows:
 def irradiance_error(light: Light, projection: Projection, what: Shown) -> float:
     """`Figures.irradiance_relative_l2`, without the others."""
     shown, known = sums(light, projection, what)
-    if projection.stored is not None:
+    if projection.stored is not None or light.quantity == IRRADIANCE:
         return known.relative_l2
     irradiance = through(light, IRRADIANCE)
     own = project(light, BEST, projection.n_bands).radiance[: len(shown)]

@@ -42,6 +42,11 @@ def subject(recipe: Recipe) -> Subject:
     return replace(found, whole=whole, light=projected)
 
 
+def has_suns(recipe: Recipe) -> bool:
+    """Whether suns can be taken out of the light, which are not; of a large image it takes a look at every texel."""
+    return not recipe.split_sun and bool(subject(replace(recipe, quantity=RADIANCE, split_sun=True)).suns)
+
+
 def load_light(recipe: Recipe) -> Light:
     """The light that is projected."""
     return subject(recipe).light

@@ -12,7 +12,7 @@ from shviewer.analysis.figures import error_grid, grid_rows, irradiance_error
 from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.reconstruction import reconstruction_of
-from shviewer.analysis.subjects import subject, through
+from shviewer.analysis.subjects import has_suns, subject, through
 from shviewer.coefficients.convention import Convention
 from shviewer.coefficients.parts.quantities import whole
 from shviewer.coefficients.programs import SHADED_WITH
@@ -57,7 +57,7 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
     )
     remedies = []
     large = math.prod(subject(recipe).light.about.size or ()) > SEARCHED_TEXELS
-    if not large and not recipe.split_sun and subject(replace(recipe, split_sun=True)).suns:
+    if not large and has_suns(recipe):
         remedies.append(("--split-sun", replace(recipe, split_sun=True)))
     if recipe.window != "dering" and recipe.n_bands <= MAX_DERINGED_BANDS:
         remedies.append(("--window dering", replace(recipe, window="dering", window_width=None)))

@@ -14,7 +14,7 @@ from shviewer.analysis.figures import errors_of
 from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.projections import way_of
 from shviewer.analysis.recipe import Recipe, light_name
-from shviewer.analysis.subjects import load_light, subject
+from shviewer.analysis.subjects import has_suns, load_light
 from shviewer.cli.batch import error_in_percent, project_batch
 from shviewer.cli.below_zero import below_zero, encoded_below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
@@ -118,8 +118,7 @@ def check_tolerance(recipe: Recipe, convention: Convention) -> None:
         return
     bands = counted(most, "band")
     reached = float(errors_of(load_light(recipe), way_of(recipe))[most - 1])
-    suns = () if recipe.split_sun else subject(replace(recipe, split_sun=True)).suns
-    remedy = "take its sun out, --split-sun, or " if suns else ""
+    remedy = "take its sun out, --split-sun, or " if has_suns(recipe) else ""
     raise UsageError(
         f"{light_name(recipe.light)}: {100 * recipe.tolerance:g} % needs more than the {bands} that {convention.name} takes, "
         f"which reach {100 * reached:.3g} %; {remedy}give --bands {most}"

@@ -11,7 +11,7 @@ from shviewer.analysis.comparing.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, figures_of, needs
 from shviewer.analysis.projections import Projection
 from shviewer.analysis.reconstruction import Reconstruction, values_at
-from shviewer.analysis.subjects import Subject, subject
+from shviewer.analysis.subjects import Subject, has_suns, subject
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.quantities.encodings import Stored
@@ -75,6 +75,8 @@ class Picture:
     needs: Needs | Pending = PENDING
     needs_unsplit: Needs | Pending | None = None
     """The bands that the light would need with its suns; None if none were split off."""
+    sun_to_blame: bool = False
+    """Whether no band count is enough for the radiance, and the light has a sun that can be taken apart."""
     peak: Peak | None = None
     """Where the original is far brighter than elsewhere."""
     verdict: str = ""
@@ -171,8 +173,9 @@ def completed(picture: Picture) -> Picture:
     if isinstance(picture.needs, Needs):
         return picture
     unsplit = needs(replace(recipe, split_sun=False)) if picture.subject.suns else None
-    said = verdict_of(recipe)
-    return replace(picture, needs=needs(recipe), needs_unsplit=unsplit, verdict=said)
+    found = needs(recipe)
+    sun_to_blame = found.radiance is None and recipe.compare is None and has_suns(recipe)
+    return replace(picture, needs=found, needs_unsplit=unsplit, sun_to_blame=sun_to_blame, verdict=verdict_of(recipe))
 
 
 def with_figures(picture: Picture) -> Picture:

@@ -105,7 +105,7 @@ def _fitted(recipe: Recipe, name: str) -> Recipe:
     called = f"shviewer: {one_line(name)}: " if name else "shviewer: "
     print(f"{called}bands within {100 * found.tolerance:g} %: {says}", file=sys.stderr)
     if found.shown is None:
-        print(f"{called}the best is {100 * found.best:.3g} % with {found.best_bands} bands", file=sys.stderr)
+        print(f"{called}{found.best_words}", file=sys.stderr)
     if recipe.method == "jittered":
         guess = estimate_from_samples(recipe)
         if guess.decided:

@@ -16,8 +16,7 @@ def fit(state: State, picture: Picture) -> State:
     assert isinstance(found, Needs), "the picture is not complete"
     if found.shown is not None:
         return with_bands(state, found.shown)
-    best = f"the best is {100 * found.best:.3g} % with {found.best_bands}"
-    message = f"no band count is within {100 * found.tolerance:g} %: {best}"
+    message = f"no band count is within {100 * found.tolerance:g} %: {found.best_words}"
     return changed(with_bands(state, found.best_bands), message=message)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from shviewer.analysis.comparing.comparison import agrees
-from shviewer.analysis.figures import Pending
 from shviewer.viewer import message
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
@@ -114,14 +113,6 @@ def _mark(sign: str, x: float, baseline: float, size: float, ink: Ink, at: Compo
         return [Curve((place(0, 0.5), place(0.35, 0.88), place(0.95, 0.12)), width, ink, clip, name="mark")]
     strokes = ((place(0.05, 0.05), place(0.9, 0.9)), (place(0.05, 0.9), place(0.9, 0.05)))
     return [Curve(stroke, width, ink, clip, name=f"mark_{n}") for n, stroke in enumerate(strokes)]
-
-
-def proposed_key(picture: Picture) -> str:
-    """U, where no band count is enough for the radiance and a sun may be to blame: it can be taken apart."""
-    needs, recipe = picture.needs, picture.state.recipe
-    if isinstance(needs, Pending) or needs.radiance is not None or recipe.split_sun or recipe.compare:
-        return ""
-    return "U" if picture.light.map is not None or picture.light.lobes else ""
 
 
 def _keys(line: Line, at: Composition, proposed: str, others: bool) -> list[Piece]:

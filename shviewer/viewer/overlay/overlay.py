@@ -18,7 +18,7 @@ from shviewer.viewer.overlay.captions import caption_blocks, exposure_pieces
 from shviewer.viewer.overlay.colour_bar import azimuth_pieces, colour_bar_pieces
 from shviewer.viewer.overlay.drawing import layer_of, lettering
 from shviewer.viewer.overlay.figures import answer_pieces, figure_pieces
-from shviewer.viewer.overlay.foot import INKS, foot_pieces, proposed_key, said_of, takes_legend
+from shviewer.viewer.overlay.foot import INKS, foot_pieces, said_of, takes_legend
 from shviewer.viewer.overlay.help_sheet import help_blocks
 from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
@@ -112,7 +112,9 @@ def draw_overlay(
         line, exposure = numbers.foot, [] if shared else exposure
     else:
         after = round(max((piece.box.right for piece in exposure), default=0) + at.px(18)) if shared else 0
-        foot = foot_pieces(at, said, after=after, proposed=proposed_key(picture), others=len(state.lights) > 1)
+        foot = foot_pieces(
+            at, said, after=after, proposed="U" if picture.sun_to_blame else "", others=len(state.lights) > 1
+        )
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
     if numbers.foot is None and told:  # the message takes the place of the last line there is
         answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])

@@ -468,6 +468,17 @@ def test_where_a_sun_is_to_blame_u_is_among_the_keys_and_stands_out(size: tuple[
     assert next(piece.ink for piece in found if piece.name == "key_U") == GREY
 
 
+@pytest.mark.parametrize("kind", ["noise", "function"])
+def test_a_sun_is_not_proposed_to_be_taken_apart_where_there_is_none(kind: str) -> None:
+    """No band count is enough for either: every texel is another, and a function is never split."""
+    noise = EnvironmentLight(np.random.default_rng(0).random((256, 512, 3), dtype=np.float32) ** 4)
+    light = noise if kind == "noise" else FunctionLight(lambda d: np.sin(400 * d[:, 0]) * d[:, 1])
+    picture = picture_of(light)
+    assert picture.needs.radiance is None  # type: ignore[union-attr]
+    found = texts_of(draw_overlay(picture, compose(1280, 640)))
+    assert next(piece.ink for piece in found if piece.name == "key_U") == GREY
+
+
 def lit(at: Composition, work: Work) -> tuple[float, float]:
     """The part of the hairline in the accent, as shares of its length."""
     (bar,) = (piece.box for piece in hairline_pieces(at, work) if isinstance(piece, Fill) and piece.ink == ACCENT)
