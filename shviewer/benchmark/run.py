@@ -81,7 +81,7 @@ class Run:
             times = summarise([worked.wall for worked in self.yardstick])
             self.report.yardstick_milliseconds = dict(zip(YARDSTICK, times[:3], strict=True))
             self.report.extra[DISTURBANCE] = disturbance(self.yardstick)
-        self.report.left_out = lines_not_measured(self.report.rows)
+        self.report.not_measured = lines_not_measured(self.report.rows)
 
     def write(self, plots: Sequence[str] = (), plot_message: str = "") -> None:
         """Write what there is so far."""

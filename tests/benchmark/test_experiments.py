@@ -155,10 +155,10 @@ def test_errors_in_the_rows_are_those_of_the_metrics_module(green: MeasuredLight
         figures = [channel_figures(light.products(), exact, shown, 1.0)["all"] for shown in found]
         # the sums are the same but for their order: a few roundings
         assert row.total_error == pytest.approx(np.median([each.relative_l2 for each in figures]), rel=1e-9)
-        assert row.truncation == pytest.approx(figures[0].left_out, rel=1e-9)
+        assert row.left_out == pytest.approx(figures[0].left_out, rel=1e-9)
         if row.error is not None:
             added = np.array([each.added for each in figures])
-            kept = np.sqrt(1 - row.truncation**2)
+            kept = np.sqrt(1 - row.left_out**2)
             assert row.error * kept == pytest.approx(np.median(added), rel=1e-6, abs=1e-12)
             if row.error_low is not None:
                 assert row.error_low * kept == pytest.approx(added.min(), rel=1e-6)
@@ -179,7 +179,7 @@ def test_the_reference_has_no_error_of_its_own_and_nothing_random_no_spread(gree
 
 def test_one_seed_gives_identical_errors_and_another_does_not(green: MeasuredLight, green_rows: list[Row]) -> None:
     def errors(rows: list[Row]) -> dict[object, tuple[object, ...]]:
-        return {row.key: (row.error, row.error_low, row.error_high, row.truncation, row.total_error) for row in rows}
+        return {row.key: (row.error, row.error_low, row.error_high, row.left_out, row.total_error) for row in rows}
 
     first, again, other = errors(green_rows), errors(rows_of(green, 0)), errors(rows_of(green, 7))
     assert again == first

@@ -57,7 +57,7 @@ def projected(method: str, milliseconds: float, error: float, light: str = "gree
     )
 
 
-def drawn(method: str, n_bands: int, milliseconds: float, truncation: float, light: str = "green") -> Row:
+def drawn(method: str, n_bands: int, milliseconds: float, left_out: float, light: str = "green") -> Row:
     return Row(
         section="reconstruction",
         method=method,
@@ -67,7 +67,7 @@ def drawn(method: str, n_bands: int, milliseconds: float, truncation: float, lig
         low_quartile=0.9 * milliseconds,
         high_quartile=1.1 * milliseconds,
         set_up_milliseconds=30.0 if method == CACHED else None,
-        truncation=truncation,
+        left_out=left_out,
         note=PER_FRAME,
     )
 

@@ -70,9 +70,9 @@ def test_what_the_bands_leave_out_is_what_the_window_says(green: MeasuredLight) 
     errors = errors_of(green.light, BEST)
     for row in reconstruction_rows(green, NO_OPENGL, budget=0, bands=(2, 9), at_least=1):
         assert row.n_bands is not None
-        assert row.truncation == errors[row.n_bands - 1]
+        assert row.left_out == errors[row.n_bands - 1]
         arithmetic = row.arithmetic_error or 0.0
-        assert row.total_error == pytest.approx(np.hypot(row.truncation or 0.0, arithmetic), rel=1e-12)
+        assert row.total_error == pytest.approx(np.hypot(row.left_out or 0.0, arithmetic), rel=1e-12)
 
 
 def test_the_cpu_is_as_exact_as_its_number_type(green: MeasuredLight) -> None:
@@ -100,7 +100,7 @@ def test_an_error_in_the_coefficients_drawn_is_seen(green: MeasuredLight, render
     brighter = replace(stage.direct, drawn=DirectSum(1.01 * stage.coefficients))
     with offscreen(renderer, FRAME) as target:
         found = ShaderFrame(renderer, target)._error(stage, brighter)
-    kept = np.sqrt(1 - green.truncation[4] ** 2)
+    kept = np.sqrt(1 - green.left_out[4] ** 2)
     assert found == pytest.approx(0.01 * kept, rel=0.1)  # on the part of the sphere that is compared
 
 
@@ -117,7 +117,7 @@ def test_a_black_light_has_rows_without_error() -> None:
         assert row.total_error == 0
 
 
-def made_up(truncations: list[float], direct: list[float], cached: list[float], arithmetic: float = 1e-7) -> list[Row]:
+def made_up(left_out_by: list[float], direct: list[float], cached: list[float], arithmetic: float = 1e-7) -> list[Row]:
     """Rows of 1, 2, 4, ... bands, whose quartiles are 1 % around the times."""
 
     def row(method: str, number: int, time: float) -> Row:
@@ -130,9 +130,9 @@ def made_up(truncations: list[float], direct: list[float], cached: list[float], 
             low_quartile=0.99 * time,
             high_quartile=1.01 * time,
             set_up_milliseconds=40.0 if method == CACHED else None,
-            truncation=truncations[number],
+            left_out=left_out_by[number],
             arithmetic_error=arithmetic,
-            total_error=float(np.hypot(truncations[number], arithmetic)),
+            total_error=float(np.hypot(left_out_by[number], arithmetic)),
         )
 
     return [row(DIRECT, i, time) for i, time in enumerate(direct)] + [

@@ -246,7 +246,7 @@ def test_nothing_is_begun_after_the_time_is_up(tmp_path: Path, monkeypatch: pyte
     assert not any(row.measured for row in report.rows)
     with (tmp_path / "report.csv").open() as file:
         assert {row["note"] for row in csv.DictReader(file)} == {"not measured"}
-    assert "best way: green, 3 9 15 bands" in report.left_out
+    assert "best way: green, 3 9 15 bands" in report.not_measured
     page = (tmp_path / "report.md").read_text()
     assert (
         "Not measured for want of time; a larger --budget measures more:\n\n- best way: green, 3 9 15 bands\n" in page

@@ -70,7 +70,7 @@ class Evaluations:
         self.coefficients = picture.coefficients
         self.direct = replace(picture, drawn=DirectSum(picture.coefficients), light_from_world=np.eye(3))
         self.synthesis = Synthesis(picture.coefficients)
-        self.truncation = float(measured.truncation[n_bands - 1])
+        self.left_out = float(measured.left_out[n_bands - 1])
         self.rms = float(np.sqrt(np.trace(light.products()) / (4 * np.pi)))
         count = min(MOST_DIRECTIONS, MOST_VALUES // self.n_bands**2)
         self.directions = normalise(np.random.default_rng(SEED).normal(size=(count, 3)))

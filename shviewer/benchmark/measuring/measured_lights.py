@@ -28,7 +28,7 @@ class MeasuredLight:
     """The exact coefficients, (MOST_BANDS**2, 3)."""
     products: Array
     """The light's products (harmonics/metrics.py), (3, 3)."""
-    truncation: Array
+    left_out: Array
     """The relative L2 error of the exact coefficients with n = 1 ... MOST_BANDS bands, (MOST_BANDS,)."""
     needs: dict[float, int | None]
     """Tolerance -> the smallest band count within it; None if none up to MOST_BANDS is."""
@@ -38,7 +38,7 @@ class MeasuredLight:
         """What the report keeps of it."""
         needs = {f"{tolerance:g}": count for tolerance, count in self.needs.items()}
         light = self.light
-        return LightRecord(light.description, light.best_method, light.accuracy(), needs, self.truncation.tolist())
+        return LightRecord(light.description, light.best_method, light.accuracy(), needs, self.left_out.tolist())
 
 
 def find_measured_lights(
@@ -58,6 +58,6 @@ def find_measured_lights(
 def measured_light(light: Light, tolerances: Sequence[float] = TOLERANCES, name: str = "") -> MeasuredLight:
     """A light under its own or another name, with its exact coefficients and the error of their first bands."""
     exact, products = light.coefficients(MOST_BANDS), light.products()
-    truncation = errors_by_band_count(products, exact, exact)
-    needs = {tolerance: smallest_band_count(truncation, tolerance) for tolerance in tolerances}
-    return MeasuredLight(name or light.name, light, exact, products, truncation, needs)
+    left_out = errors_by_band_count(products, exact, exact)
+    needs = {tolerance: smallest_band_count(left_out, tolerance) for tolerance in tolerances}
+    return MeasuredLight(name or light.name, light, exact, products, left_out, needs)

@@ -211,7 +211,7 @@ class Errors(NamedTuple):
     """The relative errors of one projection: see Row."""
 
     error: float
-    truncation: float
+    left_out: float
     total: float
 
 
@@ -240,8 +240,8 @@ def _row(round_: Round, experiment: Experiment, state: _Running, timing: Timing)
         error_low=min(errors) if method.random else None,
         error_high=max(errors) if method.random else None,
         reference_accuracy=round_.measured.light.accuracy(),
-        truncation=found[0].truncation,
-        total_error=found[0].truncation if reference else float(np.median([each.total for each in found])),
+        left_out=found[0].left_out,
+        total_error=found[0].left_out if reference else float(np.median([each.total for each in found])),
         peak_mib=state.peak_mib,
         note=f"the reference: {round_.measured.light.best_method}" if reference else "",
     )

@@ -1,6 +1,6 @@
 """The cost of a band where the sum is evaluated, against its use: in the shader, from a map, and on the CPU.
 
-Each time has two errors beside it: the truncation error, from the bands left out, and the arithmetic error of the evaluation.
+Each time has two errors beside it: what the bands left out leave, and the arithmetic error of the evaluation.
 Both are relative to the norm of the light and so can be compared: where they meet, more bands are of no use.
 """
 
@@ -109,8 +109,8 @@ def _row(stage: Evaluations, method: str, arithmetic_error: float | None, times:
         high_quartile=timing.high_quartile * scale,
         repeats=timing.repeats,
         set_up_milliseconds=times[MAKING, stage.n_bands].milliseconds if method == CACHED else None,
-        truncation=stage.truncation,
+        left_out=stage.left_out,
         arithmetic_error=arithmetic_error,
-        total_error=float(np.hypot(stage.truncation, arithmetic_error or 0.0)),
+        total_error=float(np.hypot(stage.left_out, arithmetic_error or 0.0)),
         note=PER_FRAME if drawn else PER_MILLION,
     )

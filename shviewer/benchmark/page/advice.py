@@ -101,7 +101,7 @@ def words_for(row: Row, record: LightRecord) -> str:
 def where_bands_stop_paying(rows: Sequence[Row]) -> str:
     """One sentence on the reconstruction rows of one light; "" if there are none.
 
-    More bands stop paying where the truncation error falls below the arithmetic error; and, in the direct sum, where every
+    More bands stop paying where what is left out falls below the arithmetic error; and, in the direct sum, where every
     further step multiplies the time by more, beyond the quartiles, than it divides the error.
     """
     direct, cached, on_cpu = ([row for row in rows if row.method == method] for method in (DIRECT, CACHED, MAP_32))
@@ -109,11 +109,11 @@ def where_bands_stop_paying(rows: Sequence[Row]) -> str:
     if not judged:
         return ""
     last = judged[-1]
-    met = next((row for row in judged if known(row.truncation) <= _floor(row)), None)
+    met = next((row for row in judged if known(row.left_out) <= _floor(row)), None)
     parts = [
         f"more than {_bands(met)} bring nothing: no more than {error(_floor(met))} is left out, which is lost in rounding"
         if met
-        else f"more bands bring less error up to the {last.n_bands} measured, where {error(last.truncation)} is left out "
+        else f"more bands bring less error up to the {last.n_bands} measured, where {error(last.left_out)} is left out "
         f"and the arithmetic adds {error(last.arithmetic_error)}"
     ]
     if direct:
@@ -163,7 +163,7 @@ def _bands(row: Row) -> str:
 
 
 def _floor(row: Row) -> float:
-    """The truncation error below which it cannot be told from rounding."""
+    """What is left out below which it cannot be told from rounding."""
     return max(known(row.arithmetic_error), PARSEVAL_FLOOR)
 
 

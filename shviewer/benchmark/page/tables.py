@@ -101,7 +101,7 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1)
 
 COLUMNS: dict[str, tuple[str, Callable[[Row], str]]] = {
     "set up": ("set-up ms", lambda row: milliseconds(row.set_up_milliseconds)),
-    "left out": ("left out", lambda row: error(row.truncation)),
+    "left out": ("left out", lambda row: error(row.left_out)),
     "arithmetic": ("arithmetic", lambda row: error(row.arithmetic_error)),
     "note": ("", lambda row: row.note),
 }

@@ -60,7 +60,7 @@ def _front(record: LightRecord, rows: list[Row]) -> list[str]:
         told_apart([row.milliseconds for row in front], milliseconds),
         [milliseconds(row.set_up_milliseconds) for row in front],
         [error(row.error) for row in front],
-        [error(row.truncation) for row in front],
+        [error(row.left_out) for row in front],
         told_apart([row.total_error for row in front], error),
     )
     return table(

@@ -100,9 +100,9 @@ def as_markdown(page: Page) -> str:
     lines += ["## What this report does not cover", "", *(bullet(line) for line in NOT_COVERED)]
     if report.renderer is None:
         lines.append("- Drawing: there was no OpenGL.")
-    if report.left_out:
+    if report.not_measured:
         lines += ["", "Not measured for want of time; a larger --budget measures more:", ""]
-        lines += [bullet(line) for line in report.left_out]
+        lines += [bullet(line) for line in report.not_measured]
     return re.sub(r"\n{3,}", "\n\n", "\n".join([*lines, "", *_made_with(report)])) + "\n"
 
 

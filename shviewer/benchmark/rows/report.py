@@ -22,7 +22,17 @@ DISTURBANCE = "disturbance"
 DISTURBED = 1.1
 """From this ratio on other programs are said to disturb: on a quiet machine it is 1.00 to 1.03."""
 
-HEAD = ("complete", "command", "seed", "versions", "machine", "renderer", "yardstick_milliseconds", "left_out", "extra")
+HEAD = (
+    "complete",
+    "command",
+    "seed",
+    "versions",
+    "machine",
+    "renderer",
+    "yardstick_milliseconds",
+    "not_measured",
+    "extra",
+)
 """The fields of a Report in front of its lights and rows, in the order of the file."""
 
 MAX_FILE_BYTES = 2**24
@@ -80,7 +90,7 @@ class Report:
     rows: list[Row] = field(default_factory=list)
     """All rows, with those that were not measured for want of time: see Row.measured."""
     lights: dict[str, LightRecord] = field(default_factory=dict)
-    left_out: list[str] = field(default_factory=list)
+    not_measured: list[str] = field(default_factory=list)
     """Lines on the measurements that there was no time for, one for each kind."""
     yardstick_milliseconds: dict[str, float] | None = None
     complete: bool = False
@@ -162,7 +172,7 @@ def read_report(path: Path) -> Report:
             renderer=page["renderer"],
             rows=[Row.from_dict(row) for row in page["rows"]],
             lights={str(name): LightRecord(**record) for name, record in page["lights"].items()},
-            left_out=[str(line) for line in page["left_out"]],
+            not_measured=[str(line) for line in page["not_measured"]],
             extra=dict(page["extra"]),
             yardstick_milliseconds=yardstick,
             complete=bool(page["complete"]),

@@ -47,10 +47,10 @@ class Row:
     error_high: float | None = None
     reference_accuracy: float | None = None
     """How far the reference itself may be off; 0 if it is exact."""
-    truncation: float | None = None
+    left_out: float | None = None
     """||light - its first n bands|| / ||light||."""
     total_error: float | None = None
-    """||light - reconstruction|| / ||light||: total^2 = truncation^2 + error^2 (1 - truncation^2)."""
+    """||light - reconstruction|| / ||light||: total^2 = left_out^2 + error^2 (1 - left_out^2)."""
     arithmetic_error: float | None = None
     """The error of rounding in the evaluation of the sum, over the light's L2 norm like the other errors."""
 
