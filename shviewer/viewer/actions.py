@@ -228,6 +228,11 @@ def reset(state: State) -> State:
     return changed(state, recipe=replace(recipe, light=state.recipe.light), view=replace(view, message=""))
 
 
+def turn_page(state: State, pages: int) -> State:
+    """Go to another page of the help; before the first there is none."""
+    return changed(state, help_page=max(state.view.help_page + pages, 0))
+
+
 def escape(state: State) -> State | Command:
     """Close the help, or else what is in place of the curve, or else stop the sweep or the light, or else leave."""
     if state.view.help_visible:

@@ -203,7 +203,7 @@ def press(state: State, key: str) -> State | Command:
     Any bound key takes a message away, and says why it changes nothing else.
     """
     if state.view.help_visible and key in HELP_PAGES:
-        return changed(state, help_page=max(state.view.help_page + HELP_PAGES[key], 0))
+        return do.turn_page(state, HELP_PAGES[key])
     action, asked = ACTIONS.get(key), changed(state, message="")
     if action is None:
         return state

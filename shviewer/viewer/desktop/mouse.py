@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from shviewer.viewer.actions import toggle_band
+from shviewer.viewer.actions import toggle_band, turn_page
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Sphere
 from shviewer.viewer.overlay.directions.probe import direction_at
@@ -88,7 +88,12 @@ class Mouse:
         return turn(placed, right / radius, up / radius)
 
     def scroll(self, steps: float, state: State, composition: Composition) -> State:
-        """The state after the wheel: what is under the mouse stays there; beside the panes, the middle of the spheres does."""
+        """The state after the wheel: what is under the mouse stays there; beside the panes, the middle of the spheres does.
+
+        Under the help it turns the pages.
+        """
+        if state.view.help_visible:
+            return turn_page(state, -round(steps))
         over = next((pane for pane in composition.panes if pane.clip.contains(*self.at)), None)
         if over is None:
             return zoom(state, steps)

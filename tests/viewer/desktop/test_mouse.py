@@ -132,6 +132,14 @@ def test_zooming_in_and_out_about_a_point_ends_where_it_began_and_zooming_out_el
     np.testing.assert_allclose((*away.view.pan, away.view.zoom), (0, 0, 1), rtol=0, atol=1e-12)
 
 
+def test_the_wheel_turns_the_pages_of_the_help_and_no_sphere_under_it_grows() -> None:
+    picture = picture_of(help_visible=True)
+    mouse, frame = Mouse(), frame_of(picture)
+    down = mouse.scroll(-1, picture.state, frame)
+    assert (down.view.help_page, down.view.zoom) == (1, 1.0)
+    assert mouse.scroll(1, down, frame).view.help_page == mouse.scroll(1, picture.state, frame).view.help_page == 0
+
+
 def test_a_sphere_stays_in_sight_however_it_is_moved() -> None:
     for state in (pan(state_of(), 50, -3), zoom(pan(state_of(zoom=4.0), 3, 2), -9), zoom_about(state_of(), 99, 90, 1)):
         state.check()
