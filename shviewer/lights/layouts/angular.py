@@ -10,22 +10,27 @@ entire functions of X and Y: one patch for all texels that the rim does not cut.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_shares
 from shviewer.harmonics.areas.patches import project_mirrored, quadrant_weights
-from shviewer.harmonics.basis import Array, Indices
+from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import gauss_unit
 from shviewer.lights.layouts.disc import DiscLayout
+from shviewer.lights.layouts.rim import project_rim
 
 DENSITY_POINTS = 28
 """Chebyshev points a side that make density and height times density exact to rounding in a quadrant."""
 
 AREA_POINTS = 14
 """Gauss's points a side of a texel, exact for such a polynomial."""
+
+
+FEWEST_TEXELS = 128
+"""The smallest side of an image that is projected as it is."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +45,7 @@ class AngularLayout(DiscLayout):
     def theta(self, radius: Array) -> Array:
         return radius * np.pi
 
-    def on_line(self, y: Array, x: Array, depth: Array) -> Array:
+    def _on_line(self, y: Array, x: Array, depth: Array) -> Array:
         radius = np.hypot(x, y)
         from_rim = np.pi * depth**2 / (1 + radius)
         return np.stack([-np.cos(from_rim), x * np.sin(from_rim) / radius, y * np.sin(from_rim) / radius])
@@ -67,12 +72,18 @@ class AngularLayout(DiscLayout):
     def density(self, radius: Array) -> Array:
         return np.asarray(np.pi**2 * np.sinc(radius))
 
-    def inside(self) -> Indices:
-        return self.whole
+    def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
+        """As in Layout."""
+        if self.side < FEWEST_TEXELS:  # as a larger image of the same areas, whose rim is far from the poles
+            times = -(-FEWEST_TEXELS // self.side)
+            finer = pixels.repeat(times, axis=0).repeat(times, axis=1)
+            return replace(self, side=times * self.side).project(finer, n_bands)
+        return self._project_whole(pixels, n_bands) + project_rim(self, self._on_line, pixels, self.whole, n_bands)
 
-    def project_inside(self, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
+    def _project_whole(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
+        """Coefficients (n**2, 3) of the texels that the rim does not cut."""
         row = np.arange(self.side)
-        count = inside[np.where(row < self.side // 2, self.half - 1 - row, row - self.side // 2)]
+        count = self.whole[np.where(row < self.side // 2, self.half - 1 - row, row - self.side // 2)]
         spans = np.stack([self.half - count, self.side // 2 + count], axis=1)
         points, weights = quadrant_weights(pixels, quadrant_point_count(n_bands), spans)
         y, x = (a.ravel() for a in np.meshgrid(points, points, indexing="ij"))

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -23,15 +23,11 @@ from shviewer.harmonics.basis import Array, Indices
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, row_angles
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import RASTER_BLOCK
-from shviewer.lights.layouts.rim import Disc, cut_areas, cut_rises, project_rim
+from shviewer.lights.layouts.rim import Disc, cut_areas, cut_rises
 from shviewer.lights.layouts.texels import FAR, integrate_texels
 
 ON_THE_RIM = 1e-14
 """Corners that are this near the rim do not cross it, on whichever side rounding puts them."""
-
-
-FEWEST_TEXELS = 128
-"""The smallest side of an image that is projected as it is."""
 
 
 @dataclass(frozen=True)
@@ -169,15 +165,6 @@ class DiscLayout(Disc):
         folded = np.where(radius < 1, 1.0, -opposite)
         return np.asarray(pixels[self._texel(down * folded), self._texel(right * folded)], dtype=np.float64)
 
-    def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
-        """As in Layout."""
-        if self.side < FEWEST_TEXELS:  # as a larger image of the same areas, whose rim is far from the poles
-            times = -(-FEWEST_TEXELS // self.side)
-            finer = pixels.repeat(times, axis=0).repeat(times, axis=1)
-            return replace(self, side=times * self.side).project(finer, n_bands)
-        inside = self.inside()
-        return self.project_inside(pixels, inside, n_bands) + project_rim(self, pixels, inside, n_bands)
-
     def project_texels(self, values: Array, rows: Indices, columns: Indices, n_bands: int) -> Array | None:
         """As in Layout: of texels away from the rim."""
         corner = 2 * np.stack([columns, rows]) / self.side - 1
@@ -194,14 +181,6 @@ class DiscLayout(Disc):
     @abstractmethod
     def density(self, radius: Array) -> Array:
         """Steradians per area of the disc of radius 1."""
-
-    @abstractmethod
-    def inside(self) -> Indices:
-        """Texels of each row, or column, of a quadrant that `project_inside` takes, from the centre on; (half,), descending."""
-
-    @abstractmethod
-    def project_inside(self, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
-        """Coefficients (n**2, 3) of these texels."""
 
     # A quadrant: texels by their distance from the centre, down or up and sideways, from 0 to half.
 

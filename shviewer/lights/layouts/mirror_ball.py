@@ -3,27 +3,33 @@
 With X to the right and Y up in units of half the side, and r their distance from the centre,
     direction = (1 - 2 r^2, -2 X sqrt(1 - r^2), 2 Y sqrt(1 - r^2)),   density = 4 everywhere.
 The root has no series at the rim, where the whole world behind the ball is squeezed. So the disc is cut into square tiles
-that shrink towards it, none larger than twice its distance from the rim, each a patch of its own; what is left at the rim is
-integrated along the texels' edges (rim.py), on which directions are trigonometric polynomials of degree 2.
+that shrink towards it, none larger than twice its distance from the rim, each a patch of its own (patches.py); what is left at
+the rim is integrated along the texels' edges. The sums of both are those of harmonics/areas/ball.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.ball import BallSums
 from shviewer.harmonics.areas.chebyshev import point_count
-from shviewer.harmonics.areas.patches import project_mirrored, texel_weights
+from shviewer.harmonics.areas.cycling import cycled
+from shviewer.harmonics.areas.patches import texel_weights
 from shviewer.harmonics.basis import Array, Indices
 from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.rim import quadrants
 
 SMALLEST_TILE, LARGEST_TILE = 64, 4
 """The side of the smallest tiles, in texels, where that is an eighth of the radius or less, and of the largest ones in them.
-Smaller ones would have more points than the lines through them."""
+Smaller ones would have more points than texels."""
+
+FEWEST_TEXELS = 64
+"""Texels from the centre to the rim below which all are taken by their edges."""
 
 ROOT_POINTS = 24
 """How many more Chebyshev points than radians of a wave a tile has along a side, for the sake of the root."""
@@ -40,9 +46,6 @@ class MirrorBallLayout(DiscLayout):
 
     def theta(self, radius: Array) -> Array:
         return np.asarray(2 * np.arcsin(radius))
-
-    def on_line(self, y: Array, x: Array, depth: Array) -> Array:
-        return np.stack([2 * depth**2 - 1, 2 * x * depth, 2 * y * depth])
 
     def from_behind(self, depth: Array) -> Array:
         return np.asarray(2 * np.arcsin(depth))
@@ -62,7 +65,26 @@ class MirrorBallLayout(DiscLayout):
     def density(self, radius: Array) -> Array:
         return np.full_like(radius, 4.0)
 
-    def inside(self) -> Indices:
+    def project(self, pixels: NDArray[np.float32], n_bands: int) -> Array:
+        """As in Layout."""
+        views, sums, weights = quadrants(pixels), BallSums(n_bands), cache(self._weights)
+        for size, row, column in self._tiles():
+            n_down, n_right = self._point_counts(row, column, size, n_bands)
+            (y, down), (x, right) = weights(row, size, n_down), weights(column, size, n_right)
+            tile = np.empty((2, 2, n_down, 3, n_right))
+            for view, points in zip(views, tile.reshape(4, n_down, 3, n_right), strict=True):
+                texels = view[row : row + size, column : column + size].astype(np.float64)
+                by_row = (4 * down @ texels.reshape(size, -1)).reshape(n_down, size, 3)
+                points[:] = by_row.swapaxes(1, 2) @ right.T
+            sums.add_points(x, y, tile)
+        sums.add_rim(views, self._tiled, self.edges, self.quadrant_solid_angles)
+        return cycled(sums.coefficients())
+
+    @property
+    def _tiled(self) -> Indices:
+        """Texels of each row, or column, of a quadrant that are in tiles, from the centre on; (half,), descending."""
+        if self.half < FEWEST_TEXELS:
+            return np.zeros(self.half, np.int64)
         size = self._smallest_tile
         far = np.minimum(np.arange(1, -(-self.half // size) + 1) * size, self.half + 1)
         covered = _fits(far, far[:, None], size, self.half)
@@ -72,28 +94,10 @@ class MirrorBallLayout(DiscLayout):
     def _smallest_tile(self) -> int:
         return int(min(SMALLEST_TILE, 2 ** (max(self.half // 8, 1).bit_length() - 1)))
 
-    def project_inside(self, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
-        views, coordinates, found = quadrants(pixels), [], []
-        for size, row, column in self._tiles():
-            n_down, n_right = self._point_counts(row, column, size, n_bands)
-            y, down = self._weights(row, size, n_down)
-            x, right = self._weights(column, size, n_right)
-            tile = np.empty((2, 2, n_right, n_down, 3))
-            for view, points in zip(views, tile.reshape(4, n_right, n_down, 3), strict=True):
-                texels = view[row : row + size, column : column + size].astype(np.float64)
-                by_row = (down @ texels.reshape(size, -1)).reshape(n_down, size, 3).swapaxes(0, 1)
-                points[:] = (right @ by_row.reshape(size, -1)).reshape(n_right, n_down, 3)
-            coordinates.append(np.stack([a.ravel() for a in np.meshgrid(x, y, indexing="ij")]))
-            found.append(tile.reshape(2, 2, -1, 3))
-        if not found:
-            return np.zeros((n_bands**2, 3))
-        x, y = np.concatenate(coordinates, axis=1)
-        depth = np.sqrt((1 - x * x) - y * y)
-        directions = np.stack([2 * depth * depth - 1, 2 * x * depth, 2 * y * depth], axis=-1)
-        return project_mirrored(directions, 4 * np.concatenate(found, axis=2)[None], n_bands)
-
     def _tiles(self) -> Iterator[tuple[int, int, int]]:
         """Sides of tiles in a quadrant, and their first rows and columns."""
+        if self.half < FEWEST_TEXELS:
+            return
         smallest = self._smallest_tile
         size = LARGEST_TILE * smallest
         rows, columns = (a.ravel() * size for a in np.indices((-(-self.half // size),) * 2))

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,12 +59,12 @@ class Disc(ABC):
         """The number of texels in each row, or column, of which some part lies inside, (half,)."""
 
     @abstractmethod
-    def on_line(self, y: Array, x: Array, depth: Array) -> Array:
-        """Directions (3, ...) on lines of the quadrant."""
-
-    @abstractmethod
     def from_behind(self, depth: Array) -> Array:
         """pi - theta, the angle from straight back, at a depth: 0 on the rim, without cancellation."""
+
+
+Line: TypeAlias = Callable[[Array, Array, Array], Array]
+"""Directions (3, ...) on lines of the quadrant, from y, x and depth."""
 
 
 def quadrants(pixels: NDArray[np.float32]) -> list[NDArray[np.float32]]:
@@ -73,7 +74,7 @@ def quadrants(pixels: NDArray[np.float32]) -> list[NDArray[np.float32]]:
     return [pixels[rows, columns] for columns in (towards, away) for rows in (towards, away)]
 
 
-def project_rim(disc: Disc, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
+def project_rim(disc: Disc, on_line: Line, pixels: NDArray[np.float32], inside: Indices, n_bands: int) -> Array:
     """Coefficients (n**2, 3) of the texels from column inside[row] on to the rim, in all four quadrants.
 
     inside: (half,), descending, the same for rows and columns. The middle must not be among the texels, or next to them.
@@ -81,7 +82,7 @@ def project_rim(disc: Disc, pixels: NDArray[np.float32], inside: Indices, n_band
     views, directions, values = quadrants(pixels), [], []
     starts = (len(inside) * np.sin(np.linspace(0, np.pi / 2, GROUPS + 1))).astype(np.int64).tolist()
     for lines in map(slice, starts, starts[1:]):
-        direction, along, across = _on_lines(disc, views, inside, lines, n_bands)
+        direction, along, across = _on_lines(disc, on_line, views, inside, lines, n_bands)
         # On lines of constant X, coordinates change places.
         directions += [direction, direction[[0, 2, 1]]]
         values += [along, across]
@@ -91,7 +92,7 @@ def project_rim(disc: Disc, pixels: NDArray[np.float32], inside: Indices, n_band
 
 
 def _on_lines(
-    disc: Disc, views: list[NDArray[np.float32]], inside: Indices, lines: slice, n_bands: int
+    disc: Disc, on_line: Line, views: list[NDArray[np.float32]], inside: Indices, lines: slice, n_bands: int
 ) -> tuple[Array, Array, Array]:
     """Directions (3, k) at points that stand for some lines of constant Y, and values there, (2, 2, k, 3), times d(phi).
 
@@ -103,7 +104,7 @@ def _on_lines(
     angle = np.arctan2(rho, y)[:, 0]
     length = float(_parameter(edges[inside[lines], None], rho).max())
     middle, half = (angle[0] + angle[-1]) / 2, max(angle[0] - angle[-1], 1e-9) / 2
-    n_along, n_across = _point_counts(disc, length, middle, half, n_bands)
+    n_along, n_across = _point_counts(on_line, length, middle, half, n_bands)
     shares = chebyshev_shares((angle - middle) / half, n_across)
     sums = np.zeros((n_across, n_along + 1, 24))
     start = lines.start
@@ -122,13 +123,13 @@ def _on_lines(
     y, rho = _circle(middle + half * chebyshev_points(n_across)[:, None])
     x, depth = _place(rho, length * (1 + chebyshev_points(n_along)) / 2)
     turning = (y * depth / (1 - depth**2)).ravel()  # d(phi)/dt about the direction ahead; on lines of constant X, too
-    return disc.on_line(y, x, depth).reshape(3, -1), along * turning[:, None], across * turning[:, None]
+    return on_line(y, x, depth).reshape(3, -1), along * turning[:, None], across * turning[:, None]
 
 
-def _point_counts(disc: Disc, length: float, middle: float, half: float, n_bands: int) -> tuple[int, int]:
+def _point_counts(on_line: Line, length: float, middle: float, half: float, n_bands: int) -> tuple[int, int]:
     """Chebyshev points along lines and across them, by the longest way that a direction goes, from a few of them."""
     y, rho = _circle(middle + half * np.linspace(-1, 1, 9)[:, None])
-    directions = disc.on_line(y, *_place(rho, length * np.linspace(0, 1, 9)))
+    directions = on_line(y, *_place(rho, length * np.linspace(0, 1, 9)))
     across, along = (8 * float(np.linalg.norm(np.diff(directions, axis=axis), axis=0).max()) for axis in (1, 2))
     return point_count(n_bands * along / 2, MORE_POINTS), point_count(n_bands * across / 2, MORE_POINTS)
 

@@ -457,11 +457,23 @@ def parts_of_texels(layout, n):
 def test_a_mirror_ball_is_the_same_however_much_of_it_is_taken_in_tiles_or_by_edges(side, monkeypatch):
     """Two ways that have nothing in common but the image: smaller tiles take what edges took."""
     pixels = np.random.default_rng(5).random((side, side, 3)).astype(np.float32)
-    few, coarse = MirrorBallLayout(side).inside(), MirrorBallLayout(side).project(pixels, 40)
+    coarse = MirrorBallLayout(side).project(pixels, 40)
     monkeypatch.setattr(mirror_ball, "SMALLEST_TILE", 4)
-    many, fine = MirrorBallLayout(side).inside(), MirrorBallLayout(side).project(pixels, 40)
-    assert many.sum() > 1.1 * few.sum()
-    assert np.abs(fine - coarse).max() < 1e-13 * np.abs(fine).max()
+    fine = MirrorBallLayout(side).project(pixels, 40)
+    monkeypatch.setattr(mirror_ball, "FEWEST_TEXELS", side)
+    by_edges = MirrorBallLayout(side).project(pixels, 40)
+    for other in (fine, by_edges):
+        assert not np.array_equal(other, coarse)
+        assert np.abs(other - coarse).max() < 1e-13 * np.abs(coarse).max()
+
+
+def test_a_lone_texel_of_a_mirror_ball_is_as_exact_as_the_others():
+    """Where tiles take it; by its edges, as at the rim, it would be 1e-12 off."""
+    layout, place = MirrorBallLayout(600), (np.array([260]), np.array([420]))
+    pixels = np.zeros((600, 600, 3), np.float32)
+    pixels[place] = 1
+    expected = layout.project_texels(np.ones((1, 3)), *place, 40)
+    assert np.abs(layout.project(pixels, 40) - expected).max() < 2e-13 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("layout", [AngularLayout(300), AngularLayout(257), MirrorBallLayout(300)], ids=str)
