@@ -18,8 +18,8 @@ import numpy as np
 
 from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_values, point_count, points_from_series
 from shviewer.harmonics.basis import Array
+from shviewer.harmonics.projection.row_transform import by_parity
 from shviewer.harmonics.quadrature import angles_from_directions
-from shviewer.harmonics.row_transform import by_parity
 
 PHASE = 4.6
 """The phase, in radians, of the shortest wave from the middle of a strip to its edge."""
