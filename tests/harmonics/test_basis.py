@@ -155,7 +155,7 @@ def test_many_directions_have_the_values_that_each_has_alone(n_bands):
     for length in (1.0, 7.0):
         many = evaluate_basis((length * directions)[:, None], n_bands)
         assert many.shape == (len(directions), 1, n_bands**2)
-        few = evaluate_basis(length * directions[some], n_bands)
+        few = np.concatenate([evaluate_basis(part, n_bands) for part in np.split(length * directions[some], 9)])
         assert np.abs(many[some, 0] - few).max() < 1e-14 * np.abs(few).max()
 
 

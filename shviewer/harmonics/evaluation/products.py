@@ -15,7 +15,7 @@ from shviewer.harmonics.workspace import borrowed
 FEWEST_BANDS, MOST_BANDS = 2, 32
 """The numbers of bands for which matrix products are the fastest way; with more they round to 1e-14."""
 
-FEWEST_DIRECTIONS = 1000
+FEWEST_DIRECTIONS = 200
 """The fewest directions for which they are, and which make up for the tables."""
 
 BLOCK, BLOCK_WAVES = 20_000, 120_000
