@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from shviewer.analysis.projected import Projected
 from shviewer.cli.jobs import in_order
@@ -25,6 +26,14 @@ FAILED = 1
 """The exit code if some light failed."""
 
 
+class Work(NamedTuple):
+    """What is done with every light. project: LIGHT -> its coefficients, in any process."""
+
+    project: Callable[[str], Projected]
+    convention: Convention
+    replacing: Replacing
+
+
 @dataclass(frozen=True)
 class SummaryRow:
     """A row of the summary: what became of one light."""
@@ -35,19 +44,11 @@ class SummaryRow:
     """None: it failed."""
 
 
-def project_batch(
-    lights: Sequence[str],
-    folder: Path,
-    kind: str,
-    convention: Convention,
-    projected_of: Callable[[str], Projected],
-    replacing: Replacing,
-    jobs: int | None,
-) -> int:
+def project_batch(lights: Sequence[str], folder: Path, kind: str, work: Work, jobs: int | None) -> int:
     """Project every light and write it into `folder`, made if need be; return the exit code. jobs: as in `jobs.in_order`."""
     make_folder(folder)
     rows: list[SummaryRow] = []
-    outcomes = in_order(partial(_projected_alone, projected_of), lights, jobs)
+    outcomes = in_order(partial(_projected_alone, work.project), lights, jobs)
     with status_line() as line:
         for number, light in enumerate(lights):
             if is_code(light):
@@ -59,10 +60,10 @@ def project_batch(
                 if isinstance(projected, ShviewerError):
                     raise projected
                 with failing_alone(light):
-                    print_notes_on(projected, convention.axes, light)
+                    print_notes_on(projected, work.convention.axes, light)
                     path = _free(folder, file_stem(projected.name), kind, {row.file for row in rows})
-                    replacing.check(path)
-                    write_atomically(path, projected.encode(convention, kind))
+                    work.replacing.check(path)
+                    write_atomically(path, projected.encode(work.convention, kind))
                     warn_below_zero(projected, light)
             except ShviewerError as error:
                 rows.append(SummaryRow(light))
@@ -75,9 +76,9 @@ def project_batch(
     return FAILED if any(row.projected is None for row in rows) else 0
 
 
-def _projected_alone(projected_of: Callable[[str], Projected], light: str) -> Projected:
+def _projected_alone(project: Callable[[str], Projected], light: str) -> Projected:
     with failing_alone(light):
-        return projected_of(light)
+        return project(light)
 
 
 @contextmanager

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -15,7 +14,7 @@ from shviewer.analysis.projected import Projected, project_recipe
 from shviewer.analysis.projections import way_of
 from shviewer.analysis.recipe import Recipe, light_name
 from shviewer.analysis.subjects import has_suns, load_light
-from shviewer.cli.batch import error_in_percent, project_batch
+from shviewer.cli.batch import Work, error_in_percent, project_batch
 from shviewer.cli.below_zero import below_zero, encoded_below_zero
 from shviewer.cli.notes import print_notes_on, warn_below_zero
 from shviewer.cli.options.inputs import lights_of, lights_within, replacing_of
@@ -31,7 +30,7 @@ from shviewer.coefficients.writing import FORMATS
 from shviewer.errors import OutputError, UsageError, refused_as
 from shviewer.harmonics.quantities.names import ENCODED_BANDS, IRRADIANCE, in_words
 from shviewer.harmonics.rotation import turn
-from shviewer.outputs import Replacing, file_stem, make_folder, write_atomically
+from shviewer.outputs import file_stem, make_folder, write_atomically
 from shviewer.words import counted, meant
 
 STDOUT = "-"
@@ -53,17 +52,17 @@ def run(options: argparse.Namespace) -> int:
     lights = options.lights = lights_within(options)
     if kind is not None and kind not in FORMATS:
         raise UsageError(f"format {kind!r}: {meant(kind, FORMATS)}")
-    projected_of, replacing = partial(_projected_of, options, convention), replacing_of(options)
+    work = Work(partial(_projected_of, options, convention), convention, replacing_of(options))
     check_for_any_light(options)
     if options.n_bands is not None:
         with refused_as(UsageError):
             convention.check_bands(options.n_bands)
     if lights == given and len(lights) == 1:
-        _project_one(lights[0], out, kind, convention, projected_of, replacing)
+        _project_one(lights[0], out, kind, work)
         return 0
     if out == STDOUT or Path(out).suffix[1:] in FORMATS:
         raise UsageError(f"-o {out}: {len(lights)} lights are written into a folder, one file each; name a folder")
-    return project_batch(lights, Path(out), kind or "json", convention, projected_of, replacing, options.jobs)
+    return project_batch(lights, Path(out), kind or "json", work, options.jobs)
 
 
 def _projected_of(options: argparse.Namespace, convention: Convention, light: str) -> Projected:
@@ -125,19 +124,13 @@ def check_tolerance(recipe: Recipe, convention: Convention) -> None:
     )
 
 
-def _project_one(
-    light: str,
-    out: str,
-    kind: str | None,
-    convention: Convention,
-    projected_of: Callable[[str], Projected],
-    replacing: Replacing,
-) -> None:
+def _project_one(light: str, out: str, kind: str | None, work: Work) -> None:
     """Project and write one light; `out` is a file, a folder that exists or ends in /, or "-"."""
+    convention = work.convention
 
     def noted() -> Projected:
         with speaking():
-            projected = projected_of(light)
+            projected = work.project(light)
         print_notes_on(projected, convention.axes, projected.name)
         return projected
 
@@ -156,10 +149,10 @@ def _project_one(
         projected = noted()
         make_folder(path)
         path = path / f"{file_stem(projected.name)}.{kind or 'json'}"
-        replacing.check(path)
+        work.replacing.check(path)
     else:
         kind = _kind_of(path, kind)
-        replacing.check(path)
+        work.replacing.check(path)
         projected = noted()
     write_atomically(path, projected.encode(convention, kind or "json"))
     first, *others = ((in_words(of), error_in_percent(projected, of)) for of in projected.relative_l2_as)
