@@ -81,7 +81,8 @@ def draw_overlay(
 ) -> Overlay:
     """Draw everything that is written.
 
-    timing: also say how many milliseconds the projection took, which no two runs agree on. opengl: named in the help.
+    timing: also say what holds in this session alone: how many milliseconds the projection took, and that there are other
+    lights. opengl: named in the help.
     work: what is at work meanwhile, in place of messages and of OpenGL's name. hovered: the band under the mouse.
     pace: frames a second of a light that turns.
     """
@@ -112,9 +113,8 @@ def draw_overlay(
         line, exposure = numbers.foot, [] if shared else exposure
     else:
         after = round(max((piece.box.right for piece in exposure), default=0) + at.px(18)) if shared else 0
-        foot = foot_pieces(
-            at, said, after=after, proposed="U" if picture.sun_to_blame else "", others=len(state.lights) > 1
-        )
+        others = timing and len(state.lights) > 1
+        foot = foot_pieces(at, said, after=after, proposed="U" if picture.sun_to_blame else "", others=others)
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
     if numbers.foot is None and told:  # the message takes the place of the last line there is
         answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])

@@ -453,8 +453,9 @@ def test_where_there_are_several_lights_the_keys_that_go_through_them_are_named_
         ((1280, 640), picture_of(), False),
         ((900, 900), several, False),
     ):
-        boxes = draw_overlay(shown, frame(shown, size)).boxes
+        boxes = draw_overlay(shown, frame(shown, size), timing=True).boxes
         assert ("key_← →" in boxes) == named
+        assert "key_← →" not in draw_overlay(shown, frame(shown, size)).boxes  # which a saved picture is made of
         assert {"key_↑ ↓", "key_D", "key_H"} <= boxes.keys()
 
 
