@@ -24,7 +24,7 @@ from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.state import State
+from shviewer.viewer.state import State, changed
 from shviewer.viewer.view import View
 from shviewer.viewer.work import Work
 
@@ -47,8 +47,9 @@ class Canvas:
 
     def __init__(self, context: moderngl.Context, carrier: Carrier | None = None, wake: Wake = None) -> None:
         self.renderer = Renderer(context, carrier)
-        if carrier is not None:
-            self.renderer.compiled = Warming(carrier).ready
+        self._warming = Warming(carrier) if carrier is not None else None
+        if self._warming is not None:
+            self.renderer.compiled = self._warming.ready
         self.screen = context.screen
         self.overlay: Overlay | None = None
         self.again = False
@@ -123,8 +124,13 @@ class Canvas:
         elif self._shown is None:
             return False
         else:
-            self._shown = self.renderer.picture = picture = self._shown.seen(picture.state)
+            last, view = self._shown, picture.state.view
+            picture = last.seen(picture.state)
             composition = (framed and framed(picture.state.view)) or composition
+            if self._warming is not None and not self._warming.has(picture, composition):
+                picture = last.seen(changed(last.state, camera=view.camera, light_rotation=view.light_rotation))
+                composition = (framed and framed(picture.state.view)) or composition
+            self._shown = self.renderer.picture = picture
         self.composition = composition
         hovered = self.band_at(pointer)
         work = work or self._pending

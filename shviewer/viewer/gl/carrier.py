@@ -90,6 +90,8 @@ class Carrier:
         self._retired: list[Load] = []
         self._works: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._begun = self._done = 0
+        self.ending = Event()
+        """Set when nothing is asked for any more."""
         refused: SimpleQueue[str] = SimpleQueue()
         self._thread = Thread(target=self._run, args=(refused,), name="textures", daemon=True)
         self._thread.start()
@@ -120,9 +122,10 @@ class Carrier:
 
         def done() -> None:
             with suppress(Exception):
-                work()
+                if not self.ending.is_set():
+                    work()
             over.set()
-            self._tell()
+            self.tell()
 
         self._put(done)
         return over
@@ -147,6 +150,7 @@ class Carrier:
 
     def end(self) -> None:
         """Free what is retired, and end the thread."""
+        self.ending.set()
         self.drawn()
         self._works.put(None)
         self._thread.join()
@@ -170,13 +174,14 @@ class Carrier:
         self._begun += 1
         self._works.put(work)
 
-    def _tell(self) -> None:
+    def tell(self) -> None:
+        """Say that there is something new."""
         if self._arrived is not None:
             self._arrived()
 
     def _fill(self, load: Load) -> None:
         self.fill(load)
-        self._tell()
+        self.tell()
 
     def fill(self, load: Load) -> None:
         """Make a texture in that thread."""

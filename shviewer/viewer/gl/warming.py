@@ -8,9 +8,10 @@ OpenGL has them at once.
 from __future__ import annotations
 
 from collections.abc import Set
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from time import sleep, thread_time
+from time import perf_counter, thread_time
 from typing import Any
 
 import moderngl
@@ -30,11 +31,11 @@ from shviewer.viewer.surface import Surface
 QUICK = 0.015
 """Seconds of a draw: less than any program takes that is compiled, and more than one that comes from the disk."""
 
-PAUSES = 0.0, 0.02, 0.05, 0.1, 0.2
+PAUSES = 0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8
 """Seconds before each try: what was compiled is written behind."""
 
-PATIENCE = 0.05
-"""The seconds that are waited for programs that may be on the disk."""
+PATIENCE, MOST = 0.05, 2.0
+"""The seconds that a frame waits for programs that may be on the disk, and the last picture for the next one."""
 
 TRIANGLES, UNSIGNED_INT = 4, 0x1405
 
@@ -45,12 +46,14 @@ class Warming:
     def __init__(self, carrier: Carrier) -> None:
         self._carrier = carrier
         self._asked: Set[Kind] = set()
+        self._since = 0.0
+        """When something was asked for last."""
         self._ready: Set[Kind] = set()
         self._gains = True
         """Whether OpenGL keeps what it compiled."""
         self._context: moderngl.Context | None = None
-        self._longest = 0.0
-        """Seconds of the longest draw."""
+        self._first = self._quick = True
+        """Whether nothing was compiled yet, and whether nothing had to be."""
 
     def ready(self, picture: Picture, composition: Composition, at_once: bool = False) -> bool:
         """Whether a frame can be drawn and nothing is compiled in it; what is not is compiled then.
@@ -62,42 +65,55 @@ class Warming:
             self._ready |= wanted
         elif self._gains and not wanted <= self._asked:
             self._asked |= wanted
+            self._since = perf_counter()
             over = self._carrier.ask(partial(self._warm, picture, composition, wanted))
             if not wanted <= self._ready:
                 over.wait(PATIENCE)
-        return wanted <= self._ready or not self._gains
+        return self.has(picture, composition) or perf_counter() > self._since + MOST
+
+    def has(self, picture: Picture, composition: Composition) -> bool:
+        """Whether all programs of a frame are compiled, or none ever is before it is drawn."""
+        return kinds_of(picture, composition) <= self._ready or not self._gains
 
     def _warm(self, picture: Picture, composition: Composition, wanted: Set[Kind]) -> None:
-        """Draw until it is quick."""
+        """Draw until it is quick, as in a window, and then as in a picture that is saved."""
         if isinstance(picture.drawn, Surfaces):
             small = Surface(np.ones((3, 4), np.float32), clipped=False)
             picture = replace(picture, drawn=Surfaces((small,) * len(picture.drawn.shown)))
-        gains = False
-        try:
-            for pause in PAUSES:
-                sleep(pause)
-                if gains := self._draw(picture, composition) < QUICK:
-                    break
-        finally:
-            self._gains, self._ready = gains, self._ready | wanted
+        for saved in (False, True):
+            gains = False
+            try:
+                for pause in PAUSES:
+                    if self._carrier.ending.wait(pause):
+                        return
+                    self._first = pause == 0.0
+                    if gains := self._draw(picture, composition, saved):
+                        break
+            finally:
+                self._gains, self._ready = self._gains and gains, self._ready | wanted
+                self._carrier.tell()
+            if not gains:
+                break
 
-    def _draw(self, picture: Picture, composition: Composition) -> float:
-        """Draw with programs made anew, for a window and for a picture that is saved; return the seconds of the longest."""
+    def _draw(self, picture: Picture, composition: Composition, saved: bool) -> bool:
+        """Draw with programs made anew; return whether none was compiled. The first time all are, later none after one is."""
         if self._context is None:
             settings: dict[str, Any] = {"context": self._carrier.side}
             self._context = moderngl.create_context(require=330, **settings)
             self._context.extra = self._render
-        self._longest = 0.0
+        self._quick = True
         renderer = Renderer(self._context, self._carrier, _Corner)
         renderer.carrier = None  # it hears of the frames of the window alone
+        file = self._context.texture((1, 1), 4)
+        target = self._context.framebuffer([file]) if saved else self._context.screen
         try:
             renderer.show(picture)
-            layer, file = Layer(np.zeros((1, 1, 4), np.uint8)), self._context.texture((1, 1), 4)
-            for target in (self._context.screen, self._context.framebuffer([file])):
-                renderer.draw(target, composition, (layer,))
+            with suppress(_Compiled):
+                renderer.draw(target, composition, (Layer(np.zeros((1, 1, 4), np.uint8)),))
         finally:
             renderer.release()
-        return self._longest
+            file.release()
+        return self._quick
 
     def _render(self, array: moderngl.VertexArray) -> None:
         """Draw a triangle and leave Python's lock to others, which moderngl keeps."""
@@ -109,7 +125,14 @@ class Warming:
         else:
             calls["glDrawElements"](TRIANGLES, 3, UNSIGNED_INT, None)
         calls["glFinish"]()
-        self._longest = max(self._longest, thread_time() - start)
+        if thread_time() - start > QUICK:
+            self._quick = False
+            if not self._first:
+                raise _Compiled
+
+
+class _Compiled(Exception):
+    """A program was compiled."""
 
 
 class _Corner(ArrayTexture):

@@ -17,8 +17,10 @@ from helpers import frame_of, picture_of, unavailable
 from viewer.gl.side import EglSide
 
 from shviewer.lights.environment import EnvironmentLight
+from shviewer.viewer.composing.composition import frame_for
 from shviewer.viewer.desktop.canvas import COMPILING, Canvas
 from shviewer.viewer.gl import programs
+from shviewer.viewer.gl import warming as gl_warming
 from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.held import kind_of
 from shviewer.viewer.gl.pane_renderer import kinds_of
@@ -75,7 +77,10 @@ def draw(canvas: Canvas, picture: Picture) -> None:
         assert canvas.go_on()
 
 
-def test_the_last_picture_can_be_turned_until_the_programs_of_the_next_are_there(canvas: Canvas) -> None:
+def test_the_last_picture_can_be_turned_until_the_programs_of_the_next_are_there(
+    canvas: Canvas, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(gl_warming, "MOST", 60.0)
     first, second = picture_of(), picture_of(error="absolute", whole_sphere=True)
     assert canvas.show(first, frame_of(first))  # there is nothing else to be seen
     settle(canvas)
@@ -85,11 +90,12 @@ def test_the_last_picture_can_be_turned_until_the_programs_of_the_next_are_there
     canvas.renderer.carrier.ask(lambda: gate.wait(60))
     for camera in ((10.0, 5.0), (20.0, 5.0)):
         turned = second.seen(changed(second.state, camera=camera))
-        assert not canvas.show(turned, frame_of(turned), framed=lambda view: frame_of(first))
+        assert not canvas.show(turned, frame_of(turned), framed=lambda view: frame_for(view, 1280, 640))
         assert canvas.pending == COMPILING
         assert canvas._shown is not None
         assert canvas._shown.drawn is first.drawn
         np.testing.assert_array_equal(canvas._shown.world_from_view, turned.world_from_view)
+        assert canvas.composition == frame_of(first)
         draw(canvas, first)
         assert set(canvas.renderer.panes.programs) == known
     gate.set()
@@ -137,15 +143,15 @@ def test_where_nothing_is_kept_or_all_goes_wrong_frames_compile(
 ) -> None:
     tries = 0
 
-    def slow(self: Warming, *picture: object) -> float:
+    def slow(self: Warming, *picture: object) -> bool:
         nonlocal tries
         tries += 1
         if fails:
             raise moderngl.Error("no memory")
-        return 1.0
+        return False
 
     monkeypatch.setattr(Warming, "_draw", slow)
-    monkeypatch.setattr("shviewer.viewer.gl.warming.PAUSES", (0.0, 0.0))
+    monkeypatch.setattr(gl_warming, "PAUSES", (0.0, 0.0))
     warming, pictures = Warming(carrier), [picture_of(), picture_of(tone="log")]
     assert warming.ready(pictures[0], frame_of(pictures[0]), at_once=True)
     for shown in pictures * 2:
@@ -153,6 +159,27 @@ def test_where_nothing_is_kept_or_all_goes_wrong_frames_compile(
         assert carrier.ask(lambda: None).wait(60)
         assert warming.ready(shown, frame_of(shown))
     assert tries == (1 if fails else 2)
+
+
+def test_nothing_waits_long_for_a_compiler_that_is_slow(carrier: Carrier, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gl_warming, "MOST", 0.0)
+    shown, gate = picture_of(), threading.Event()
+    carrier.ask(lambda: gate.wait(60))
+    assert Warming(carrier).ready(shown, frame_of(shown))
+    gate.set()
+
+
+def test_the_end_waits_for_no_compiler(renderer: Renderer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would hang here for a minute."""
+    drawn = threading.Event()
+    monkeypatch.setattr(Warming, "_draw", lambda *_: drawn.set())
+    monkeypatch.setattr(gl_warming, "PAUSES", (0.0, 60.0))
+    side, shown = EglSide(), picture_of()
+    carrier = Carrier(renderer.context, side)
+    Warming(carrier).ready(shown, frame_of(shown))
+    assert drawn.wait(60)
+    carrier.end()
+    side.end()
 
 
 @pytest.mark.parametrize("size", [(1, 1), (2, 6), (3, 4), (64, 128), (100, 7)])
