@@ -125,9 +125,9 @@ def renderer_or_reason(wanted: bool) -> Iterator[Renderer | str]:
         yield renderer
 
 
-def delta(direction: Sequence[float], n_bands: int = 32) -> Array:
-    """Coefficients of a point light, which peaks at n^2/4pi and cancels to nothing elsewhere."""
-    return evaluate_basis(np.array(direction), n_bands)
+def delta(direction: Sequence[float]) -> Array:
+    """Coefficients of a point light of 32 bands, which peaks at n^2/4pi and cancels to nothing elsewhere."""
+    return evaluate_basis(np.array(direction), 32)
 
 
 def noise(n_bands: int) -> Array:
