@@ -19,7 +19,7 @@ from shviewer.lights.find import is_code
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
-from shviewer.viewer import actions, derived, splines
+from shviewer.viewer import actions, splines, surface
 from shviewer.viewer import picture as picture_module
 from shviewer.viewer.actions import toggle_band, with_bands
 from shviewer.viewer.commands import Command
@@ -207,8 +207,8 @@ def all_kinds(tmp_path_factory: pytest.TempPathFactory) -> tuple[tuple[str | Lig
 @pytest.fixture
 def coarse(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Surfaces and maps for small frames: a walk makes hundreds of them."""
-    monkeypatch.setattr(derived, "SURFACE_RADIUS", 2.0)
-    monkeypatch.setattr(derived, "LIGHT_ROWS", 129)
+    monkeypatch.setattr(surface, "RADIUS", 2.0)
+    monkeypatch.setattr(surface, "LIGHT_ROWS", 129)
     monkeypatch.setattr(splines, "MAP_COLUMNS", (256, 512))
     monkeypatch.setattr(actions, "MAX_KEY_SAMPLES", 10_000)
     monkeypatch.chdir(tmp_path)  # where pictures are saved
