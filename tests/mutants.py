@@ -89,16 +89,16 @@ BROKEN: dict[str, tuple[tuple[str, str, str], ...]] = {
     "harmonics/evaluation/monomials.py": (
         (
             "directions of many are taken as they are",
-            "if not self._take(directions):",
-            "if self._take(directions) is None:",
+            "if not self._take(directions, table[1:4]):",
+            "if self._take(directions, table[1:4]) is None:",
         ),
         (
             "x^2 + y^2 + z^2 without z",
             "np.roll(before, 2, axis=0) + np.roll(before, 2, axis=1)",
             "np.roll(before, 2, axis=0)",
         ),
-        ("rows of monomials times Y, not over its factor", "(factor * SQUARED**q)", "SQUARED**q"),
-        ("x^2 in one monomial too few", "(old[-q:], y, new[count:-1])", "(old[:q], y, new[count:-1])"),
+        ("rows of monomials times Y, not over its factor", "(factor * SCALE ** (2 * q))", "SCALE ** (2 * q)"),
+        ("y^2 in the wrong monomials", "(old[-q:], z, new[count:-1])", "(old[:q], z, new[count:-1])"),
     ),
     "harmonics/evaluation/products.py": (
         ("T(k) of |z| in the south", "chebyshev[1::2] *= self.waves.south()", "pass"),

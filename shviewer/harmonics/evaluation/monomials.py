@@ -19,9 +19,8 @@ MONOMIAL_BANDS = 8
 """The most bands for which this is the fastest way; it is as exact as the others, to 2e-15 of the largest value."""
 
 NORMS = normalisation(4)
-SQUARED = float(2 * NORMS[2, 2])
-SCALES = np.sqrt(SQUARED) * np.array([[-1], [-1], [1]])
-"""The scales of x, y and z, so that the product of two of them is a function of degree 2; and their square."""
+SCALE = float(NORMS[1, 0])
+"""That of x, y and z: Y(1, m) is -y, z and -x times this."""
 
 Part = tuple[int, slice, Array]
 """A row of the table, the rows that are it times polynomials of squares, and the factors of these, (rows, monomials)."""
@@ -31,14 +30,14 @@ class MonomialProducts:
     """The memory to evaluate the basis of 2 to MONOMIAL_BANDS bands in a block of `length` directions."""
 
     def __init__(self, n_bands: int, length: int) -> None:
-        self.points, self.norms = np.empty((3, length)), np.empty(length)
+        self.scratch = np.empty((2, length))
         squares = [np.empty((len(_powers(q)), length)) for q in range(max(2, (n_bands + 1) // 2))]
-        self.squares = x, y, z = squares[1]
+        self.squares = y, z, x = squares[1]
         self.multiplied: list[tuple[Array, Array, Array]] = []
         """Two factors and where their product goes: the monomials of the squares from degree 2 on."""
         for q in range(2, len(squares)):
             old, new, count = squares[q - 1], squares[q], len(squares[q - 1])
-            self.multiplied += (old, x, new[:count]), (old[-q:], y, new[count:-1]), (old[-1], z, new[-1])
+            self.multiplied += (old, y, new[:count]), (old[-q:], z, new[count:-1]), (old[-1], x, new[-1])
         memory = np.empty((n_bands**2, length))  # what is not used of it is never fetched
         self.even, self.odd = [], []
         for monomials, (even, *parts) in zip(squares[1:], _tables(n_bands), strict=False):
@@ -52,18 +51,17 @@ class MonomialProducts:
 
     def fill(self, directions: Array, table: Array) -> None:
         """Write Y(l, m) at index l(l+1) + m of `table`, (n_bands**2, length), for directions (length, 3)."""
-        if not self._take(directions):
-            self._take(normalise(directions))
-        x, y, z = self.points
+        if not self._take(directions, table[1:4]):
+            self._take(normalise(directions), table[1:4])
         table[0] = NORMS[0, 0]
-        np.multiply(self.points[1:], NORMS[1, 0] / SCALES[2], out=table[1:3])
-        np.multiply(x, NORMS[1, 0] / SCALES[2], out=table[3])
+        y, z, x = table[1:4]
         if len(table) > 4:
-            np.multiply(y, self.points[::2], out=table[4:6])
-            np.multiply(x, z, out=table[7])
+            scaled = np.multiply(table[2:4], 2 * NORMS[2, 2] / SCALE**2, out=self.scratch)
+            np.multiply(y, scaled[::-1], out=table[4:6])
+            np.multiply(x, scaled[0], out=table[7])
         if len(table) > 9:
-            np.multiply(table[2], NORMS[3, 2] / (NORMS[2, 2] * NORMS[1, 0]), out=self.norms)
-            np.multiply(table[4], self.norms, out=table[10])
+            np.multiply(z, NORMS[3, 2] / (NORMS[2, 2] * SCALE), out=self.scratch[0])
+            np.multiply(table[4], self.scratch[0], out=table[10])
         for one, other, both in self.multiplied:
             np.multiply(one, other, out=both)
         for factors, monomials, rows in self.even:
@@ -73,19 +71,21 @@ class MonomialProducts:
             for some, row, rows in places:
                 np.multiply(some, table[row], out=table[rows])
 
-    def _take(self, directions: Array) -> bool:
-        """Take -x, -y and z, scaled, and their squares; whether all directions are unit to rounding."""
+    def _take(self, directions: Array, linear: Array) -> bool:
+        """Fill in Y(1, m), (3, length), and the squares; whether all directions are unit to rounding."""
+        x, y, z = directions.T
         with np.errstate(over="ignore"):
-            np.multiply(directions.T, SCALES, out=self.points)
-            np.multiply(self.points, self.points, out=self.squares)
-        norms = np.add(self.squares[0], self.squares[1], out=self.norms)
+            for one, factor, row in zip((y, z, x), (-SCALE, SCALE, -SCALE), linear, strict=True):
+                np.multiply(one, factor, out=row)
+            np.multiply(linear, linear, out=self.squares)
+        norms = np.add(self.squares[0], self.squares[1], out=self.scratch[0])
         norms += self.squares[2]
-        return bool(norms.min() > SQUARED * (1 - UNIT) and norms.max() < SQUARED * (1 + UNIT))  # NaN is not
+        return bool(norms.min() > SCALE**2 * (1 - UNIT) and norms.max() < SCALE**2 * (1 + UNIT))  # NaN is not
 
 
 def _powers(q: int) -> Indices:
-    """The powers of y^2 and z^2 in the monomials of degree q of squares, (monomials, 2): x^2 in all but the last q + 1."""
-    return np.array([(some - z, z) for some in range(q + 1) for z in range(some + 1)])
+    """The powers of y^2 and z^2 in the monomials of degree q of squares, (monomials, 2): y^2 in all but the last q + 1."""
+    return np.array([(q - some, some - x) for some in range(q + 1) for x in range(some + 1)])
 
 
 @lru_cache(maxsize=MONOMIAL_BANDS)
@@ -120,5 +120,5 @@ def _tables(n_bands: int) -> list[list[Part]]:
                 powers = 2 * _powers(q) + [y, z]
                 factors = band[some, powers[:, 0], powers[:, 1]]
                 row, factor = odd.setdefault((x, y, z), (rows.start, factors[0, 0]))
-                tables[q].append((row, rows, factors / (factor * SQUARED**q)))
+                tables[q].append((row, rows, factors / (factor * SCALE ** (2 * q))))
     return tables[1:]
