@@ -16,8 +16,8 @@ from shviewer.viewer import picture as pictures
 from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop.behind import task as desktop_task
-from shviewer.viewer.desktop.canvas import _overlay_key
 from shviewer.viewer.desktop.session import Session
+from shviewer.viewer.desktop.unchanged import overlay_key
 from shviewer.viewer.overlay.directions.marks import marks_of
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.plots import band_series
@@ -85,7 +85,7 @@ def test_pending_figures_are_dots_on_the_picture_and_never_numbers(monkeypatch: 
 
 def test_the_text_is_written_anew_when_the_figures_come() -> None:
     at = compose(640, 320)
-    assert len({str(_overlay_key(picture, at)) for picture in stages(state_of("studio"))}) == 3
+    assert len({str(overlay_key(picture, at)) for picture in stages(state_of("studio"))}) == 3
 
 
 def test_saving_waits_for_the_figures(search: threading.Event, monkeypatch: pytest.MonkeyPatch) -> None:
