@@ -26,6 +26,7 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
 from shviewer.lights.lobe import lobes_form
 from shviewer.limits import MAX_DIRECT_BANDS
+from shviewer.progress import tell
 
 if TYPE_CHECKING:
     from shviewer.harmonics.quantities.encodings import Stored
@@ -121,6 +122,20 @@ def measurements(light: Light, n_bands: int) -> tuple[Measurement, ...]:
 def _known(light: Light, n_bands: int) -> OrderedDict[Way, Measurement]:
     known: OrderedDict[Any, Measurement] = MEMORY.results(light, (Measurement, light, n_bands))
     return known
+
+
+def time_best(light: Light, n_bands: int) -> None:
+    """Measure the best way, where it was not: what a light had at hand took no time, such as what a search for bands made."""
+    source = light.source
+    again = source.anew()
+    if again is None or BEST in (found.way for found in measurements(light, n_bands)):
+        return
+    tell("timing the best way")
+    start = perf_counter()
+    radiance = again.coefficients(n_bands)
+    spent = 1000 * (perf_counter() - start)
+    for one in dict.fromkeys((source, light)):
+        _measure(one, BEST, Projection(one.from_source(radiance), source.best_method, None, spent, radiance))
 
 
 def _measure(light: Light, way: Way, projection: Projection) -> None:

@@ -59,6 +59,7 @@ class EnvironmentLight(RadianceLight):
     limits: Limits
     """The limit of memory counts for what is made of the image, too."""
 
+    KEEPS = ("_projected",)
     best_method = "exact texel integrals"
     lobes = ()
 

@@ -58,6 +58,7 @@ class FunctionLight(RadianceLight):
     _news: list[tuple[float, tuple[float, ...]]] = field(default_factory=list, init=False, repr=False)
     """The largest radiance that was met after the function had been sampled, and is not in the samples, and its direction."""
 
+    KEEPS = ("_held", "_sampled")
     lobes = ()
 
     @property
@@ -167,7 +168,9 @@ class FunctionLight(RadianceLight):
 
     @property
     def kept_bands(self) -> int:
-        return count_bands(self._held[0]) if "_held" in vars(self) else 0
+        if "_held" in vars(self):
+            return count_bands(self._held[0])
+        return SAMPLED_BANDS if "_sampled" in vars(self) else 0  # for its map
 
     def products(self) -> Array:
         return self._sampled.products

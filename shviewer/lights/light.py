@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,6 +82,9 @@ class Light(Protocol):
     def kept_bands(self) -> int:
         """How many bands `coefficients` has at hand, so that asking for no more takes no time worth measuring."""
 
+    def anew(self) -> Light | None:
+        """The same light with nothing at hand of its coefficients, so that they take their time; None if it keeps none."""
+
     def products(self) -> Array:
         """Integrals of f_i f_j over the sphere for channels i and j, (3, 3), by the same quadrature as `coefficients`."""
 
@@ -155,6 +159,9 @@ class About:
 class LightBase(InNotebooks, ABC):
     """The answers of a light that has no better ones."""
 
+    KEEPS: ClassVar[tuple[str, ...]] = ()
+    """The attributes in which `coefficients` keeps what it has found."""
+
     def __repr__(self: Light) -> str:
         return f"<{self.name}: {self.description}>"
 
@@ -177,6 +184,14 @@ class LightBase(InNotebooks, ABC):
     @property
     def kept_bands(self) -> int:
         return 0
+
+    def anew(self) -> Light | None:
+        if not self.KEEPS:
+            return None
+        found = cast("Light", copy(self))
+        for name in self.KEEPS:
+            vars(found).pop(name, None)
+        return found
 
     def texels(self) -> Iterator[tuple[NDArray[np.floating], Array]]:
         return iter(())

@@ -9,7 +9,7 @@ import numpy as np
 
 from shviewer.analysis.comparing.comparison import verdict_of
 from shviewer.analysis.figures import PENDING, Figures, Needs, Pending, Sums, figures_of, needs
-from shviewer.analysis.projections import Projection
+from shviewer.analysis.projections import Projection, time_best
 from shviewer.analysis.reconstruction import Reconstruction, values_at
 from shviewer.analysis.subjects import Subject, has_suns, subject
 from shviewer.harmonics.basis import Array
@@ -172,6 +172,8 @@ def completed(picture: Picture) -> Picture:
     picture, recipe = with_figures(picture), picture.state.recipe
     if isinstance(picture.needs, Needs):
         return picture
+    if picture.state.view.sheet == "plane":
+        time_best(picture.light, picture.projection.n_bands)
     unsplit = needs(replace(recipe, split_sun=False)) if picture.subject.suns else None
     found = needs(recipe)
     sun_to_blame = found.radiance is None and recipe.compare is None and has_suns(recipe)

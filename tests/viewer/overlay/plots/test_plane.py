@@ -32,8 +32,8 @@ from shviewer.viewer.overlay.pieces import Disc
 from shviewer.viewer.overlay.plots import plane
 from shviewer.viewer.overlay.plots.log_axis import Axis
 from shviewer.viewer.overlay.plots.plane import LEAST, LOOKS, Plane, measured, plane_of
-from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.state import state_of
+from shviewer.viewer.picture import Picture, prepare, stages
+from shviewer.viewer.state import changed, state_of
 from shviewer.words import grouped_number, percent
 
 SIZES = [
@@ -388,3 +388,16 @@ def test_a_window_without_room_says_so() -> None:
 
 def test_the_help_hides_it() -> None:
     assert "plane_floor" not in draw_overlay(shown(help_visible=True), compose(1280, 640)).boxes
+
+
+@pytest.mark.parametrize("light", ["image", "function"])
+def test_what_was_at_hand_for_irradiance_is_timed_anew_once_b_is_pressed(light: str) -> None:
+    """Irradiance takes 128 bands first, and the map of a function its samples: the bands shown took no time of their own."""
+    shown = find_light("venice_sunset") if light == "image" else FunctionLight(lambda d: np.exp(d))
+    state = state_of(shown, quantity="irradiance", n_bands=3)
+    *_, picture = stages(state)
+    assert measured(picture) == ()
+    *_, picture = stages(changed(state, sheet="plane"))
+    (found,) = measured(picture)
+    assert (found.way, found.milliseconds > 0.02) == (BEST, True)
+    assert found.errors[2] == pytest.approx(picture.figures.relative_l2, rel=1e-6)
