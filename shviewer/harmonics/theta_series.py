@@ -34,14 +34,20 @@ PASSED_DEGREES = 8
 """Degrees of one parity in one product where there is no table."""
 
 
-@lru_cache(maxsize=8)
 def theta_series(n_bands: int) -> Array:
-    """D(m, l, k), shape (n, n, n), zero for l < m: from the basis on the great circle phi = 0, pi.
+    """D(m, l, k), shape (n, n, n), zero for l < m: a part of a larger table, as a sweep wants one band more each time."""
+    check_bands(n_bands, TABLE_BANDS)
+    part = slice(n_bands)
+    return _table(min(1 << (n_bands - 1).bit_length(), TABLE_BANDS))[part, part, part]
+
+
+@lru_cache(maxsize=8)
+def _table(n_bands: int) -> Array:
+    """The same from the basis on the great circle phi = 0, pi.
 
     The function and its row functions are even or odd both about theta = 0 and about pi/2, so a quarter of the circle is
     enough, its ends counted half.
     """
-    check_bands(n_bands, TABLE_BANDS)
     angle, weights = _quarter(n_bands)
     circle = np.stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)], axis=-1)
     basis = evaluate_by_recurrence(circle, n_bands)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from shviewer.errors import UsageError
 from shviewer.limits import BRIGHTEST, MAX_BANDS
 from shviewer.outputs import ANYTHING, Replacing, check_place, write_atomically
+from shviewer.progress import tell
 from shviewer.viewer.actions import with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_FRAMES, TURN_SECONDS
@@ -110,7 +111,10 @@ def with_one_range(states: list[State]) -> list[State]:
     """
     if states[0].view.error == "off" or states[0].view.error_range is not None:
         return states
-    end = max(error_end(state) for state in states)
+    end = 0.0
+    for number, state in enumerate(states):
+        tell("finding the range of the errors", number / len(states))
+        end = max(end, error_end(state))
     digit = 10.0 ** (math.floor(math.log10(end)) - 1)
     error_range = min(float(f"{digit * math.ceil(end / digit - 1e-9):.2g}"), BRIGHTEST)
     return [changed(state, error_range=error_range, range_held=True) for state in states]

@@ -71,10 +71,22 @@ def automatic_range(kind: str, errors: Array, shares: Array, largest: float, noi
     that the metrics found; noise: as in ErrorScale. All in the same unit. The end is never 0, so that it can be divided by.
     """
     magnitude = np.abs(errors)
-    order = np.argsort(magnitude)
-    place = min(int(np.searchsorted(np.cumsum(shares[order]), QUIET)), len(order) - 1)
-    quiet = float(magnitude[order[place]])
+    quiet = _below(magnitude, shares)
     end = max(min(largest, SPIKE * quiet) if quiet > 0 else largest, NOISE_SHARE * noise)
     if kind == "relative":
         end = min(end, MOST_RELATIVE)
     return end if end > 0 else 1.0
+
+
+def _below(magnitude: Array, shares: Array) -> float:
+    """The magnitude that QUIET of the sphere does not pass. Only the largest are sorted, as many as it takes."""
+    total, count = float(shares.sum()), max(1, len(shares) // 16)
+    while True:
+        top = np.argpartition(magnitude, -count)[-count:]
+        rest = total - float(shares[top].sum())
+        if rest < QUIET or count == len(shares):
+            break
+        count = min(4 * count, len(shares))
+    top = top[np.argsort(magnitude[top])]
+    place = min(int(np.searchsorted(rest + np.cumsum(shares[top]), QUIET)), count - 1)
+    return float(magnitude[top[place]])

@@ -150,7 +150,13 @@ def _missing(picture: Picture, at: Composition, plane: Plane | None) -> str:
     """Why what was asked for in place of the curve is not there; "" if it is, or if nothing was."""
     view = picture.state.view
     if view.sheet == "plane":
-        return "" if plane else NO_ROOM.format("time against error", "B") if measured(picture) else NOT_TIMED * picture.complete
+        return (
+            ""
+            if plane
+            else NO_ROOM.format("time against error", "B")
+            if measured(picture)
+            else NOT_TIMED * picture.complete
+        )
     return NO_ROOM.format("bands against roughness", "J") if view.by_roughness and at.numbers.curve is None else ""
 
 

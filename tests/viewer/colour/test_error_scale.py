@@ -7,7 +7,7 @@ import pytest
 from harmonics.independent import random_directions
 from helpers import picture_of
 
-from shviewer.viewer.colour.error_scale import automatic_range, error_values
+from shviewer.viewer.colour.error_scale import QUIET, SPIKE, automatic_range, error_values
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.colour_bar import colour_bar_pieces, round_ticks, tick_text
 from shviewer.viewer.overlay.drawing import layer_of
@@ -120,3 +120,15 @@ def test_a_tick_stands_under_its_colour(error: str, size: tuple[int, int]) -> No
     luminance = row[:, :3] @ [0.2126, 0.7152, 0.0722]
     inside = luminance[int(bar.left) - layer.left : int(bar.right) - layer.left]
     assert inside.argmin() == pytest.approx(len(inside) / 2 if error == "signed" else 0, abs=0.1 * len(inside))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_quiet_is_the_same_as_by_sorting_all_of_the_sphere(seed: int) -> None:
+    """Where the largest errors are on rows next to a pole, many of them are little of the sphere."""
+    random = np.random.default_rng(seed)
+    rows = np.sin(np.pi * (np.arange(64) + 0.5) / 64)
+    shares = np.repeat(rows / rows.sum() / 128, 128)
+    errors = random.lognormal(sigma=2, size=shares.size) / (shares if seed % 2 else 1)
+    order = np.argsort(errors)
+    wanted = errors[order][np.searchsorted(np.cumsum(shares[order]), QUIET)]
+    assert automatic_range("absolute", errors, shares, np.inf) == SPIKE * wanted

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from shviewer.viewer.animation.animation import band_sweep
+from shviewer.progress import listening
+from shviewer.viewer.animation.animation import band_sweep, ranged
 from shviewer.viewer.animation.turning import light_turn
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.desktop import session as sessions
@@ -133,3 +134,11 @@ def test_steps_keep_a_range_only_while_it_is_held() -> None:
     assert step_sweep(state).view.error_range == 0.4
     assert step_turn(changed(state, turning="same")).view.error_range == 0.4
     assert changed(state, encode="l1").view.error_range is None
+
+
+def test_while_the_range_is_sought_it_is_said_how_far_that_is() -> None:
+    said: list[tuple[str, float | None]] = []
+    with listening(lambda what, share: said.append((what, share))):
+        ranged(changed(state_of("green", n_bands=1, error="signed"), sweep_to=8))
+    shares = [share for what, share in said if what == "finding the range of the errors"]
+    assert shares == [number / 8 for number in range(8)]
