@@ -21,6 +21,8 @@ from shviewer.words import one_line
 
 NPY = ".npy"
 _LONGEST_HEADER = 2**17  # bytes
+_WIDEST = 6
+"""The most columns that rows of coefficients have: real and imaginary parts of three channels."""
 
 
 def read_arrays(data: bytes) -> Listed:
@@ -41,6 +43,10 @@ def listed_array(numbers: NDArray[Any], *, bare: bool = True) -> Listed:
         return rows_of_cilm(numbers)
     if numbers.dtype.kind not in "fiuc" or numbers.ndim not in (1, 2) or not numbers.size:
         raise LightError(f"coefficients of type {numbers.dtype} and shape {numbers.shape}; they are (n^2, 3) numbers")
+    if bare and numbers.ndim == 2 and numbers.shape[1] > _WIDEST and len(numbers) != 3:
+        raise LightError(
+            f"an array of shape {numbers.shape}; coefficients are (n^2, 3), an image is (height, width, 3)"
+        )
     return arranged(numbers) if bare else Listed(numbers)
 
 

@@ -9,6 +9,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -116,6 +117,7 @@ def interpreted(listed: Listed, named: str, *, overrule: bool = False) -> Coeffi
             convention = parse_convention(named or listed.implied)
         notes = notes if named else (*notes, listed.implied_by)
     else:
+        _check_shape(listed.numbers)
         raise LightError(
             "a bare list of numbers; name its convention, such as --convention three (--input-convention of shviewer project, "
             "whose --help names them all; convention='three' in Python); "
@@ -172,6 +174,17 @@ def _stored(listed: Listed, convention: Convention, stamp: Stamp, notes: tuple[s
 def _check_size(numbers: NDArray[np.generic]) -> None:
     if np.abs(numbers).max() > LARGEST:
         raise LightError(f"a coefficient of {np.abs(numbers).max():.3g}; at most {LARGEST:g} is read: scale the light")
+
+
+def _check_shape(numbers: NDArray[Any]) -> None:
+    """LightError for numbers that are no coefficients in any convention."""
+    try:
+        as_table(numbers, complex_pairs=np.iscomplexobj(numbers))
+    except LightError:
+        with suppress(LightError):
+            as_table(numbers, complex_pairs=True)
+            return
+        raise
 
 
 def _read_json(data: bytes) -> Listed:

@@ -46,6 +46,12 @@ def npz(**arrays: Any) -> bytes:
     return file.getvalue()
 
 
+def npy(array: Any) -> bytes:
+    file = io.BytesIO()
+    np.save(file, array)
+    return file.getvalue()
+
+
 def stamped(**changes: Any) -> str:
     stamp = {**stamp_of(CONVENTIONS["three"], "radiance", 3), **changes, "coefficients": ROWS.tolist()}
     return json.dumps({key: value for key, value in stamp.items() if value is not None})
@@ -321,3 +327,25 @@ def test_no_mutation_of_a_file_is_anything_but_a_light_or_one_line(tmp_path: Pat
             assert light is None or np.isfinite(light.given).all()
             lights += light is not None
     assert lights > 100  # many mutations only touch a comment or a digit
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "says"),
+    [
+        ("a.txt", "1 2 3\n4 5 6\n", "2 rows of three: n bands have n^2 rows"),
+        ("a.txt", "1 2 3\n" * 3 + "1 nan 2\n", "row 3 (from 0) is not finite"),
+        ("a.json", "[1, 2, 3, 4, 5]", "5 numbers: n bands have n^2 rows"),
+        (
+            "a.npy",
+            npy(np.ones((32, 64))),
+            "an array of shape (32, 64); coefficients are (n^2, 3), an image is (height, width, 3)",
+        ),
+        ("a.txt", "1 2 3\n" * 4, "name its convention"),
+        ("a.txt", "1 2\n" * 4, "name its convention"),
+        ("a.npy", npy(np.ones((9, 3), complex)), "name its convention"),
+    ],
+)
+def test_what_no_convention_could_mend_is_said_before_one_is_asked_for(
+    name: str, data: str | bytes, says: str, tmp_path: Path
+) -> None:
+    assert says in refused(tmp_path / name, data, Reading())
