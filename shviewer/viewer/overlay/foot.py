@@ -71,7 +71,10 @@ def message_line(at: Composition) -> Line | None:
 
 
 def message_pieces(line: Line, said: str, at: Composition) -> list[Piece]:
-    """A message with its mark, on as many lines as it needs and has: a foot two, upwards; the last is shortened to its line."""
+    """A message with its mark, on as many lines as it needs and has; the last is shortened to its line.
+
+    A foot has two, upwards. In a compact frame they go on down, and begin in the place of the answers where that is too short.
+    """
     sign, words = message.kind_of(said), str(said)
     size, ink = at.px(12.0 if at.compact else 13.0), INKS[sign]
     left, apart = line.left + (at.px(AFTER_MARK) if sign else 0), 1.25 * size
@@ -79,6 +82,9 @@ def message_pieces(line: Line, said: str, at: Composition) -> list[Piece]:
     end = curve.top if curve and curve.top > line.baseline else at.height
     most = 2 if foot else 1 + max(0, int((end - line.baseline - 0.35 * size) / apart))
     lines = _lines(escaped(typeset(words)), line.right - left, size, most)
+    places = at.numbers.answers if at.numbers.figures and not foot else ()
+    if places and line.baseline > places[0].value and " ".join(lines) != escaped(typeset(words)):
+        return message_pieces(line._replace(baseline=places[0].value), said, at)
     first = line.baseline - (apart * (len(lines) - 1) if foot else 0.0)
     pieces = _mark(sign, line.left, first, at.px(MARK), ink, at) if sign else []
     for number, text in enumerate(lines):

@@ -117,7 +117,9 @@ def draw_overlay(
         foot = foot_pieces(at, said, after=after, proposed="U" if picture.sun_to_blame else "", others=others)
     answers, figures = answer_pieces(picture, at), figure_pieces(picture, at)
     if numbers.foot is None and told:  # the message takes the place of the last line there is
-        answers, figures, feet = (answers, [], feet) if numbers.figures else ([], [], feet if numbers.answers else [])
+        over = min((piece.box.top for piece in foot if isinstance(piece, Text)), default=at.height)
+        kept = answers if numbers.figures and over > numbers.answers[0].label else []
+        answers, figures, feet = kept, [], feet if numbers.answers else []
         if not (numbers.figures or numbers.answers):
             blocks = heads
     blocks += [*feet, hairline_pieces(at, work), answers, figures, exposure, foot]
@@ -136,7 +138,7 @@ def draw_overlay(
 def _beside(blocks: Sequence[Sequence[Piece]], foot: Sequence[Piece], at: Composition) -> Sequence[Sequence[Piece]]:
     """Blocks without the texts that a message of two lines stands on or beside, such as the numbers of bands."""
     lines = [piece.box for piece in foot if piece.name.startswith("message")]
-    if len(lines) < 2:
+    if len(lines) < 2 or at.numbers.foot is None:
         return blocks
     taken = Box(lines[0].left, lines[0].top, at.width, lines[-1].bottom)
 

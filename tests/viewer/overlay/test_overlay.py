@@ -414,7 +414,7 @@ def test_a_curve_among_the_panes_says_what_its_lines_are_and_sentences_stand_in_
     assert abs(sentence.bottom - at.numbers.foot.baseline) < 6
 
 
-@pytest.mark.parametrize("size", [(500, 300), (700, 400), (500, 900), (400, 1200), (720, 720)], ids=str)
+@pytest.mark.parametrize("size", [(500, 300), (640, 360), (500, 900), (400, 1200), (720, 720)], ids=str)
 @pytest.mark.parametrize("error", ["off", "signed"])
 def test_what_went_wrong_is_said_in_full_in_small_windows_too(size: tuple[int, int], error: str) -> None:
     """It was cut in its middle, which is where the reason stands."""
@@ -422,6 +422,12 @@ def test_what_went_wrong_is_said_in_full_in_small_windows_too(size: tuple[int, i
     shown = picture_of(message=message.Message(words, message.ERROR), error=error)
     drawn = draw_overlay(shown, frame(shown, size))
     assert " ".join(text.text for text in texts_of(drawn) if text.name.startswith("message")) == words
+    beside = {
+        name
+        for name in draw_overlay(picture_of(error=error), frame(shown, size)).boxes
+        if name.startswith(("share_", "tolerance"))
+    }
+    assert beside <= drawn.boxes.keys()  # the axis of errors stays
 
 
 @pytest.mark.parametrize(
