@@ -58,6 +58,16 @@ def test_y_faces_one_mark_after_the_other_and_says_where_there_is_none() -> None
     assert "nothing is marked" in pressed(Session(state_of("constant")), "Y").state.view.message
 
 
+def test_what_t_and_y_find_done_they_say() -> None:
+    session = Session(state_of("green"))
+    said = []
+    for key in ("T", "T", "Y", "Y", "Home", "T", "D", "Y", "Y"):
+        session.press(key)
+        session.prepare()
+        said.append(session.state.view.message)
+    assert said == ["", "15 bands are what 5 % needs", "", "the only mark is in front", "", "", "", "", ""]
+
+
 def test_a_file_that_is_dropped_or_edited_is_read_and_a_bad_one_leaves_the_picture(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(SCENE.format(1))
