@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import moderngl
 import numpy as np
@@ -22,6 +22,8 @@ from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.saving.picture_files import write_exr, write_png
 from shviewer.viewer.saving.stamp import metadata
+
+T = TypeVar("T", np.uint8, np.float32)
 
 
 def save_picture(
@@ -103,7 +105,7 @@ def render_in_parts(
         for part in renderer.parts(target, composition, layers, seconds=PART_SECONDS):
             yield part.share
         data = target.read(components=4)
-    return lambda: _rgb(data, composition)
+    return lambda: _upright(np.frombuffer(data, np.uint8), composition)
 
 
 def _written(renderer: Renderer, picture: Picture, composition: Composition, *, timing: bool = False) -> Overlay:
@@ -117,12 +119,9 @@ def _layers(written: Overlay, picture: Picture, composition: Composition) -> tup
 
 def read_rgb(renderer: Renderer, composition: Composition, layers: Sequence[Layer] = ()) -> NDArray[np.uint8]:
     """Draw the renderer's picture into a framebuffer and read it back: (height, width, 3), top row first."""
-    return _rgb(_read(renderer, composition, "f1", layers), composition)
-
-
-def _rgb(data: bytes, composition: Composition) -> NDArray[np.uint8]:
-    """RGB of RGBA, bottom row first."""
-    return np.frombuffer(data, dtype=np.uint8).reshape(_shape(composition))[::-1, :, :3].copy()
+    with offscreen(renderer, composition) as target:
+        renderer.draw(target, composition, layers)
+        return _upright(np.frombuffer(target.read(components=4), np.uint8), composition)
 
 
 def render_linear(renderer: Renderer, picture: Picture, composition: Composition) -> NDArray[np.float32]:
@@ -131,19 +130,14 @@ def render_linear(renderer: Renderer, picture: Picture, composition: Composition
     Negative radiance stays negative; around the spheres it is 0.
     """
     renderer.show(picture)
-    data = np.frombuffer(_read(renderer, composition, "f4"), dtype=np.float32)
-    return data.reshape(_shape(composition))[::-1, :, :3].copy()
+    with offscreen(renderer, composition, "f4") as target:
+        renderer.draw(target, composition, linear=True)
+        return _upright(np.frombuffer(target.read(components=4, dtype="f4"), np.float32), composition)
 
 
-def _shape(composition: Composition) -> tuple[int, int, int]:
-    return composition.height, composition.width, 4
-
-
-def _read(renderer: Renderer, composition: Composition, dtype: str, layers: Sequence[Layer] = ()) -> bytes:
-    """RGBA bytes, bottom row first: the picture for dtype "f1", its linear radiance for "f4"."""
-    with offscreen(renderer, composition, dtype) as target:
-        renderer.draw(target, composition, layers, linear=dtype == "f4")
-        return target.read(components=4, dtype=dtype)
+def _upright(values: NDArray[T], composition: Composition) -> NDArray[T]:
+    """The picture, top row first, of its RGBA, bottom row first."""
+    return values.reshape(composition.height, composition.width, 4)[::-1, :, :3].copy()
 
 
 @contextmanager

@@ -63,7 +63,7 @@ class Canvas:
         """The picture that frames are drawn of."""
         self._pending: Work | None = None
         """What the next picture waits for."""
-        self._frame: _Frame | None = None
+        self._frame: _Begun | None = None
         self._kept = Kept(self.renderer)
         self._exact = True
         """Whether surfaces have the triangles that they should have."""
@@ -168,7 +168,7 @@ class Canvas:
         again, self.again = self.again, False
         if self._shown is None:
             self.wait(self._pending or Work(UPLOADING), composition)
-            self._frame = _Frame(iter(()), composition, False)
+            self._frame = _Begun(iter(()), composition, False)
             return
         key = panes_key(self._shown, composition, self._exact)
         frames = self._panes[1] + 1 if key == self._panes[0] else 1
@@ -176,7 +176,7 @@ class Canvas:
         carrier = self.renderer.carrier  # what copies panes may be compiled there
         copied = frames > PLAIN_FRAMES and not again and not (carrier is not None and carrier.busy)
         parts = self._parts(composition, pointer, key if copied else None)
-        self._frame = _Frame(parts, composition, alone and not copied and _choosable(self._shown))
+        self._frame = _Begun(parts, composition, alone and not copied and _choosable(self._shown))
 
     def _parts(self, composition: Composition, pointer: Point | None, kept: object) -> Iterator[Part]:
         """Draw a frame part by part, first what is written. kept: the key of panes that are copied."""
@@ -236,7 +236,7 @@ class Canvas:
 
 
 @dataclass
-class _Frame:
+class _Begun:
     """A frame that was begun."""
 
     parts: Iterator[Part]

@@ -26,8 +26,8 @@ COMPARABLE = 0.7
 """The least share of the present frame's pixels that a frame must have to say something about its time."""
 
 
-class Frame(NamedTuple):
-    """A frame that was summed per pixel."""
+class Timed(NamedTuple):
+    """A frame that was summed per pixel, and how long it took."""
 
     seconds: float
     """When it was drawn, on any clock."""
@@ -43,7 +43,7 @@ class Frame(NamedTuple):
 class Evaluation:
     """The choice for the next frame, from the frames before it."""
 
-    frames: dict[int, deque[Frame]] = field(default_factory=dict)
+    frames: dict[int, deque[Timed]] = field(default_factory=dict)
     """Number of bands -> the frames remembered."""
     by_map: bool = False
 
@@ -61,14 +61,14 @@ class Evaluation:
         sure: whether nothing but the sum has taken so long.
         """
         frames = self.frames.setdefault(n_bands, deque(maxlen=MEMORY))
-        frames += [Frame(seconds, pixels, milliseconds)] * (2 if sure else 1)
+        frames += [Timed(seconds, pixels, milliseconds)] * (2 if sure else 1)
         return milliseconds > LIMIT and len(self._comparable(n_bands, pixels)) < 2
 
     def too_slow(self, n_bands: int, pixels: float, seconds: float) -> bool:
         """Whether a direct frame is known to take too long."""
         return any(n <= n_bands and self._too_slow(n, pixels, seconds) for n in self.frames)
 
-    def _comparable(self, n_bands: int, pixels: float) -> list[Frame]:
+    def _comparable(self, n_bands: int, pixels: float) -> list[Timed]:
         return [frame for frame in self.frames[n_bands] if frame.pixels >= COMPARABLE * pixels]
 
     def _cost(self, n_bands: int, pixels: float, seconds: float) -> float:

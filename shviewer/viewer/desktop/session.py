@@ -16,7 +16,7 @@ from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.behind.opening import MOST_DROPPED
-from shviewer.viewer.desktop.behind.saving import Saving, Written, save_coefficients
+from shviewer.viewer.desktop.behind.saving import Saving, Written, write_coefficients
 from shviewer.viewer.desktop.behind.task import Wake
 from shviewer.viewer.desktop.history import History
 from shviewer.viewer.desktop.showing import PLAIN, Settings, Showing
@@ -94,7 +94,7 @@ class Session(Showing):
             case Command.UNDO | Command.REDO:
                 self._go_back(undo=command is Command.UNDO)
             case Command.EXPORT:
-                self.when_ready(lambda: self.saving.write("writing the coefficients", save_coefficients, self.picture))
+                self.when_ready(lambda: self.saving.write("writing the coefficients", write_coefficients, self.picture))
             case _:
                 return command
         return None

@@ -46,7 +46,7 @@ class Restored(NamedTuple):
     """What became of its light and of what it compares with; "" if they are what they were."""
 
 
-class _Found(NamedTuple):
+class _File(NamedTuple):
     """A file that a picture names, as LIGHT names it; None where there is none."""
 
     text: str | None
@@ -91,7 +91,7 @@ def _read(text: str) -> dict[str, Any]:
 
 def _restored(text: str, said: dict[str, Any], path: Path, limits: Limits, light: str | None) -> Restored:
     compares = isinstance(_names(said).get("compare"), dict)
-    found, held = _Found(light) if light else _light(said, path), _coefficients(said)
+    found, held = _File(light) if light else _light(said, path), _coefficients(said)
     if found.text is None and held is None:
         raise UsageError(f"{found.said}; it keeps no coefficients that could be shown in its place")
     stand_in = CoefficientLight(np.zeros((MAX_BANDS**2, 3))) if compares else None
@@ -127,18 +127,18 @@ def _within(own: Reading, limits: Limits) -> Reading:
     return replace(own, limits=replace(limits, pipe_seconds=0, **least))
 
 
-def _light(said: dict[str, Any], path: Path) -> _Found:
+def _light(said: dict[str, Any], path: Path) -> _File:
     """The light of the picture: a text to find it by, or why there is none."""
     text = _names(said).get("light")
     if not isinstance(text, str):
-        return _Found(None, f"{one_line(str(said.get('light')), 60)} was an object of Python")
+        return _File(None, f"{one_line(str(said.get('light')), 60)} was an object of Python")
     if is_code(text):
         shown = one_line(text, 120)
-        return _Found(None, f"{shown} is code, and no picture runs code: shviewer {shown} --like {path.name} does")
+        return _File(None, f"{shown} is code, and no picture runs code: shviewer {shown} --like {path.name} does")
     return _found(text, _file(said, "light"), path)
 
 
-def _found(text: str, mark: dict[str, Any], path: Path) -> _Found:
+def _found(text: str, mark: dict[str, Any], path: Path) -> _File:
     """A file that a picture names: beside the picture, then in the present folder, rather one with the same bytes."""
     name = one_line(light_name(text), 60)
     if text in built_in_lights():
@@ -146,9 +146,9 @@ def _found(text: str, mark: dict[str, Any], path: Path) -> _Found:
     else:
         here = [place for place in _places(text, path.parent) if os.path.isfile(split_light(place)[0])]
     if not here:
-        return _Found(None, f"{name} is gone: it is neither beside {path.name} nor where it was")
+        return _File(None, f"{name} is gone: it is neither beside {path.name} nor where it was")
     same = here[:1] if "sha256" not in mark else [place for place in here if has_mark(split_light(place)[0], mark)]
-    return _Found(same[0]) if same else _Found(here[0], f"{name} is no longer the file that it was")
+    return _File(same[0]) if same else _File(here[0], f"{name} is no longer the file that it was")
 
 
 def _places(text: str, folder: Path) -> Iterator[str]:
@@ -163,13 +163,13 @@ def _comparing(state: State, said: dict[str, Any], path: Path) -> tuple[State, s
     """The state with the coefficients that the picture compares: those of their file, or else those that it kept."""
     mark = _file(said, "compare")
     text = mark.get("path")
-    found = _found(text, mark, path) if isinstance(text, str) else _Found(None)
+    found = _found(text, mark, path) if isinstance(text, str) else _File(None)
     if found.text is not None:
         given = compared_with(state.recipe, found.text)[0].compare
     elif (held := _coefficients(said)) is not None:
         kept = _names(said)["compare"]
         given = replace(held, name=one_line(str(kept.get("name")), 60))
-        found = _Found(None, f"{given.name} is gone: what the picture kept of it is compared")
+        found = _File(None, f"{given.name} is gone: what the picture kept of it is compared")
     else:
         raise UsageError("the coefficients that it compares are gone")
     assert given is not None

@@ -49,7 +49,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def writing(at_once: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[Held]:
     held = Held(lambda picture: Written(Path(f"{picture.state.recipe.n_bands}.json")))
-    monkeypatch.setattr(sessions, "save_coefficients", held)
+    monkeypatch.setattr(sessions, "write_coefficients", held)
     yield held
     held.open.set()
 
@@ -107,10 +107,10 @@ def test_what_cannot_be_written_is_said_and_a_fault_ends_nothing(
         raise OutputError("the disk is full")
 
     session = Session(state_of("green"))
-    monkeypatch.setattr(sessions, "save_coefficients", refused)
+    monkeypatch.setattr(sessions, "write_coefficients", refused)
     session.press("Ctrl+E")
     assert (session.state.view.message, kind_of(session.state.view.message)) == ("the disk is full", ERROR)
-    monkeypatch.setattr(sessions, "save_coefficients", lambda picture: 1 / 0)
+    monkeypatch.setattr(sessions, "write_coefficients", lambda picture: 1 / 0)
     session.press("Ctrl+E")
     assert session.state.view.message == "internal error, see the terminal"
     assert "ZeroDivisionError" in capsys.readouterr().err
@@ -126,7 +126,7 @@ def test_a_picture_whose_map_is_on_its_way_to_opengl_is_saved_when_it_is_there(
 
     saved: list[object] = []
     monkeypatch.setattr(saving, "render_in_parts", drawn)
-    monkeypatch.setattr(saving, "save_picture", lambda *rest: saved.append(rest[-1]) or Written(Path("a.png")))
+    monkeypatch.setattr(saving, "write_picture", lambda *rest: saved.append(rest[-1]) or Written(Path("a.png")))
     opengl = SimpleNamespace(version="", ready=lambda *picture: False, held=SimpleNamespace(pinned=None))
     session = Session(state_of("green"))
     session.save(opengl, None)  # type: ignore[arg-type]

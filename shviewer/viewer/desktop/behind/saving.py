@@ -80,7 +80,7 @@ class Saving(Errands):
                 self._failed(error)
             if raw is not None:
                 self._over()
-                self.write("saving the picture", save_picture, first.picture, first.composition, first.opengl, raw)
+                self.write("saving the picture", write_picture, first.picture, first.composition, first.opengl, raw)
 
     def stop(self) -> None:
         while self._drawing:
@@ -134,7 +134,7 @@ class _Drawing:
         self._parts.close()
 
 
-def save_picture(picture: Picture, composition: Composition, opengl: str, pixels: Read) -> Written:
+def write_picture(picture: Picture, composition: Composition, opengl: str, pixels: Read) -> Written:
     """Write the picture, with the pixels that OpenGL drew of it, under the next free name. OutputError if that fails."""
     text = metadata(picture, composition, opengl)
 
@@ -144,7 +144,7 @@ def save_picture(picture: Picture, composition: Composition, opengl: str, pixels
     return Written(write_numbered(_stem(picture), write, folder=_folder()))
 
 
-def save_coefficients(picture: Picture) -> Written:
+def write_coefficients(picture: Picture) -> Written:
     """Write what `shviewer project` would, with the light turned as it is shown. OutputError if that fails."""
     projected = projected_of(picture)
     data, what = projected.encode(OURS, "json"), projected.extent if projected.encoding else ""
