@@ -24,7 +24,7 @@ def test_a_peer_that_is_not_installed_is_named_and_left_out() -> None:
 
 
 def test_ours_is_measured_beside_whatever_peers_there_are() -> None:
-    answer = peers.measure(["film_studio", "green"], [3], 2.0, 0)
+    answer = peers.measure(["film_studio", "green"], [3], 0.5, 0)
     rows = [Row.from_dict(row) for row in answer["rows"]]
     ours = [(row.light, row.method, row.samples) for row in rows if row.method.startswith(peers.OURS)]
     assert sorted(ours, key=str) == [
