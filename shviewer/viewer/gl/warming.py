@@ -34,7 +34,7 @@ QUICK = 0.015
 PAUSES = 0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8
 """Seconds before each try: what was compiled is written behind."""
 
-PATIENCE, MOST = 0.05, 2.0
+PATIENCE, MOST = 0.05, 20.0
 """The seconds that a frame waits for programs that may be on the disk, and the last picture for the next one."""
 
 TRIANGLES, UNSIGNED_INT = 4, 0x1405

@@ -80,7 +80,7 @@ def draw(canvas: Canvas, picture: Picture) -> None:
 def test_the_last_picture_can_be_turned_until_the_programs_of_the_next_are_there(
     canvas: Canvas, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(gl_warming, "MOST", 60.0)
+    monkeypatch.setattr(gl_warming, "MOST", 99.0)
     first, second = picture_of(), picture_of(error="absolute", whole_sphere=True)
     assert canvas.show(first, frame_of(first))  # there is nothing else to be seen
     settle(canvas)
