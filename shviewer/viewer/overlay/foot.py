@@ -94,15 +94,16 @@ def message_pieces(line: Line, said: str, at: Composition) -> list[Piece]:
 
 
 def _lines(text: str, room: float, size: float, most: int) -> list[str]:
-    """The text parted at spaces into lines that have room, at most so many; the last is shortened in its middle."""
-    if most == 1 or width_of(text, size) <= room:
-        return [shown] if (shown := shortened_to(text, room, size)) else []
+    """The text parted at spaces into lines that have room, at most so many.
+
+    The last is shortened in its middle, and so is a word that is too long for a line, such as a path.
+    """
     words = text.split(" ")
-    fitting = [n for n in range(1, len(words)) if width_of(" ".join(words[:n]), size) <= room]
-    if not fitting:
+    if most == 1 or len(words) == 1 or width_of(text, size) <= room:
         return [shown] if (shown := shortened_to(text, room, size)) else []
-    rest = _lines(" ".join(words[fitting[-1] :]), room, size, most - 1)
-    return [" ".join(words[: fitting[-1]]), *rest]
+    count = max((n for n in range(1, len(words)) if width_of(" ".join(words[:n]), size) <= room), default=1)
+    first = shortened_to(" ".join(words[:count]), room, size)
+    return [first, *_lines(" ".join(words[count:]), room, size, most - 1)] if first else []
 
 
 def _mark(sign: str, x: float, baseline: float, size: float, ink: Ink, at: Composition) -> list[Piece]:

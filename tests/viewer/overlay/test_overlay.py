@@ -404,6 +404,17 @@ def test_a_long_message_takes_the_place_of_the_legend_before_it_is_cut() -> None
         assert ("legend_radiance" in drawn.boxes) == kept
 
 
+def test_a_long_path_leaves_the_reason_whole() -> None:
+    words = "an empty file (0 bytes); fetch or export it again"
+    drawn = draw_overlay(
+        picture_of(message=message.Message(f"/{'folder/' * 20}sky.hdr: {words}", message.ERROR)), compose(500, 900)
+    )
+    path, reason = (text.text for text in texts_of(drawn) if text.name.startswith("message"))
+    assert reason == words
+    assert path.startswith("/folder/")
+    assert path.endswith("sky.hdr:")
+
+
 @pytest.mark.parametrize("size", [(500, 900), (720, 720), (900, 900)], ids=str)
 def test_a_curve_among_the_panes_says_what_its_lines_are_and_sentences_stand_in_the_foot(size: tuple[int, int]) -> None:
     shown, steps = PICTURES["signed error"], picture_of(error="signed", by_roughness=True)
