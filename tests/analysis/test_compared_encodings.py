@@ -18,6 +18,7 @@ from shviewer.analysis.comparing.comparison import agrees, as_the_file_holds, ve
 from shviewer.analysis.projected import Projected
 from shviewer.analysis.recipe import Recipe
 from shviewer.harmonics.quantities.encodings import ENCODINGS
+from shviewer.harmonics.rotation import turn
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
@@ -96,6 +97,16 @@ def test_another_encoding_with_the_same_formula_is_named(tmp_path: Path) -> None
         held["coefficients"] = made("zh3-solved").stored.numbers.tolist()  # type: ignore[union-attr]
 
     assert told(written(tmp_path / "a.json", "zh3", solved)).endswith("but not at all if they are those of zh3-solved")
+
+
+def test_a_window_in_the_numbers_and_a_turn_of_the_light_are_named_where_these_are_coefficients(tmp_path: Path) -> None:
+    windowed = shviewer.project("venice_sunset", encode="l2", window="hann", window_width=4)
+    windowed.save(tmp_path / "a.json", "shviewer,y-up")
+    assert told(tmp_path / "a.json").endswith(
+        "but not at all if its bands are multiplied by 1, 0.854 and 0.5, by the window hann:4"
+    )
+    made("geomerics").turned(turn(30.0, 0.0)).save(tmp_path / "b.json")
+    assert "but not at all if the light is turned by 30 degrees" in told(tmp_path / "b.json")
 
 
 @pytest.mark.parametrize("name", ["geomerics", "ambient-cube"])

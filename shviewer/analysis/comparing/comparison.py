@@ -19,6 +19,7 @@ from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.programs import OURS
 from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array, count_bands
+from shviewer.harmonics.quantities.encodings import BANDS
 from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
@@ -76,7 +77,9 @@ def verdict(light: Light, given: CoefficientLight) -> str:
     Both are compared as what the file holds, radiance or irradiance, whatever is shown.
     """
     if given.file is not None and given.stored is not None:
-        return verdict_on_stored(project(light, BEST, MAX_DIRECT_BANDS).coefficients, given.file, given.name)
+        return verdict_on_stored(
+            project(light, BEST, MAX_DIRECT_BANDS).coefficients, given.file, given.name, partial(mistaken, light, BANDS)
+        )
     exact = project(light, BEST, given.n_bands).coefficients
     wanted, held = held_as(exact, given.quantity), _numbers(given)
     norm, off = float(np.linalg.norm(wanted)), float(np.linalg.norm(wanted - held))

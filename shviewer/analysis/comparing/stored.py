@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from shviewer.analysis.comparing.suspecting import FITS
+from shviewer.analysis.comparing.suspecting import FITS, Others, suspect
 from shviewer.coefficients.diagnosis.chance import CHANCE, share_of_directions
 from shviewer.coefficients.diagnosis.search import ALIKE, CLEAN, TINY
 from shviewer.coefficients.diagnosis.sentences import differences
 from shviewer.coefficients.diagnosis.tried import constant_of
+from shviewer.coefficients.numbers import Listed
 from shviewer.coefficients.parts.axes import Axes, all_axes
 from shviewer.coefficients.reading import CoefficientFile
 from shviewer.coefficients.stored_code import in_axes
@@ -20,10 +21,10 @@ from shviewer.harmonics.quantities.encodings import ENCODINGS, Stored
 from shviewer.words import all_of, brief_percent
 
 
-def verdict_on_stored(radiance: Array, file: CoefficientFile, name: str) -> str:
+def verdict_on_stored(radiance: Array, file: CoefficientFile, name: str, others: Others = lambda: iter(())) -> str:
     """One line on a file of an encoding: how near its irradiance is to what the encoding makes of a light, or what is wrong.
 
-    radiance: the light's coefficients, (n**2, 3), of as many bands as a cube is made of.
+    radiance: the light's coefficients, (n**2, 3), of as many bands as a cube is made of; others: as in `suspect`.
     """
     given = file.stored
     assert given is not None
@@ -40,6 +41,7 @@ def verdict_on_stored(radiance: Array, file: CoefficientFile, name: str) -> str:
     if not given.numbers.any():
         return f"{says}: its numbers are all zero"
     found = min(_causes(radiance, file, given), key=lambda one: one[0], default=None)
+    found = found or _of_a_list(radiance, file, given, others)
     if found is None:
         return f"{says}, which no usual mistake explains"
     left = "not at all" if found[0] < TINY else brief_percent(found[0])
@@ -74,6 +76,15 @@ def _causes(radiance: Array, file: CoefficientFile, given: Stored) -> Iterator[t
                 said = [*said, f"its numbers are {all_of(changes)}"]
             if said:
                 yield error, all_of(said)
+
+
+def _of_a_list(radiance: Array, file: CoefficientFile, given: Stored, others: Others) -> tuple[float, str] | None:
+    """What is wrong with coefficients of radiance, where an encoding keeps nothing else: the same, or None."""
+    encoding, plain = given.encoding, replace(file.convention, quantity=None)
+    if encoding.coefficients < encoding.floats:
+        return None
+    found = suspect(Listed(file.numbers), encoding.store(radiance), plain, others)
+    return (found.error, found.conditions(plain)) if found and found.error <= CLEAN else None
 
 
 def _turning(stored: Stored, numbers: Array) -> Array:
