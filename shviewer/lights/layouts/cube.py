@@ -11,10 +11,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from shviewer.harmonics.areas.cube import project_faces
 from shviewer.harmonics.areas.patches import (
     above_the_middle,
     four_quadrants,
-    project_mirrored,
     quadrant_edges,
     quadrant_weights,
 )
@@ -23,6 +23,9 @@ from shviewer.lights.layouts.arrangements import Arrangement, Face
 from shviewer.lights.layouts.bilinear import between_texels
 from shviewer.lights.layouts.layout import raster_of
 from shviewer.lights.layouts.texels import integrate_texels
+
+AROUND = 1, 0, 1
+"""The first of the two axes in a face, of those about x, y and z, as `project_faces` has them."""
 
 _AXES = {sign + name: factor * np.eye(3)[i] for sign, factor in (("+", 1), ("-", -1)) for i, name in enumerate("xyz")}
 
@@ -133,21 +136,19 @@ class CubeLayout:
         """As in Layout; from one quadrant of the front, left and upper face each, whose mirror images all others are."""
         n_points = quadrant_point_count(n_bands)
         values = np.zeros((2, 2, 2, 3, n_points, n_points, 3))
-        directions = np.empty((3, n_points, n_points, 3))
         for face in self.arrangement.faces:
             points, weights = quadrant_weights(pixels[self._cell(face)], n_points)
-            names = face.centre, face.right, face.down
-            axes = ["xyz".index(name[1]) for name in names]
-            backward = [int(name[0] == "-") for name in names]
-            towards = directions[axes[0]]
-            towards[..., axes[0]], towards[..., axes[1]], towards[..., axes[2]] = 1.0, points, points[:, None]
-            density = (towards**2).sum(axis=-1) ** -1.5
-            for down, right in np.ndindex(2, 2):
-                mirrored = dict(
-                    zip(axes, (backward[0], backward[1] ^ (1 - right), backward[2] ^ (1 - down)), strict=True)
+            weights *= ((1 + points**2 + points[:, None] ** 2) ** -1.5)[..., None]
+            axes = face.centre, face.right, face.down
+            normal, right, down = ("xyz".index(axis[1]) for axis in axes)
+            for below, beside in np.ndindex(2, 2):
+                side = [0, 0, 0]
+                side[normal], side[right], side[down] = (
+                    (axis[0] == "-") ^ turned for axis, turned in zip(axes, (0, 1 - beside, 1 - below), strict=True)
                 )
-                values[mirrored[0], mirrored[1], mirrored[2], axes[0]] = weights[down, right] * density[..., None]
-        return project_mirrored(directions.reshape(-1, 3), values.reshape(2, 2, 2, -1, 3), n_bands)
+                found = weights[below, beside]
+                values[(*side, normal)] = found if down == AROUND[normal] else found.swapaxes(0, 1)
+        return project_faces(points, values, n_bands)
 
     def project_texels(self, values: Array, rows: Indices, columns: Indices, n_bands: int) -> Array | None:
         """As in Layout; texels of empty cells count as nothing."""
