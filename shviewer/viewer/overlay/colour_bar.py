@@ -16,6 +16,7 @@ from shviewer.viewer.overlay.inks import FAINT, GREY
 from shviewer.viewer.overlay.lettering import width_of
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Strip, Text
+from shviewer.viewer.overlay.setting import centred
 from shviewer.viewer.picture import Picture
 
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
@@ -102,25 +103,17 @@ def azimuth_pieces(at: Composition) -> list[list[Piece]]:
 
 
 def _azimuths(number: int, pane: WholeSphere, at: Composition) -> list[Piece]:
-    size, line = at.px(12.0), at.hair
-    under = round(pane.clip.bottom)
+    line, (left, _, right, bottom), quarter = at.hair, pane.clip, pane.width / 4
+    first, end = math.ceil((left - pane.x) / quarter - 1e-9), math.floor((right - pane.x) / quarter + 1e-9)
+    under, last = round(bottom), -math.inf
     pieces: list[Piece] = []
-    last = -math.inf
-    quarter = pane.width / 4
-    first, end = (
-        math.ceil((pane.clip.left - pane.x) / quarter - 1e-9),
-        math.floor((pane.clip.right - pane.x) / quarter + 1e-9),
-    )
     for step in range(first, end + 1):
-        x = pane.x + step * quarter
-        azimuth = -90 * step
-        azimuth = (azimuth + 180) % 360 - 180 if azimuth % 360 != 180 else 180
-        text = typeset(f"{azimuth}°")
-        width = width_of(text, size)
-        start = round(min(max(x - width / 2, pane.clip.left), pane.clip.right - width))
-        notch = min(max(round(x), round(pane.clip.left)), round(pane.clip.right) - line)
+        x, azimuth = pane.x + step * quarter, 180 - (90 * step + 180) % 360
+        notch = min(max(round(x), round(left)), round(right) - line)
         pieces.append(Fill(Box(notch, under + at.px(3), notch + line, under + at.px(3 + TICK)), FAINT))
-        if start > last + at.px(8):
-            pieces.append(Text(f"azimuth_{number}_{step}", start, under + at.px(18), text, size, FAINT))
-            last = start + width
+        name, text = f"azimuth_{number}_{step}", f"{azimuth}°"
+        label = centred(name, x, (left, right), under + at.px(18), text, at.px(12.0), FAINT)
+        if label.x > last + at.px(8):
+            pieces.append(label)
+            last = label.right
     return pieces

@@ -10,14 +10,14 @@ from shviewer.viewer.overlay.inks import ACCENT, GREY, INK, RULE
 from shviewer.viewer.overlay.lettering import shortened_to, width_of
 from shviewer.viewer.overlay.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
-from shviewer.viewer.overlay.setting import sentence
+from shviewer.viewer.overlay.setting import ended, sentence
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.work import Work
 
 UNKNOWN = 0.2
 """The part of the hairline that is lit where nobody knows how long the work takes."""
 
-TURN_SECONDS = 2.4
+ACROSS_SECONDS = 2.4
 """The time that this part takes from end to end."""
 
 
@@ -40,7 +40,7 @@ def hairline_pieces(at: Composition, work: Work | None = None) -> list[Piece]:
 
 def _moving(seconds: float) -> tuple[float, float]:
     """The lit part of a work of unknown length: it goes to and fro."""
-    phase = (seconds / TURN_SECONDS) % 2
+    phase = (seconds / ACROSS_SECONDS) % 2
     start = (1 - UNKNOWN) * (phase if phase < 1 else 2 - phase)
     return start, start + UNKNOWN
 
@@ -51,20 +51,19 @@ def work_pieces(at: Composition, work: Work) -> list[Piece]:
     if line is None:
         return []
     size, small = at.px(12.0 if at.compact else 13.0), at.small
-    parts = []
-    if work.share is not None:
-        parts.append(typeset(f"{100 * work.share:.0f} %"))
-    if work.seconds_left is not None:
-        parts.append(f"{max(1, round(work.seconds_left))} s left")
-    parts.append("Esc stops")
+    parts = [
+        "" if work.share is None else f"{100 * work.share:.0f} %",
+        "" if work.seconds_left is None else f"{max(1, round(work.seconds_left))} s left",
+        "Esc stops",
+    ]
     pieces: list[Piece] = []
     right = at.width - at.margin if not at.compact else line.right
-    for number in range(len(parts) - 1, -1, -1):
-        x = round(right - width_of(parts[number], small))
-        if x < line.left + at.px(60):
+    for number, part in reversed(list(enumerate(filter(None, parts)))):
+        text = ended(f"work_{number}", right, line.baseline, part, small, GREY)
+        if text.x < line.left + at.px(60):
             break
-        pieces.append(Text(f"work_{number}", x, line.baseline, parts[number], small, GREY))
-        right = x - at.px(10)
+        pieces.append(text)
+        right = text.x - at.px(10)
     words = shortened_to(typeset(work.words), right - at.px(8) - line.left, size)
     if words:
         pieces.append(Text("message", line.left, line.baseline, words, size, INK))
