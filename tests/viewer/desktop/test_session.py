@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from helpers import frame_of, picture_of
+from viewer.desktop.sessions import SCENE, pressed
 
 from shviewer.errors import LightError
 from shviewer.viewer.commands import Command
@@ -15,16 +16,6 @@ from shviewer.viewer.desktop.showing import Settings
 from shviewer.viewer.saving.picture_files import write_png
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.state import changed, state_of
-
-SCENE = '[[lobe]]\nprofile = "constant"\nradiance = {}\n'
-
-
-def pressed(session: Session, *keys: str) -> Session:
-    """The session after these keys, each with its picture; none of them is for a window."""
-    for key in keys:
-        assert session.press(key) is None, key
-        session.prepare()
-    return session
 
 
 def test_a_first_light_that_cannot_be_read_makes_no_session() -> None:

@@ -7,20 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from helpers import frame_of, picture_of
+from viewer.desktop.sessions import SCENE, pressed
 
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.saving.picture_files import write_png
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.state import changed, state_of
-
-SCENE = '[[lobe]]\nprofile = "constant"\nradiance = {}\n'
-
-
-def pressed(session: Session, *keys: str) -> Session:
-    for key in keys:
-        assert session.press(key) is None, key
-        session.prepare()
-    return session
 
 
 @pytest.fixture

@@ -132,8 +132,8 @@ def test_every_ink_stands_out_from_the_ground(ink: Ink, least: float) -> None:
     assert contrast(ink, GROUND) >= least
 
 
-@pytest.mark.parametrize("width", [64, 65, 100, 150, 320, 900])
-@pytest.mark.parametrize("height", [64, 65, 100, 160, 640])
+@pytest.mark.parametrize("width", [64, 100, 320, 900])
+@pytest.mark.parametrize("height", [64, 100, 160, 640])
 @pytest.mark.parametrize("content_scale", [1.0, 2.0])
 def test_every_frame_that_is_allowed_can_be_drawn(width: int, height: int, content_scale: float) -> None:
     for shown in (PICTURES["green"], PICTURES["signed error"], PICTURES["help"]):
