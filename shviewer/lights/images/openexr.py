@@ -117,7 +117,8 @@ def read_openexr(data: bytes, limits: Limits = DEFAULT_LIMITS, layer: str = "") 
         words.append("luminance" if source.grey else "luminance-chroma")
     if len(parts) > 1:
         words.append(f"part {source.part + 1} of {len(parts)}")
-    return Planes(planes, part, source, matrix, ", ".join(words), (*notes, *converted))
+    whole = ("its texels are whole numbers (uint), taken as radiance",) if "uint" in kinds else ()  # often codes
+    return Planes(planes, part, source, matrix, ", ".join(words), (*notes, *whole, *converted))
 
 
 def _check_size(part: Part, limits: Limits, file_bytes: int, source: Source) -> None:

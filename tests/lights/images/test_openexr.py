@@ -116,6 +116,7 @@ def test_integers_are_taken_at_their_value(read):
     image = read(exr_file({"RGB": pixels}), "light.exr")
     assert_same(image.pixels, pixels)
     assert image.encoding == "OpenEXR, uint, ZIP"
+    assert image.notes == ("its texels are whole numbers (uint), taken as radiance",)
 
 
 def test_channels_of_mixed_types_are_read(read):
