@@ -88,13 +88,17 @@ def write_maps(folder: Path, width: int) -> list[tuple[Path, str]]:
 
 
 def write_balls(folder: Path) -> list[tuple[Path, str]]:
-    """A sky as an angular map and a mirror ball of 1024 texels a side, and as a cube and a lat-long map of as many texels."""
-    shapes = {"lat-long": (724, 1448), "cube": (1672, 1254), "angular": (1024, 1024), "mirror-ball": (1024, 1024)}
+    """A sky as an angular map and a mirror ball of 1024 texels a side, and as a cube and a lat-long map of as many texels.
+
+    What shows nothing is black: the cells of a cross without a face, and what is around a disc.
+    """
+    from layouts import layouts
+
     files = []
-    for layout, shape in shapes.items():
-        pixels = sky(max(2048, 2 * shape[0]))[: shape[0], : shape[1]].astype(np.float16)
-        files.append((folder / f"1024-{layout}.exr", layout))
-        write_exr(files[-1][0], pixels, OpenEXR.ZIP_COMPRESSION)
+    for name, (layout, shape) in layouts(1024).items():
+        pixels = sky(max(2048, 2 * shape[0]))[: shape[0], : shape[1]] * (layout.solid_angles() > 0)[..., None]
+        files.append((folder / f"1024-{name}.exr", name))
+        write_exr(files[-1][0], pixels.astype(np.float16), OpenEXR.ZIP_COMPRESSION)
     return files
 
 

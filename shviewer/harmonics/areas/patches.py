@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.areas.boxes import folded, wave_sums
 from shviewer.harmonics.areas.chebyshev import chebyshev_points, chebyshev_values, integrate_series, points_from_series
+from shviewer.harmonics.areas.eightfold import waves
 from shviewer.harmonics.basis import Array, check_bands, normalise
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
 
@@ -174,21 +175,3 @@ def mirrored_waves(directions: Array, values: Array, n_bands: int) -> Array:
             if parity and odd_k:  # as in boxes.py
                 sums[1::2, sine, :, 0] -= np.pi / 2 * azimuth[sine][1::2] @ mirrored
     return sums
-
-
-def waves(cosine: Array, sine: Array, n: int) -> tuple[Array, Array]:
-    """cos(j t) and sin(j t) for j < n at angles given by their cosine and sine (points,), (n, points) each.
-
-    By the powers of e^it, whose error grows like j roundings.
-    """
-    cosines, sines = np.empty((2, n, len(cosine)))
-    cosines[0], sines[0] = 1.0, 0.0
-    for j in range(1, n):
-        half = j // 2
-        rest = j - half  # as few factors as may be
-        if j == 1:
-            cosines[1], sines[1] = cosine, sine
-        else:
-            cosines[j] = cosines[half] * cosines[rest] - sines[half] * sines[rest]
-            sines[j] = sines[half] * cosines[rest] + cosines[half] * sines[rest]
-    return cosines, sines
