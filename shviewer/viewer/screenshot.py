@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from shviewer.errors import GraphicsError
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.renderer import GL_VERSIONS, PART_SECONDS, Renderer
-from shviewer.viewer.overlay.directions.marks import mark_layers
+from shviewer.viewer.overlay.directions.marks import layers_over
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.picture import Picture
@@ -87,7 +87,7 @@ def render_rgb(
 ) -> NDArray[np.uint8]:
     """The picture as seen: (height, width, 3) uint8, top row first."""
     written = _written(renderer, picture, composition, timing=timing) if overlay else None
-    layers = _layers(written, picture, composition) if written is not None else ()
+    layers = layers_over(picture, composition, written) if written is not None else ()
     renderer.show(picture)
     return read_rgb(renderer, composition, layers)
 
@@ -99,7 +99,7 @@ def render_in_parts(
     written = _written(renderer, picture, composition)
     for _ in written.drawing():
         yield 0.0
-    layers = _layers(written, picture, composition)
+    layers = layers_over(picture, composition, written)
     with offscreen(renderer, composition) as target:
         renderer.show(picture)
         for part in renderer.parts(target, composition, layers, seconds=PART_SECONDS):
@@ -110,11 +110,6 @@ def render_in_parts(
 
 def _written(renderer: Renderer, picture: Picture, composition: Composition, *, timing: bool = False) -> Overlay:
     return draw_overlay(picture, composition, timing=timing, opengl=renderer.version)
-
-
-def _layers(written: Overlay, picture: Picture, composition: Composition) -> tuple[Layer, ...]:
-    """Layers of all text and marks of a picture."""
-    return (*mark_layers(picture, composition, tuple(written.boxes.values())), *written.layers)
 
 
 def read_rgb(renderer: Renderer, composition: Composition, layers: Sequence[Layer] = ()) -> NDArray[np.uint8]:

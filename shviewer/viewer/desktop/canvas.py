@@ -19,7 +19,7 @@ from shviewer.viewer.gl.carrier import Carrier
 from shviewer.viewer.gl.kept import Kept
 from shviewer.viewer.gl.renderer import PART_SECONDS, Part, Renderer, surfaces_in
 from shviewer.viewer.gl.warming import Warming
-from shviewer.viewer.overlay.directions.marks import mark_layers
+from shviewer.viewer.overlay.directions.marks import layers_over, mark_layers
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay, status_layers
@@ -219,7 +219,7 @@ class Canvas:
             return ()
         if written is None:
             return mark_layers(picture, composition)
-        layers = (*mark_layers(picture, composition, tuple(written.boxes.values())), *written.layers)
+        layers = layers_over(picture, composition, written)
         if pointer is None or picture.state.view.help_visible:
             return layers
         with suppress(ShviewerError):  # a light that cannot be evaluated there has no values to show

@@ -102,16 +102,15 @@ def _reading(reading: Reading) -> Iterator[str]:
     own, usual = reading.limits, DEFAULT_READING.limits
     if reading.sanitize:
         yield "--sanitize"
-    if reading.layout != DEFAULT_READING.layout:
-        yield f"--layout={reading.layout}"
-    if reading.convention:
-        yield f"--convention={reading.convention}"
-    if own.side != usual.side:
-        yield f"--max-side={own.side}"
-    if own.texels != usual.texels:
-        yield f"--max-megatexels={_number(own.texels / MEBI)}"
-    if own.file_bytes != usual.file_bytes:
-        yield f"--max-file-mib={_number(own.file_bytes / MEBI)}"
+    for flag, value, default in (
+        ("--layout", reading.layout, DEFAULT_READING.layout),
+        ("--convention", reading.convention, ""),
+        ("--max-side", own.side, usual.side),
+        ("--max-megatexels", own.texels / MEBI, usual.texels / MEBI),
+        ("--max-file-mib", own.file_bytes / MEBI, usual.file_bytes / MEBI),
+    ):
+        if value != default:
+            yield f"{flag}={value if isinstance(value, str) else _number(value)}"
 
 
 def _turn(rotation: Quaternion) -> Iterator[str]:

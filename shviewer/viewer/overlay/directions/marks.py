@@ -23,6 +23,7 @@ from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.lettering import MEDIUM
 from shviewer.viewer.overlay.numerals import share, value
+from shviewer.viewer.overlay.overlay import Overlay
 from shviewer.viewer.overlay.pieces import Curve, Text
 from shviewer.viewer.picture import Picture
 
@@ -81,6 +82,11 @@ def place_marks(picture: Picture, composition: Composition, obstacles: Sequence[
             placed[mark.name] = found
             obstacles = (*obstacles, found.label) if found.label else obstacles
     return placed
+
+
+def layers_over(picture: Picture, composition: Composition, written: Overlay) -> tuple[Layer, ...]:
+    """Layers of all marks and all text of a picture."""
+    return (*mark_layers(picture, composition, tuple(written.boxes.values())), *written.layers)
 
 
 def mark_layers(picture: Picture, composition: Composition, obstacles: Sequence[Box] = ()) -> tuple[Layer, ...]:
