@@ -1,4 +1,4 @@
-"""What is said about each pane: of what it is, and what must not be missed of it, in wordings from long to short."""
+"""What is said about each pane: what it is, and what must not be missed of it, in wordings from long to short."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How words are set on lines: of a sentence the longest wording that has room there."""
+"""How words are set on lines, of a sentence the longest wording that has room there; and the dashed lines of plots."""
 
 from __future__ import annotations
 
