@@ -18,8 +18,8 @@ from shviewer.cli.below_zero import below_zero
 from shviewer.coefficients.texts import parse_convention
 from shviewer.errors import LightError
 from shviewer.harmonics.extremes.error_grid import ErrorGrid
-from shviewer.lights.layouts.disc import DiscLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
+from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.reading import DEFAULT_READING, Reading
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import state_of
@@ -60,20 +60,20 @@ def test_what_is_told_of_an_image_in_another_layout_takes_one_projection_and_no_
     pixels[60:62, 110:112] = 20000
     path = tmp_path / "probe.exr"
     path.write_bytes(exr_file(dict.fromkeys("RGB", pixels)))
-    reading, asked, real = Reading(layout="mirror-ball"), [], DiscLayout.project
+    reading, asked, real = Reading(layout="mirror-ball"), [], MirrorBallLayout.project
     recipe, convention = Recipe(str(path), reading), parse_convention("shviewer")
 
     def told() -> tuple[object, str, Sums]:
         MEMORY.clear()
         return describe(str(path), reading), below_zero(recipe, convention), project_recipe(recipe).sums
 
-    def counted(self: DiscLayout, pixels: np.ndarray, n_bands: int) -> np.ndarray:
+    def counted(self: MirrorBallLayout, pixels: np.ndarray, n_bands: int) -> np.ndarray:
         asked.append(n_bands)
         return real(self, pixels, n_bands)
 
     with monkeypatch.context() as patch:
-        patch.setattr(DiscLayout, "project", counted)
-        patch.setattr(DiscLayout, "raster", None)
+        patch.setattr(MirrorBallLayout, "project", counted)
+        patch.setattr(MirrorBallLayout, "raster", None)
         patch.setattr("shviewer.lights.environment.FEW_DIRECTIONS", 0)  # the image is small
         found = told()
     assert asked == [128]
