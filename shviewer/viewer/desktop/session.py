@@ -8,7 +8,6 @@ from threading import Event
 
 from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import version_read
-from shviewer.errors import ShviewerError
 from shviewer.lights.several import several
 from shviewer.viewer.actions import open_light
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_SECONDS, Metronome
@@ -23,7 +22,7 @@ from shviewer.viewer.desktop.showing import PLAIN, Settings, Showing
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.keys import press
-from shviewer.viewer.message import DONE, ERROR, WARNING, Passing, warning
+from shviewer.viewer.message import DONE, WARNING, Passing, warning
 from shviewer.viewer.picture import Picture, prepare, still
 from shviewer.viewer.playing import step_sweep, step_turn, wants_range
 from shviewer.viewer.state import State, changed, released
@@ -44,7 +43,7 @@ class Session(Showing):
     ) -> None:
         super().__init__(state, first, settings, wake)
         self.metronome = Metronome()
-        self.saving = Saving(wake, self._written, self._failed)
+        self.saving = Saving(wake, self._written, self.failed)
         self._watch = Watch() if settings.watch else None
         self._marks_faced = 0
         self._later: list[Callable[[], object]] = []
@@ -263,9 +262,6 @@ class Session(Showing):
         path, what = written
         self.say(f"saved {path.name}{f' ({what})' if what else ''} in {path.parent.absolute()}", DONE)
         self.log(f"saved {path}")
-
-    def _failed(self, error: ShviewerError) -> None:
-        self.say(str(error), ERROR)
 
     def _fit(self) -> None:
         self.state = fit(self.state, self.picture)

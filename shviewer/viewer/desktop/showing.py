@@ -64,7 +64,7 @@ class Showing:
         """The wish to read the light's file again, set once it has been read; None if there is no such wish."""
         self.refused: str | Light | None = None
         """The light that could not be read just now: the next key may say how to read it."""
-        self.opening = Opening(wake, as_image=settings.as_image)
+        self.opening = Opening(wake, self._opened, self.failed, as_image=settings.as_image)
         self.making = Making(wake)
         self.enough: State | None = None
         """The still part of the state whose figures are not wanted any more: the search was stopped, or failed."""
@@ -113,13 +113,16 @@ class Showing:
 
         again: read the light's file again.
         """
+        self.opening.begin(state, others, self.picture.state, again=again)
 
-        def opened(found: State) -> None:
-            self.state = found
-            if again:
-                self.reading = Event()
+    def _opened(self, found: State, again: bool) -> None:
+        self.state = found
+        if again:
+            self.reading = Event()
 
-        self.opening.begin(state, others, self.picture.state, opened, lambda error: self.say(str(error), ERROR))
+    def failed(self, error: ShviewerError) -> None:
+        """Say why something that was asked for could not be done."""
+        self.say(str(error), ERROR)
 
     def make(self, by_map: bool, patience: float | None) -> bool:
         """Make the picture; return whether it has all figures that are wanted. by_map, patience: as in `Session.prepare`."""

@@ -63,29 +63,29 @@ class Opening(Errands):
     A picture may have to look at the whole file of its light.
     """
 
-    def __init__(self, wake: Wake = None, *, as_image: bool = False) -> None:
+    def __init__(
+        self,
+        wake: Wake,
+        then: Callable[[State, bool], None],
+        failed: Callable[[ShviewerError], None],
+        *,
+        as_image: bool,
+    ) -> None:
+        """then: takes the state of the light that could be opened, and whether its file is read again."""
         super().__init__(wake)
-        self._as_image = as_image
-        self._then: Callable[[State], None]
-        self._failed: Callable[[ShviewerError], None]
+        self._then, self._failed, self._as_image = then, failed, as_image
+        self._again = False
         self._others: list[str | Light] = []
         self._passed: list[str] = []
         """The names of those that could not be opened."""
 
-    def begin(
-        self,
-        state: State,
-        others: Sequence[str | Light],
-        shown: State,
-        then: Callable[[State], None],
-        failed: Callable[[ShviewerError], None],
-    ) -> None:
+    def begin(self, state: State, others: Sequence[str | Light], shown: State, *, again: bool) -> None:
         """Open the light that was chosen, as `opened`, or where it cannot be opened the first of the others that can.
 
         shown: the state of the picture there is, which then gets another light.
         """
         self.stop()
-        self._others, self._passed, self._then, self._failed = list(others), [], then, failed
+        self._others, self._passed, self._again = list(others), [], again
         self._try(state, shown)
 
     @property
@@ -114,7 +114,7 @@ class Opening(Errands):
         self.run(
             f"opening {light_name(state.recipe.light)}",
             lambda: opened(state, as_image=self._as_image),
-            self._then,
+            lambda found: self._then(found, self._again),
             lambda error: self.go_on(state, error, shown),
             soon=not self._passed,
         )
