@@ -115,7 +115,7 @@ class Canvas:
         self._pending = None
         if not self._meshed(picture, composition):
             self._pending = Work(MESHING)
-        elif not self.renderer.compiled(picture, composition, self._shown is None):
+        elif not self.renderer.compiled(picture, composition):
             self._pending = Work(COMPILING)
         elif not self.renderer.show(picture, UPLOAD_SECONDS):
             self._pending = Work(UPLOADING, round(self.renderer.held.uploading or 0.0, 2))

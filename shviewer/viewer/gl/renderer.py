@@ -63,7 +63,7 @@ class Renderer:
         self.panes = PaneRenderer(context, self.held)
         self.layers = LayerRenderer(context)
         self.surfaces = SurfaceRenderer(context)
-        self.compiled: Callable[[Picture, Composition, bool], bool] = lambda *_: True
+        self.compiled: Callable[[Picture, Composition], bool] = lambda *_: True
         """`Warming.ready`, where there is one."""
         self.picture: Picture | None = None
         self.rest = context.simple_framebuffer((1, 1))
@@ -87,7 +87,7 @@ class Renderer:
 
     def ready(self, picture: Picture, composition: Composition) -> bool:
         """Whether all of a picture is there at once; what is not is on its way then, surfaces in this frame, too."""
-        if not self.compiled(picture, composition, False) or (self.carrier is not None and self.carrier.busy):
+        if not self.compiled(picture, composition) or (self.carrier is not None and self.carrier.busy):
             return False
         return self.surfaces.triangles.bring(surfaces_in(picture, composition)) and self.show(picture, 0.0)
 

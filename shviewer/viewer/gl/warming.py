@@ -51,29 +51,28 @@ class Warming:
         self._ready: Set[Kind] = set()
         self._gains = True
         """Whether OpenGL keeps what it compiled."""
-        self._context: moderngl.Context | None = None
+        self._context: moderngl.Context
+        carrier.ask(self._enter)
         self._first = self._quick = True
         """Whether nothing was compiled yet, and whether nothing had to be."""
 
-    def ready(self, picture: Picture, composition: Composition, at_once: bool = False) -> bool:
-        """Whether a frame can be drawn and nothing is compiled in it; what is not is compiled then.
-
-        at_once: it is drawn however that is, as nothing else could be.
-        """
+    def ready(self, picture: Picture, composition: Composition) -> bool:
+        """Whether a frame can be drawn and nothing is compiled in it; what is not is compiled then."""
         wanted = kinds_of(picture, composition)
-        if at_once:
-            self._ready |= wanted
-        elif self._gains and not wanted <= self._asked:
+        if self._gains and not wanted <= self._asked:
             self._asked |= wanted
             self._since = perf_counter()
-            over = self._carrier.ask(partial(self._warm, picture, composition, wanted))
-            if not wanted <= self._ready:
-                over.wait(PATIENCE)
+            self._carrier.ask(partial(self._warm, picture, composition, wanted)).wait(PATIENCE)
         return self.has(picture, composition) or perf_counter() > self._since + MOST
 
     def has(self, picture: Picture, composition: Composition) -> bool:
         """Whether all programs of a frame are compiled, or none ever is before it is drawn."""
         return kinds_of(picture, composition) <= self._ready or not self._gains
+
+    def _enter(self) -> None:
+        settings: dict[str, Any] = {"context": self._carrier.side}
+        self._context = moderngl.create_context(require=330, **settings)
+        self._context.extra = self._render
 
     def _warm(self, picture: Picture, composition: Composition, wanted: Set[Kind]) -> None:
         """Draw until it is quick, as in a window, and then as in a picture that is saved."""
@@ -97,10 +96,6 @@ class Warming:
 
     def _draw(self, picture: Picture, composition: Composition, saved: bool) -> bool:
         """Draw with programs made anew; return whether none was compiled. The first time all are, later none after one is."""
-        if self._context is None:
-            settings: dict[str, Any] = {"context": self._carrier.side}
-            self._context = moderngl.create_context(require=330, **settings)
-            self._context.extra = self._render
         self._quick = True
         renderer = Renderer(self._context, self._carrier, _Corner)
         renderer.carrier = None  # it hears of the frames of the window alone

@@ -188,7 +188,9 @@ def test_a_file_that_changed_while_another_light_was_shown_is_read_again_on_retu
     path = tmp_path / "mine.toml"
     path.write_bytes(scene(1))
     viewer = start("mine.toml", "--watch")
-    viewer.press("Left", "frame")
+    shown = viewer.press("Left", "frame")
+    while ": mine," in shown:  # one that was due before
+        shown = viewer.wait_for("frame")
     path.write_bytes(scene(4))
     viewer.press("Right", "frame")
     if not any("reloaded mine" in line for line in viewer.seen):

@@ -82,8 +82,7 @@ def test_the_last_picture_can_be_turned_until_the_programs_of_the_next_are_there
 ) -> None:
     monkeypatch.setattr(gl_warming, "MOST", 99.0)
     first, second = picture_of(), picture_of(error="absolute", whole_sphere=True)
-    assert canvas.show(first, frame_of(first))  # there is nothing else to be seen
-    settle(canvas)
+    show(canvas, first)
     draw(canvas, first)
     assert canvas.renderer.carrier is not None
     known, gate = set(canvas.renderer.panes.programs), threading.Event()
@@ -153,7 +152,6 @@ def test_where_nothing_is_kept_or_all_goes_wrong_frames_compile(
     monkeypatch.setattr(Warming, "_draw", slow)
     monkeypatch.setattr(gl_warming, "PAUSES", (0.0, 0.0))
     warming, pictures = Warming(carrier), [picture_of(), picture_of(tone="log")]
-    assert warming.ready(pictures[0], frame_of(pictures[0]), at_once=True)
     for shown in pictures * 2:
         warming.ready(shown, frame_of(shown))
         assert carrier.ask(lambda: None).wait(60)
