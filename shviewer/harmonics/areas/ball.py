@@ -28,8 +28,8 @@ from shviewer.harmonics.areas.eightfold import eightfold_waves, waves
 from shviewer.harmonics.basis import Array, Indices, check_bands, orders
 from shviewer.harmonics.theta_series import MAX_SEPARABLE_BANDS, from_waves
 
-LINES, WAVE_VALUES = 64, 2**20
-"""Lines whose edges are summed at a time, and values of the waves on them."""
+TEXELS, WAVE_VALUES = 2**15, 2**20
+"""Texels on lines whose edges are summed at a time, if all were, and values of the waves there."""
 
 
 class BallSums:
@@ -63,8 +63,9 @@ class BallSums:
         """
         all_rho = np.sqrt((1 - edges) * (1 + edges))
         reach = np.searchsorted(edges[:-1], all_rho)
-        for start in range(0, len(areas), LINES):
-            lines = slice(start, min(start + LINES, len(areas)))
+        step = max(1, TEXELS // len(areas))
+        for start in range(0, len(areas), step):
+            lines = slice(start, min(start + step, len(areas)))
             columns = slice(int(inside[lines.stop - 1]), int(reach[max(start - 1, 0)]))
             rows = [_folded_rows(views, inside, lines, columns)]
             self.band_0 += np.einsum("crx,rx->c", rows[0][0, 0, :, 1:], areas[lines, columns])

@@ -11,6 +11,7 @@ from harmonics.independent import random_directions
 from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.errors import LightError
+from shviewer.harmonics.areas import ball
 from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection.scattered import project_values
 from shviewer.lights.layouts import mirror_ball
@@ -462,7 +463,10 @@ def test_a_mirror_ball_is_the_same_however_much_of_it_is_taken_in_tiles_or_by_ed
     fine = MirrorBallLayout(side).project(pixels, 40)
     monkeypatch.setattr(mirror_ball, "FEWEST_TEXELS", side)
     by_edges = MirrorBallLayout(side).project(pixels, 40)
-    for other in (fine, by_edges):
+    monkeypatch.setattr(ball, "TEXELS", 7 * side)
+    monkeypatch.setattr(ball, "WAVE_VALUES", 40 * side)
+    in_parts = MirrorBallLayout(side).project(pixels, 40)
+    for other in (fine, by_edges, in_parts):
         assert not np.array_equal(other, coarse)
         assert np.abs(other - coarse).max() < 1e-13 * np.abs(coarse).max()
 
