@@ -80,19 +80,19 @@ class Warming:
             small = Surface(np.ones((3, 4), np.float32), clipped=False)
             picture = replace(picture, drawn=Surfaces((small,) * len(picture.drawn.shown)))
         for saved in (False, True):
-            gains = False
             try:
                 for pause in PAUSES:
                     if self._carrier.ending.wait(pause):
                         return
                     self._first = pause == 0.0
-                    if gains := self._draw(picture, composition, saved):
+                    if self._draw(picture, composition, saved):
                         break
+                else:
+                    self._gains = False
+                    return
             finally:
-                self._gains, self._ready = self._gains and gains, self._ready | wanted
+                self._ready |= wanted
                 self._carrier.tell()
-            if not gains:
-                break
 
     def _draw(self, picture: Picture, composition: Composition, saved: bool) -> bool:
         """Draw with programs made anew; return whether none was compiled. The first time all are, later none after one is."""
@@ -100,14 +100,17 @@ class Warming:
         renderer = Renderer(self._context, self._carrier, _Corner)
         renderer.carrier = None  # it hears of the frames of the window alone
         file = self._context.texture((1, 1), 4)
-        target = self._context.framebuffer([file]) if saved else self._context.screen
+        target = self._context.framebuffer([file])
         try:
             renderer.show(picture)
             with suppress(_Compiled):
-                renderer.draw(target, composition, (Layer(np.zeros((1, 1, 4), np.uint8)),))
+                renderer.draw(
+                    target if saved else self._context.screen, composition, (Layer(np.zeros((1, 1, 4), np.uint8)),)
+                )
         finally:
-            renderer.release()
-            file.release()
+            self._context.screen.use()
+            for made in (renderer, target, file):
+                made.release()
         return self._quick
 
     def _render(self, array: moderngl.VertexArray) -> None:
