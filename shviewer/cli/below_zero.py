@@ -20,7 +20,7 @@ from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.deringing import MAX_DERINGED_BANDS
 from shviewer.harmonics.extremes.error_grid import ErrorGrid
-from shviewer.harmonics.quantities.names import IRRADIANCE
+from shviewer.harmonics.quantities.names import IRRADIANCE, in_words, roughness_of
 from shviewer.words import counted, percent
 
 SEARCHED_TEXELS = 2**23
@@ -52,9 +52,8 @@ def below_zero(recipe: Recipe, convention: Convention) -> str:
     shown = _shown(recipe, shows)
     if not shown.negative:
         return ""
-    says = (
-        f"the {shows} of its {counted(recipe.n_bands, 'band')} goes to {shown.minimum:.3g}, {percent(shown.error)} off"
-    )
+    what = f"what {in_words(shows)} reflects" if roughness_of(shows) is not None else f"the {shows}"
+    says = f"{what} of its {counted(recipe.n_bands, 'band')} goes to {shown.minimum:.3g}, {percent(shown.error)} off"
     remedies = []
     large = math.prod(subject(recipe).light.about.size or ()) > SEARCHED_TEXELS
     if not large and has_suns(recipe):

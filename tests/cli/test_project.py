@@ -456,6 +456,11 @@ def test_what_is_below_zero_in_the_light_itself_is_no_ringing(tmp_path: Path, ca
     assert "the radiance of its 5 bands goes to -0.2" in capsys.readouterr().err
 
 
+def test_what_a_glossy_surface_shows_below_zero_is_said_in_words(tmp_path: Path, capsys: Capture) -> None:
+    assert project("green", "--for", "glossy:0.2", "-o", tmp_path / "a.json") == 0
+    assert "what roughness 0.2 reflects of its 5 bands goes to -0." in capsys.readouterr().err
+
+
 def test_a_folder_that_ends_in_a_slash_is_made_for_one_light_as_for_several(tmp_path: Path) -> None:
     assert project("green", "-o", f"{tmp_path / 'new' / 'folder'}/") == 0
     assert held(tmp_path / "new" / "folder" / "green.json").given.shape == (25, 3)
