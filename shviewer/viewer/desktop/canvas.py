@@ -229,10 +229,12 @@ class Canvas:
         return layers
 
     def release(self) -> None:
-        self._kept.release()
-        self.renderer.release()
-        if self.renderer.carrier is not None:
-            self.renderer.carrier.end()
+        try:
+            self._kept.release()
+            self.renderer.release()
+        finally:
+            if self.renderer.carrier is not None:
+                self.renderer.carrier.end()  # a context must not go while a thread compiles in it
 
 
 @dataclass
