@@ -44,7 +44,7 @@ from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.page.writing import as_markdown
 from shviewer.benchmark.rows.report import read_report
 from shviewer.cli.options.modes import EXIT_CODES, PARSERS
-from shviewer.viewer.keys import key_table
+from shviewer.viewer.control.keys import key_table
 
 MARKED = re.compile(r"(<!-- generated: ([^\n]+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 

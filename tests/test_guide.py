@@ -29,8 +29,8 @@ from shviewer.cli.main import main
 from shviewer.cli.options.states import state_from
 from shviewer.coefficients.programs import CONVENTIONS
 from shviewer.coefficients.texts import MODIFIERS
+from shviewer.lights.analytic.scene import PROFILES, read_scene
 from shviewer.lights.find import built_in_lights
-from shviewer.lights.scene import PROFILES, read_scene
 
 DOCUMENTS = [README, ROOT / "assets" / "README.md", ROOT / "assets" / "report" / "report.md", *PAGES]
 

@@ -10,7 +10,7 @@ from documents import GUIDE, README, ROOT, code_blocks, read
 from shviewer.analysis.recipe import METHODS, Recipe
 from shviewer.cli.options.modes import PARSERS
 from shviewer.limits import MAX_BANDS
-from shviewer.viewer.keys import key_table
+from shviewer.viewer.control.keys import key_table
 
 TEXT = read(README)
 

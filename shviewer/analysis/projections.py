@@ -22,9 +22,9 @@ from shviewer.harmonics.projection.rows import project_product
 from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, gauss_legendre, jittered
 from shviewer.harmonics.rotation import rotate
+from shviewer.lights.analytic.lobe import lobes_form
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import lobes_form
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.progress import tell
 

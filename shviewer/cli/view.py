@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def run(options: argparse.Namespace) -> int:
     if options.list_keys:
-        from shviewer.viewer.keys import key_table
+        from shviewer.viewer.control.keys import key_table
 
         print(key_table())
         return 0
@@ -111,7 +111,7 @@ def _opened(options: argparse.Namespace) -> tuple[State, list[str]]:
 def _announced(state: State, others: list[str], as_image: bool) -> Picture:
     """The picture of a state, its figures pending, or of the first of the others; the notes on its light are printed."""
     from shviewer.cli.notes import print_notes
-    from shviewer.viewer.actions import show_light
+    from shviewer.viewer.control.actions import show_light
     from shviewer.viewer.desktop.behind.opening import opened
     from shviewer.viewer.picture import first_picture
 

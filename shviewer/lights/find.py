@@ -92,7 +92,7 @@ def find_light(text: str, reading: Reading = DEFAULT_READING) -> Light:
 def _read(text: str, path: Path, part: str, reading: Reading) -> Light:
     suffix = path.suffix.lower()
     if suffix == ".toml":
-        from shviewer.lights.scene import read_scene
+        from shviewer.lights.analytic.scene import read_scene
 
         return read_scene(path, reading.limits)
     if suffix in IMAGE_SUFFIXES or (suffix == ".npy" and _holds_image(path, reading)):

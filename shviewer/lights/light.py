@@ -21,7 +21,7 @@ from shviewer.notebook import InNotebooks
 
 if TYPE_CHECKING:  # types that only some lights use are imported with those lights
     from shviewer.coefficients.reading import CoefficientFile
-    from shviewer.lights.lobe import Lobe
+    from shviewer.lights.analytic.lobe import Lobe
     from shviewer.lights.suns.sun import Sun
 
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quantities.encodings import Stored
+from shviewer.lights.analytic.lobe import Lobe
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
 from shviewer.viewer.surface import Surface
 
 

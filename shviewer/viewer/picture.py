@@ -15,9 +15,9 @@ from shviewer.analysis.subjects import Subject, has_suns, subject
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.extremes.error_grid import Extremes
 from shviewer.harmonics.quantities.encodings import Stored
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 from shviewer.lights.suns.sun import points_of_suns
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.progress import tell

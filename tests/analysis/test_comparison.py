@@ -30,8 +30,8 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
-from shviewer.viewer.actions import next_method, reset, with_bands
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.control.actions import next_method, reset, with_bands
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare

@@ -12,8 +12,8 @@ from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.roughness import ROUGHNESS, Staircase, errors_by_roughness, staircase
 from shviewer.analysis.subjects import load_light
 from shviewer.harmonics.zonal import Disc
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 
 REFERENCE = kernels()["A"]
 

@@ -14,10 +14,10 @@ from shviewer.benchmark.page.section import Page
 from shviewer.benchmark.rows.report import Report
 from shviewer.harmonics.quantities.encodings import ENCODINGS, REPORTED
 from shviewer.harmonics.zonal import Constant
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 
 
 def test_a_light_has_a_row_for_each_encoding_and_a_sentence_on_the_best_of_four_five_and_nine() -> None:

@@ -29,8 +29,8 @@ from shviewer.benchmark.measuring.reconstruction_rows import reconstruction_rows
 from shviewer.benchmark.page.advice import where_bands_stop_paying
 from shviewer.benchmark.rows.row import Row
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.viewer.drawn import DirectSum
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import offscreen

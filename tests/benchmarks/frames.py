@@ -44,14 +44,14 @@ from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.light import Light
 from shviewer.viewer.composing.composition import compose, frame_for
+from shviewer.viewer.control.placing import rotate_light
+from shviewer.viewer.control.playing import step_turn, turn_light
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.overlay.directions.marks import mark_layers
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.overlay.layers import Layer
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.placing import rotate_light
-from shviewer.viewer.playing import step_turn, turn_light
 from shviewer.viewer.screenshot import headless_renderer, offscreen, render_linear
 from shviewer.viewer.state import State, state_of
 

@@ -31,7 +31,7 @@ from shviewer.errors import (
 )
 from shviewer.lights.find import built_in_lights, find_light
 from shviewer.version import __version__
-from shviewer.viewer.keys import key_table
+from shviewer.viewer.control.keys import key_table
 
 Run = Callable[..., subprocess.CompletedProcess[str]]
 WITHOUT_DISPLAY = {"DISPLAY": None, "WAYLAND_DISPLAY": None, "XDG_SESSION_TYPE": None}

@@ -28,6 +28,8 @@ from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
@@ -37,8 +39,6 @@ from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.layout import Layout
 from shviewer.lights.layouts.mirror_ball import MirrorBallLayout
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 
 THOUSANDTH = 1e-3
 LITTLE = {

@@ -20,8 +20,8 @@ from shviewer.harmonics.metrics import (
 from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, orient
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 
 GREEN = LobeLight(
     (

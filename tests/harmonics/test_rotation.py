@@ -13,13 +13,13 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.rotation import rotate, turn
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 
 REFERENCE = hard_cases()["rotation"]
 

@@ -16,11 +16,11 @@ from shviewer.harmonics.metrics import (
 )
 from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import gauss_legendre, jittered
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import UNCERTAIN, FunctionLight
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 
 
 def band_errors(name: str) -> np.ndarray:

@@ -11,12 +11,12 @@ import pytest
 import shviewer
 from shviewer.errors import LightError
 from shviewer.harmonics.zonal import Constant, Disc
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 from shviewer.lights.reading import Reading
 
 UP = np.array([0.0, 0.0, 1.0])

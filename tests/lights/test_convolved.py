@@ -23,14 +23,14 @@ from shviewer.harmonics.quantities.glossy import Glossy, glossy_factors
 from shviewer.harmonics.quantities.kernels import kernel_of
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 
 NORMALS = random_directions(30)
 

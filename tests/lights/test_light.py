@@ -13,12 +13,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import column_azimuths, directions_from_angles, jittered
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import built_in_lights, find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import About
-from shviewer.lights.lobes import LobeLight
 from shviewer.lights.reading import Reading
 
 SCENE = '[[lobe]]\nprofile = "gaussian"\naxis = [1, 2, -1]\nradiance = [3, 2, 1]\nsharpness = 5\n'
@@ -259,7 +259,7 @@ def test_a_light_says_what_it_is_made_of(tmp_path):
 def test_finding_a_scene_loads_no_decoder_no_pillow_and_nothing_of_coefficients_or_suns():
     code = "import sys; from shviewer.lights.find import find_light; find_light('green'); print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    assert "shviewer.lights.lobes" in loaded
+    assert "shviewer.lights.analytic.lobes" in loaded
     unwanted = ("PIL", "OpenEXR", "subprocess", "shviewer.coefficients.reading", "shviewer.lights.suns")
     unwanted += tuple(f"shviewer.lights.images.{name}" for name in ("display", "isolated", "openexr", "rgbe"))
     assert [name for name in loaded if name in unwanted] == []

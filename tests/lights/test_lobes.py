@@ -1,4 +1,4 @@
-"""What shviewer.lights.lobes promises: a sum of lobes whose coefficients, norm and radiance belong together."""
+"""What shviewer.lights.analytic.lobes promises: a sum of lobes whose coefficients, norm and radiance belong together."""
 
 import numpy as np
 import pytest
@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import MAX_LOBES, LobeLight
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import MAX_LOBES, LobeLight
 
 Z = np.array([0, 0, 1.0])
 SMOOTH = LobeLight(

@@ -1,4 +1,4 @@
-"""What shviewer.lights.scene promises: a scene file is read as written, or refused in one line that helps."""
+"""What shviewer.lights.analytic.scene promises: a scene file is read as written, or refused in one line that helps."""
 
 import re
 
@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 
 from shviewer.errors import LightError
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
+from shviewer.lights.analytic.scene import MAX_FILE_BYTES, read_scene
 from shviewer.lights.find import built_in_lights
-from shviewer.lights.scene import MAX_FILE_BYTES, read_scene
 
 ABOVE = "the slope must be positive, above the offset, and neither beyond 1e+15"
 GAUSSIAN = {"profile": '"gaussian"', "axis": "[0, 0, 1]", "radiance": "1", "sharpness": "3"}

@@ -11,9 +11,9 @@ from helpers import frame_of, picture_of
 from shviewer.analysis.recipe import Recipe
 from shviewer.cli.main import main
 from shviewer.lights.coefficient_light import CoefficientLight
-from shviewer.viewer.actions import next_third
 from shviewer.viewer.beside import besides_of, recipe_beside
 from shviewer.viewer.composing.panes import Sphere
+from shviewer.viewer.control.actions import next_third
 from shviewer.viewer.gl.renderer import Renderer
 from shviewer.viewer.screenshot import render_linear, render_rgb
 from shviewer.viewer.state import State, state_of

@@ -21,8 +21,8 @@ from shviewer.harmonics.quantities.names import CUBES, ENCODED_BANDS
 from shviewer.lights.find import find_light
 from shviewer.viewer.camera import towards
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.control.keys import press
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import State, changed, state_of

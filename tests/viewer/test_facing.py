@@ -9,9 +9,9 @@ from helpers import picture_of
 
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.camera import light_from_world, towards
+from shviewer.viewer.control.placing import rotate_light
 from shviewer.viewer.derived import camera_of
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.placing import rotate_light
 from shviewer.viewer.state import changed
 from shviewer.viewer.view import View
 

@@ -13,9 +13,9 @@ from shviewer.errors import LightError, UsageError
 from shviewer.harmonics.basis import Array, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
+from shviewer.lights.analytic.lobes import Lobe, LobeLight
 from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.lobes import Lobe, LobeLight
 from shviewer.viewer.composing.composition import compose
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.renderer import Renderer

@@ -16,8 +16,8 @@ from shviewer.harmonics.metrics import errors_by_band_count
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.reading import DEFAULT_READING
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.control.keys import press
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.keys import press
 from shviewer.viewer.message import WARNING, kind_of
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import prepare

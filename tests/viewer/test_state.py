@@ -19,11 +19,11 @@ from shviewer.lights.light import Light
 from shviewer.lights.reading import Reading
 from shviewer.limits import MAX_BANDS
 from shviewer.viewer import camera
-from shviewer.viewer.actions import open_light
-from shviewer.viewer.commands import Command
-from shviewer.viewer.keys import ACTIONS, BINDINGS, key_table, press
-from shviewer.viewer.placing import orbit, rotate_light, zoom
-from shviewer.viewer.playing import step_sweep
+from shviewer.viewer.control.actions import open_light
+from shviewer.viewer.control.commands import Command
+from shviewer.viewer.control.keys import ACTIONS, BINDINGS, key_table, press
+from shviewer.viewer.control.placing import orbit, rotate_light, zoom
+from shviewer.viewer.control.playing import step_sweep
 from shviewer.viewer.state import State, changed, describe_exposure, describe_muted, started, state_of
 
 LIGHTS = ("green", "studio", "sun-sky")

@@ -9,9 +9,9 @@ from helpers import lat_long_grid
 from shviewer.harmonics.basis import evaluate_basis, index
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.zonal import Disc
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.find import find_light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.surface import (
     LIGHT_ROWS,
     MOST_ROWS,

@@ -19,20 +19,21 @@ from shviewer.lights.find import is_code
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.limits import MAX_BANDS
-from shviewer.viewer import actions, splines, surface
 from shviewer.viewer import picture as picture_module
-from shviewer.viewer.actions import toggle_band, with_bands
-from shviewer.viewer.commands import Command
+from shviewer.viewer import splines, surface
 from shviewer.viewer.composing.composition import Composition, frame_for
+from shviewer.viewer.control import actions
+from shviewer.viewer.control.actions import toggle_band, with_bands
+from shviewer.viewer.control.commands import Command
+from shviewer.viewer.control.keys import ACTIONS
+from shviewer.viewer.control.placing import orbit, rotate_light, zoom
+from shviewer.viewer.control.playing import step_sweep, step_turn
 from shviewer.viewer.desktop.behind.saving import projected_of
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.drawn import DirectSum, Drawn, Encoded, SplineMap, Surfaces
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.keys import ACTIONS
 from shviewer.viewer.overlay.directions.probe import probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.placing import orbit, rotate_light, zoom
-from shviewer.viewer.playing import step_sweep, step_turn
 from shviewer.viewer.saving.picture_files import write_exr
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.saving.stamp_reading import state_of_stamp

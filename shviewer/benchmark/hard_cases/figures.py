@@ -21,10 +21,10 @@ from shviewer.harmonics.basis import evaluate_basis
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count, split_half_estimate
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.zonal import ClampedLinear, Disc, Gaussian, Profile
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 
 COLOUR = np.array([1.0, 0.25, 3.0])
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # ITU-R BT.709-6, item 3.2

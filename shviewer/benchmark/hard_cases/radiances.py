@@ -15,11 +15,11 @@ from shviewer.errors import LightError
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.projection.rows import project_image
 from shviewer.harmonics.zonal import Disc
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 from shviewer.limits import BRIGHTEST, DIMMEST
 
 

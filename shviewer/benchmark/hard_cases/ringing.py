@@ -17,9 +17,9 @@ from shviewer.harmonics.deringing import dering
 from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.synthesis import Synthesis
 from shviewer.harmonics.zonal import ClampedLinear, Disc, orient
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.find import find_light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 
 OVERSHOOT = {
     2: 0.25,

@@ -23,11 +23,11 @@ from shviewer.harmonics.quadrature import (
     jittered,
     uniform_random,
 )
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.light import Light
-from shviewer.lights.lobes import LobeLight
 from shviewer.words import meant
 
 PAPER_SAMPLES = 10_000

@@ -21,8 +21,8 @@ from shviewer.harmonics.metrics import band_power
 from shviewer.harmonics.projection.scattered import project_samples
 from shviewer.harmonics.quadrature import DirectionSet, jittered, uniform_random
 from shviewer.harmonics.rotation import rotate, turn
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 
 SECTION = "moving"
 BANDS = (1, 2, 3, 5, 9, 16)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from shviewer.benchmark.page.tables import plain
 from shviewer.resources import resource_folder
 from shviewer.viewer.overlay.inks import ACCENT, ERROR, FAINT, GREY, GROUND, INK, RULE, WARNING, Ink
-from shviewer.viewer.overlay.lettering import REGULAR, SEMIBOLD
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import REGULAR, SEMIBOLD
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.words import grouped
 
 if TYPE_CHECKING:

@@ -46,9 +46,9 @@ def has_overlay(options: argparse.Namespace) -> bool:
 def state_from(options: argparse.Namespace, *, all_lights: bool) -> State:
     """The state that the options ask for, on top of that of a picture. UsageError for an option out of range."""
     from shviewer.lights.find import built_in_lights
-    from shviewer.viewer.actions import open_light
     from shviewer.viewer.beside import recipe_beside
     from shviewer.viewer.camera import turn_of
+    from shviewer.viewer.control.actions import open_light
     from shviewer.viewer.message import warning
     from shviewer.viewer.state import State, changed, released
 

@@ -26,7 +26,7 @@ from shviewer.harmonics.extremes.zonal_table import perpendicular
 from shviewer.harmonics.quantities.kernels import kernel_of
 from shviewer.harmonics.quantities.names import RADIANCE
 from shviewer.harmonics.zonal import ClampedLinear, Disc
-from shviewer.lights.lobe import Lobe
+from shviewer.lights.analytic.lobe import Lobe
 
 
 def points_of_suns(count: int) -> int:

@@ -19,12 +19,12 @@ from shviewer.errors import UsageError
 from shviewer.limits import BRIGHTEST, MAX_BANDS
 from shviewer.outputs import ANYTHING, Replacing, check_place, write_atomically
 from shviewer.progress import tell
-from shviewer.viewer.actions import with_bands
 from shviewer.viewer.animation.encoders import encode_gif, encode_webp
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_FRAMES, TURN_SECONDS
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.control.actions import with_bands
+from shviewer.viewer.control.playing import step_sweep, wants_range
 from shviewer.viewer.picture import Picture, error_end, prepare
-from shviewer.viewer.playing import step_sweep, wants_range
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.screenshot import headless_renderer, render_rgb
 from shviewer.viewer.state import State, changed

@@ -15,9 +15,9 @@ from shviewer.errors import UsageError
 from shviewer.harmonics.basis import Array
 from shviewer.lights.light import Light
 from shviewer.viewer.animation.animation import MAX_FRAMES, Animation, in_milliseconds, with_one_range
+from shviewer.viewer.control.playing import turned
 from shviewer.viewer.derived import reconstruction_shown
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.playing import turned
 from shviewer.viewer.state import State, changed
 
 SHOWN = 48

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from shviewer.analysis.figures import Needs
-from shviewer.viewer.actions import with_bands
+from shviewer.viewer.control.actions import with_bands
+from shviewer.viewer.control.placing import face
 from shviewer.viewer.overlay.directions.marks import marks_of
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.placing import face
 from shviewer.viewer.state import State, changed
 from shviewer.words import counted
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from shviewer.viewer.actions import toggle_band, turn_page
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Sphere
+from shviewer.viewer.control.actions import toggle_band, turn_page
+from shviewer.viewer.control.placing import face, orbit, pan, rotate_light, zoom, zoom_about, zoom_map_about
 from shviewer.viewer.overlay.directions.probe import direction_at
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.placing import face, orbit, pan, rotate_light, zoom, zoom_about, zoom_map_about
 from shviewer.viewer.state import State, changed
 
 LEFT, RIGHT, MIDDLE = range(3)

@@ -9,10 +9,12 @@ from threading import Event
 from shviewer.analysis.recipe import light_name
 from shviewer.analysis.subjects import version_read
 from shviewer.lights.several import several
-from shviewer.viewer.actions import open_light
 from shviewer.viewer.animation.metronome import SWEEP_SECONDS, TURN_SECONDS, Metronome
-from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import Composition
+from shviewer.viewer.control.actions import open_light
+from shviewer.viewer.control.commands import Command
+from shviewer.viewer.control.keys import press
+from shviewer.viewer.control.playing import step_sweep, step_turn, wants_range
 from shviewer.viewer.desktop.answers import face_mark, fit
 from shviewer.viewer.desktop.behind.opening import MOST_DROPPED
 from shviewer.viewer.desktop.behind.saving import Saving, Written, write_coefficients
@@ -21,10 +23,8 @@ from shviewer.viewer.desktop.history import History
 from shviewer.viewer.desktop.showing import PLAIN, Settings, Showing
 from shviewer.viewer.desktop.watching import Watch
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.keys import press
 from shviewer.viewer.message import DONE, WARNING, Passing, warning
 from shviewer.viewer.picture import Picture, prepare, still
-from shviewer.viewer.playing import step_sweep, step_turn, wants_range
 from shviewer.viewer.state import State, changed, released
 from shviewer.viewer.work import Work
 

@@ -18,13 +18,13 @@ from shviewer.analysis.subjects import keep_light
 from shviewer.errors import ShviewerError, within_memory
 from shviewer.lights.light import Light
 from shviewer.viewer.animation.turning import followed, is_next, only_turned
+from shviewer.viewer.control.playing import wants_range
 from shviewer.viewer.desktop.behind.making import Making
 from shviewer.viewer.desktop.behind.opening import Opening
 from shviewer.viewer.desktop.behind.task import Wake
 from shviewer.viewer.desktop.messages import notes_of, reading_news, why_whole, with_keys
 from shviewer.viewer.message import ERROR, WARNING, Message
 from shviewer.viewer.picture import Picture, prepare, still
-from shviewer.viewer.playing import wants_range
 from shviewer.viewer.state import State, changed, started
 from shviewer.viewer.view import STOPPED, View
 from shviewer.words import one_line

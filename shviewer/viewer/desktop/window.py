@@ -10,8 +10,9 @@ from typing import Any
 import glfw
 import moderngl
 
-from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import Composition, compose
+from shviewer.viewer.control.commands import Command
+from shviewer.viewer.control.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.desktop.behind.saving import coefficients_text
 from shviewer.viewer.desktop.behind.task import Task
 from shviewer.viewer.desktop.canvas import Canvas
@@ -21,7 +22,6 @@ from shviewer.viewer.desktop.glfw_window import key_name, open_window, scale_of,
 from shviewer.viewer.desktop.session import PATIENCE, Session
 from shviewer.viewer.desktop.showing import PLAIN, Settings
 from shviewer.viewer.gl.carrier import Carrier
-from shviewer.viewer.keys import ACTIONS, SYMBOLS
 from shviewer.viewer.message import DONE, WARNING
 from shviewer.viewer.overlay.directions.probe import direction_at
 from shviewer.viewer.picture import Picture

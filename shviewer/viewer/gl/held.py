@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array
+from shviewer.lights.analytic.lobe import Lobe
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.lobe import Lobe
 from shviewer.viewer.colour import colour_maps
 from shviewer.viewer.drawn import DirectSum, SplineMap
 from shviewer.viewer.gl.carrier import Carrier

@@ -10,8 +10,8 @@ import numpy as np
 
 from shviewer.harmonics.basis import count_bands
 from shviewer.harmonics.zonal import Disc
+from shviewer.lights.analytic.lobe import Lobe
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.lobe import Lobe
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Pane, Pixels, Sphere
 from shviewer.viewer.drawn import Drawn, Encoded, Source, SplineMap, Surfaces

@@ -14,8 +14,8 @@ from shviewer.harmonics.quantities.decoding import LINEAR, MEAN, ZONAL
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import MAX_LOBES
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import MAX_LOBES
 from shviewer.lights.suns.rule import MOST as MAX_SUNS
 from shviewer.limits import MAX_DIRECT_BANDS
 from shviewer.viewer.colour.tone import ACES, BRIGHTEST_EXPOSED, LOG_RANGE

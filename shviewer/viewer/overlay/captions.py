@@ -10,8 +10,8 @@ from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.drawn import Surfaces
 from shviewer.viewer.overlay.inks import FAINT, GREY, INK, Ink
-from shviewer.viewer.overlay.lettering import REGULAR, SEMIBOLD, shortened_to, width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import REGULAR, SEMIBOLD, shortened_to, width_of
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pane_words import Words, describe_evaluation, describe_suns, notes_of, words_of_panes
 from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
 from shviewer.viewer.overlay.setting import Part, set_on

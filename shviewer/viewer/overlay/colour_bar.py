@@ -13,8 +13,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, WholeSphere
 from shviewer.viewer.drawn import Surfaces
 from shviewer.viewer.overlay.inks import FAINT, GREY
-from shviewer.viewer.overlay.lettering import width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import width_of
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece, Strip, Text
 from shviewer.viewer.overlay.setting import centred
 from shviewer.viewer.picture import Picture

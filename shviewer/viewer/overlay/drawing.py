@@ -16,7 +16,7 @@ from PIL import Image, ImageDraw
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import Ink
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import FINE, mask
+from shviewer.viewer.overlay.letters.lettering import FINE, mask
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Strip, Swatch, Text
 
 NEGATIVE_LINE, ZERO_LINE, FILL = (120, 170, 255), (176, 206, 255), (36, 90, 142)

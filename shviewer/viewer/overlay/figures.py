@@ -14,8 +14,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Cell
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import GREY, INK
-from shviewer.viewer.overlay.lettering import MEDIUM, REGULAR, width_of
-from shviewer.viewer.overlay.numerals import bound_text, share, typeset, value
+from shviewer.viewer.overlay.letters.lettering import MEDIUM, REGULAR, width_of
+from shviewer.viewer.overlay.letters.numerals import bound_text, share, typeset, value
 from shviewer.viewer.overlay.pieces import Piece, Swatch, Text
 from shviewer.viewer.picture import Picture
 

@@ -8,8 +8,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import ERROR, FAINT, GREY, INK, WARNING, Ink
-from shviewer.viewer.overlay.lettering import MEDIUM, escaped, shortened_to, width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import MEDIUM, escaped, shortened_to, width_of
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pieces import Curve, Piece, Text
 from shviewer.viewer.picture import Picture
 

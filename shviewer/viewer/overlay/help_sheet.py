@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
-from shviewer.viewer.keys import BINDINGS, Binding
+from shviewer.viewer.control.keys import BINDINGS, Binding
 from shviewer.viewer.overlay.inks import FAINT, GREY, GROUND, INK, RULE, Ink
-from shviewer.viewer.overlay.lettering import MEDIUM, SEMIBOLD, shortened_to, width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import MEDIUM, SEMIBOLD, shortened_to, width_of
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.state import State
 

@@ -22,8 +22,8 @@ from shviewer.viewer.overlay.foot import INKS, foot_pieces, said_of, takes_legen
 from shviewer.viewer.overlay.help_sheet import help_blocks
 from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import SEMIBOLD
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import SEMIBOLD
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pieces import Piece, Text
 from shviewer.viewer.overlay.plots.band_series import band_series
 from shviewer.viewer.overlay.plots.curve import axes_of, curve_blocks, least_slots

@@ -15,7 +15,7 @@ from shviewer.harmonics.quantities.names import IRRADIANCE, RADIANCE, in_words
 from shviewer.viewer.beside import Beside, words_of
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.drawn import DirectSum, Encoded, SplineMap, Surfaces
-from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.overlay.letters.numerals import share, typeset
 from shviewer.viewer.overlay.setting import Part
 from shviewer.viewer.picture import Picture
 from shviewer.viewer.state import describe_basis, describe_muted, describe_window

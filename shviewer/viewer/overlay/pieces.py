@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import CASING, Ink
-from shviewer.viewer.overlay.lettering import REGULAR, width_of
+from shviewer.viewer.overlay.letters.lettering import REGULAR, width_of
 
 Point = tuple[float, float]
 

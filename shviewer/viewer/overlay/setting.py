@@ -9,8 +9,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import GREY, Ink
-from shviewer.viewer.overlay.lettering import REGULAR, shortened_to, width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import REGULAR, shortened_to, width_of
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 
 Part: TypeAlias = tuple[str, ...]

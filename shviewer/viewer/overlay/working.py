@@ -7,8 +7,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.foot import message_line
 from shviewer.viewer.overlay.inks import ACCENT, GREY, INK, RULE
-from shviewer.viewer.overlay.lettering import shortened_to, width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import shortened_to, width_of
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.overlay.setting import ended, sentence
 from shviewer.viewer.picture import Picture

@@ -15,6 +15,8 @@ from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.metrics import errors_by_band_count, smallest_band_count
 from shviewer.harmonics.quadrature import jittered
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.find import find_light
 from shviewer.lights.images.radiance_files import read_radiance_image
@@ -28,8 +30,6 @@ from shviewer.lights.layouts.arrangements import (
 from shviewer.lights.layouts.cube import CubeLayout
 from shviewer.lights.layouts.lat_long import LatLongLayout
 from shviewer.lights.light import Light
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 from shviewer.lights.suns.caps import Caps, chord, chord_of
 from shviewer.lights.suns.excess import CAP
 from shviewer.lights.suns.rule import MOST

@@ -11,9 +11,9 @@ from shviewer.errors import OutputError, UsageError
 from shviewer.outputs import check_place
 from shviewer.viewer.animation.animation import HOLD, MAX_PIXELS, band_sweep, save_animation, turntable
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.keys import press
+from shviewer.viewer.control.keys import press
+from shviewer.viewer.control.playing import step_sweep
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.playing import step_sweep
 from shviewer.viewer.state import changed, state_of
 
 START = state_of("studio", muted=frozenset({2}), camera=(300.0, -10.0), zoom=1.5)

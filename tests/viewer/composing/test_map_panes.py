@@ -11,10 +11,10 @@ from helpers import frame_of, picture_of
 from shviewer.errors import UsageError
 from shviewer.viewer.animation.animation import turntable
 from shviewer.viewer.composing.panes import WholeSphere
-from shviewer.viewer.keys import press
+from shviewer.viewer.control.keys import press
+from shviewer.viewer.control.placing import face, orbit, rotate_light, zoom
 from shviewer.viewer.overlay.directions.probe import direction_at, probe, probe_layers
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.placing import face, orbit, rotate_light, zoom
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.state import State, changed, state_of

@@ -12,7 +12,7 @@ from helpers import centre, frame_of, picture_of
 from shviewer.lights.function import FunctionLight
 from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.gl.renderer import Renderer
-from shviewer.viewer.overlay.lettering import mask
+from shviewer.viewer.overlay.letters.lettering import mask
 from shviewer.viewer.screenshot import offscreen
 
 

@@ -13,8 +13,8 @@ from shviewer.analysis.figures import PENDING, Figures
 from shviewer.errors import LightError
 from shviewer.progress import tell
 from shviewer.viewer import picture as pictures
-from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.control.commands import Command
 from shviewer.viewer.desktop.behind import task as desktop_task
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.desktop.unchanged import overlay_key

@@ -6,10 +6,10 @@ import random
 
 import pytest
 
+from shviewer.viewer.control.keys import ACTIONS, press
 from shviewer.viewer.desktop.clipboard import named_files
 from shviewer.viewer.desktop.history import MOST, STEPS, History
 from shviewer.viewer.desktop.session import Session
-from shviewer.viewer.keys import ACTIONS, press
 from shviewer.viewer.state import State, changed, state_of
 
 GO = (("recipe", "n_bands"), ("recipe", "window"), ("view", "error"), ("view", "camera"))

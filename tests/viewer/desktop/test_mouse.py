@@ -9,10 +9,10 @@ from helpers import frame_of, picture_of
 from shviewer.errors import UsageError
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
+from shviewer.viewer.control.keys import press
+from shviewer.viewer.control.placing import pan, zoom, zoom_about
 from shviewer.viewer.desktop.mouse import LEFT, MIDDLE, RIGHT, Mouse
-from shviewer.viewer.keys import press
 from shviewer.viewer.picture import Picture
-from shviewer.viewer.placing import pan, zoom, zoom_about
 from shviewer.viewer.state import State, changed, state_of
 
 

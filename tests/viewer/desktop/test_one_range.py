@@ -8,10 +8,10 @@ from shviewer.progress import listening
 from shviewer.viewer.animation.animation import band_sweep, ranged
 from shviewer.viewer.animation.turning import light_turn
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.control.playing import SWEEP_BANDS, step_sweep, step_turn
 from shviewer.viewer.desktop import session as sessions
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.picture import prepare
-from shviewer.viewer.playing import SWEEP_BANDS, step_sweep, step_turn
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.saving.stamp_reading import state_of_stamp
 from shviewer.viewer.state import State, changed, state_of

@@ -83,7 +83,7 @@ import sys
 from shviewer.viewer.desktop import canvas
 from viewer.desktop.still_window import window, window_of
 from shviewer.viewer.state import state_of
-from shviewer.viewer.placing import orbit, rotate_light
+from shviewer.viewer.control.placing import orbit, rotate_light
 
 drawn = []
 draw_overlay = canvas.draw_overlay

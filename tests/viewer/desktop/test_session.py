@@ -10,7 +10,7 @@ from helpers import frame_of, picture_of
 from viewer.desktop.sessions import SCENE, pressed
 
 from shviewer.errors import LightError
-from shviewer.viewer.commands import Command
+from shviewer.viewer.control.commands import Command
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.desktop.showing import Settings
 from shviewer.viewer.saving.picture_files import write_png

@@ -23,12 +23,12 @@ from shviewer.lights.coefficient_light import CoefficientLight
 from shviewer.lights.find import find_light
 from shviewer.viewer import camera
 from shviewer.viewer.animation.turning import light_turn
-from shviewer.viewer.commands import Command
 from shviewer.viewer.composing.composition import compose
+from shviewer.viewer.control.commands import Command
+from shviewer.viewer.control.placing import orbit, rotate_light
 from shviewer.viewer.desktop.session import Session
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.picture import Picture, prepare
-from shviewer.viewer.placing import orbit, rotate_light
 from shviewer.viewer.saving.command_line import command_line
 from shviewer.viewer.saving.stamp import metadata
 from shviewer.viewer.saving.stamp_reading import state_of_stamp

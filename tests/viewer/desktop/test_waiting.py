@@ -19,7 +19,7 @@ from shviewer.lights.find import find_light
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.light import Light
 from shviewer.progress import Stopped, listening, tell
-from shviewer.viewer.commands import Command
+from shviewer.viewer.control.commands import Command
 from shviewer.viewer.desktop.behind import making
 from shviewer.viewer.desktop.behind import saving as savings
 from shviewer.viewer.desktop.behind import task as tasks

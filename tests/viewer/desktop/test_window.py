@@ -199,7 +199,7 @@ def test_a_dropped_file_opens_and_a_bad_one_leaves_the_present_light_and_says_wh
 
 REFUSED_SWEEP_SCRIPT = """
 from viewer.desktop.still_window import window, window_of
-from shviewer.viewer.playing import step_sweep
+from shviewer.viewer.control.playing import step_sweep
 from shviewer.viewer.state import state_of
 with window.open_window((640, 320)) as handle:
     shown = window_of(handle, state_of(n_bands=32, window="dering", sweep_to=40))

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from shviewer.harmonics.basis import Array, count_bands, evaluate_basis
 from shviewer.harmonics.synthesis import Synthesis
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Sphere, whole_sphere_in
 from shviewer.viewer.drawn import DirectSum, SplineMap

@@ -14,8 +14,8 @@ from viewer.gl.frames import lobes, picture_view, positions, reconstructing, rou
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.metrics import LUMINANCE
 from shviewer.harmonics.zonal import Constant, Disc, Gaussian
+from shviewer.lights.analytic.lobe import Lobe
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.lobe import Lobe
 from shviewer.viewer.colour.colour_maps import linear, map_of, table
 from shviewer.viewer.colour.error_scale import error_values
 from shviewer.viewer.composing.composition import Composition

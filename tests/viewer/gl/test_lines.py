@@ -15,9 +15,9 @@ from viewer.gl.frames import map_frame, positions, square_frame
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.zonal import Constant
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.function import FunctionLight
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
 from shviewer.viewer.colour.colour_maps import linear as from_srgb
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Sphere

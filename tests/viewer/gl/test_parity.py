@@ -28,11 +28,11 @@ from viewer.gl.frames import (
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quantities.glossy import Glossy
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import MAX_LOBES, LobeLight
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.function import FunctionLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import MAX_LOBES, LobeLight
 from shviewer.lights.suns.rule import MOST as MAX_SUNS
 from shviewer.viewer.camera import towards
 from shviewer.viewer.composing.composition import Composition, compose

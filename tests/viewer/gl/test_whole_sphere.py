@@ -10,9 +10,9 @@ from viewer.gl.frames import lobes, map_directions, map_frame, reconstructing, s
 
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.zonal import ClampedLinear, Gaussian
+from shviewer.lights.analytic.lobe import Lobe
 from shviewer.lights.environment import EnvironmentLight
 from shviewer.lights.lat_long import LatLongMap
-from shviewer.lights.lobe import Lobe
 from shviewer.viewer.camera import towards
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.renderer import Renderer

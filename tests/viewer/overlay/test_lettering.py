@@ -13,12 +13,21 @@ from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTFont  # of matplotlib, which the tests need anyway
 from places import ROOT
 
-from shviewer.viewer.overlay import glyphs, lettering
 from shviewer.viewer.overlay.drawing import layer_of
-from shviewer.viewer.overlay.glyphs import Face, coverage, has, system_face
 from shviewer.viewer.overlay.inks import INK
-from shviewer.viewer.overlay.lettering import FINE, MEDIUM, REGULAR, SEMIBOLD, escaped, mask, shortened_to, width_of
-from shviewer.viewer.overlay.numerals import bound_text, share, typeset
+from shviewer.viewer.overlay.letters import glyphs, lettering
+from shviewer.viewer.overlay.letters.glyphs import Face, coverage, has, system_face
+from shviewer.viewer.overlay.letters.lettering import (
+    FINE,
+    MEDIUM,
+    REGULAR,
+    SEMIBOLD,
+    escaped,
+    mask,
+    shortened_to,
+    width_of,
+)
+from shviewer.viewer.overlay.letters.numerals import bound_text, share, typeset
 from shviewer.viewer.overlay.pieces import Text
 
 FONTS = ROOT / "assets" / "fonts"

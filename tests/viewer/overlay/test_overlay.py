@@ -21,8 +21,8 @@ from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.figures import _fitting
 from shviewer.viewer.overlay.foot import foot_pieces
 from shviewer.viewer.overlay.inks import ACCENT, ERROR, FAINT, GREY, GROUND, INK, WARNING, Ink
-from shviewer.viewer.overlay.lettering import REGULAR, width_of
-from shviewer.viewer.overlay.numerals import value
+from shviewer.viewer.overlay.letters.lettering import REGULAR, width_of
+from shviewer.viewer.overlay.letters.numerals import value
 from shviewer.viewer.overlay.overlay import Overlay, draw_overlay
 from shviewer.viewer.overlay.pieces import Disc, Fill, Swatch
 from shviewer.viewer.overlay.working import hairline_pieces
@@ -524,7 +524,7 @@ def help_of(size: tuple[int, int], page: int = 0) -> Overlay:
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
 def test_the_help_is_whole_on_its_pages_and_nothing_is_cut(size: tuple[int, int]) -> None:
-    from shviewer.viewer.keys import BINDINGS
+    from shviewer.viewer.control.keys import BINDINGS
 
     pages = [help_of(size, page) for page in range(12)]
     said = {piece.name for page in pages for piece in texts_of(page)}

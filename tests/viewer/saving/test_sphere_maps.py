@@ -19,8 +19,8 @@ from shviewer import reconstruct
 from shviewer.cli.main import main
 from shviewer.errors import LightError
 from shviewer.harmonics.zonal import Constant, Disc
+from shviewer.lights.analytic.lobe import Lobe
 from shviewer.lights.find import find_light
-from shviewer.lights.lobe import Lobe
 from shviewer.lights.reading import Reading
 from shviewer.limits import Limits
 from shviewer.viewer.camera import towards

@@ -10,10 +10,10 @@ from typing import Any
 from shviewer.analysis.recipe import Recipe
 from shviewer.analysis.subjects import read_again, read_once
 from shviewer.viewer.animation.animation import ranged
+from shviewer.viewer.control.playing import wants_range
 from shviewer.viewer.desktop.behind.task import Task, Wake
 from shviewer.viewer.overlay.overlay import foresee
 from shviewer.viewer.picture import Picture, stages, still
-from shviewer.viewer.playing import wants_range
 from shviewer.viewer.state import State
 from shviewer.viewer.work import Work
 

@@ -12,7 +12,7 @@ from shviewer.errors import ShviewerError
 from shviewer.harmonics.quantities.names import IRRADIANCE
 from shviewer.lights.find import built_in_lights, find_light, split_light
 from shviewer.lights.light import Light
-from shviewer.viewer.actions import show_light
+from shviewer.viewer.control.actions import show_light
 from shviewer.viewer.desktop.behind.errands import Errands
 from shviewer.viewer.desktop.behind.task import Wake
 from shviewer.viewer.message import ERROR, WARNING, Message

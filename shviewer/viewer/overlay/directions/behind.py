@@ -13,7 +13,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box, Sphere
 from shviewer.viewer.overlay.directions.placed import FAR, GAP, Placed, free, layers_at, type_size
 from shviewer.viewer.overlay.inks import GREY, INK
-from shviewer.viewer.overlay.lettering import MEDIUM
+from shviewer.viewer.overlay.letters.lettering import MEDIUM
 from shviewer.viewer.overlay.pieces import Curve, Piece, Point, Text
 
 AWAY, BASE, HEIGHT = 3.0, 7.0, 10.0

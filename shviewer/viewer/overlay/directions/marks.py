@@ -21,8 +21,8 @@ from shviewer.viewer.overlay.directions.behind import behind_sphere
 from shviewer.viewer.overlay.directions.placed import FAR, GAP, Placed, free, layers_at, type_size
 from shviewer.viewer.overlay.inks import INK
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import MEDIUM
-from shviewer.viewer.overlay.numerals import share, value
+from shviewer.viewer.overlay.letters.lettering import MEDIUM
+from shviewer.viewer.overlay.letters.numerals import share, value
 from shviewer.viewer.overlay.overlay import Overlay
 from shviewer.viewer.overlay.pieces import Curve, Text
 from shviewer.viewer.picture import Picture

@@ -13,8 +13,8 @@ from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.drawing import draw
 from shviewer.viewer.overlay.inks import FAINT, GREY, INK, Ink
 from shviewer.viewer.overlay.layers import Layer
-from shviewer.viewer.overlay.lettering import MIN_TYPE, width_of
-from shviewer.viewer.overlay.numerals import typeset
+from shviewer.viewer.overlay.letters.lettering import MIN_TYPE, width_of
+from shviewer.viewer.overlay.letters.numerals import typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.overlay.setting import ended
 from shviewer.viewer.picture import Picture

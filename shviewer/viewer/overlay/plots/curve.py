@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import ACCENT, BAR, FAINT, GREY, GROUND, INK, RULE, UNUSED, Ink
-from shviewer.viewer.overlay.lettering import MEDIUM, REGULAR, SEMIBOLD, width_of
+from shviewer.viewer.overlay.letters.lettering import MEDIUM, REGULAR, SEMIBOLD, width_of
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.plots.band_series import BandSeries
 from shviewer.viewer.overlay.setting import centred, dashes, ended

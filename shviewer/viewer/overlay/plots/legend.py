@@ -9,7 +9,7 @@ from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.figures import looked_at
 from shviewer.viewer.overlay.inks import BAR, FAINT, GREY, INK, Ink
-from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.overlay.letters.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.overlay.plots.band_series import BandSeries
 from shviewer.viewer.overlay.setting import sentence

@@ -17,8 +17,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import ACCENT, FAINT, GREY, GROUND, INK, RULE, Ink
-from shviewer.viewer.overlay.lettering import MEDIUM, width_of
-from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.overlay.letters.lettering import MEDIUM, width_of
+from shviewer.viewer.overlay.letters.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece, Point, Text
 from shviewer.viewer.overlay.plots.log_axis import Axis, padded_axis
 from shviewer.viewer.overlay.setting import centred, dashes, ended, sentence

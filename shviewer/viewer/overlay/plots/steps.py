@@ -16,7 +16,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import ACCENT, BAR, FAINT, GREY, GROUND, INK, RULE, UNUSED
-from shviewer.viewer.overlay.lettering import SEMIBOLD
+from shviewer.viewer.overlay.letters.lettering import SEMIBOLD
 from shviewer.viewer.overlay.pieces import Curve, Disc, Fill, Piece
 from shviewer.viewer.overlay.plots.curve import RING
 from shviewer.viewer.overlay.setting import centred, ended, sentence

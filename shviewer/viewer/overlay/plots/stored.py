@@ -15,8 +15,8 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import BAR, FAINT, GREY, INK, RULE, UNUSED
-from shviewer.viewer.overlay.lettering import MEDIUM, REGULAR, SEMIBOLD, width_of
-from shviewer.viewer.overlay.numerals import share, typeset
+from shviewer.viewer.overlay.letters.lettering import MEDIUM, REGULAR, SEMIBOLD, width_of
+from shviewer.viewer.overlay.letters.numerals import share, typeset
 from shviewer.viewer.overlay.pieces import Fill, Piece, Text
 from shviewer.viewer.overlay.setting import sentence
 from shviewer.viewer.picture import Picture

@@ -9,7 +9,7 @@ from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.composing.numbers_area import Line
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.inks import ACCENT, GROUND, INK, RULE
-from shviewer.viewer.overlay.numerals import share
+from shviewer.viewer.overlay.letters.numerals import share
 from shviewer.viewer.overlay.pieces import Curve, Fill, Piece
 from shviewer.viewer.overlay.setting import sentence
 from shviewer.words import counted

@@ -11,7 +11,7 @@ from viewer.overlay.written import pieces_of, texts_of
 from shviewer.analysis.figures import PENDING
 from shviewer.analysis.roughness import ROUGHNESS, staircase
 from shviewer.viewer.composing.composition import compose
-from shviewer.viewer.keys import press
+from shviewer.viewer.control.keys import press
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.pieces import Curve, Fill
 from shviewer.viewer.overlay.plots.steps import LABELS, steps_pieces

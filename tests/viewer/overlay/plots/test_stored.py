@@ -12,10 +12,10 @@ from viewer.overlay.written import pieces_of, texts_of
 from shviewer.harmonics.quantities.encodings import ENCODINGS
 from shviewer.harmonics.quantities.names import ENCODED_BANDS
 from shviewer.harmonics.zonal import Constant
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.lights.convolved import UP
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
-from shviewer.viewer.overlay.numerals import share
+from shviewer.viewer.overlay.letters.numerals import share
 from shviewer.viewer.overlay.overlay import draw_overlay
 from shviewer.viewer.overlay.pieces import Fill
 from shviewer.viewer.overlay.plots.stored import ROWS, stored_errors

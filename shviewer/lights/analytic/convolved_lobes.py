@@ -14,9 +14,9 @@ from shviewer.harmonics.filters import irradiance_factors, per_coefficient
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.quantities.kernels import Kernel
 from shviewer.harmonics.zonal import ClampedLinear, Profile, gegenbauer_ratios
+from shviewer.lights.analytic.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.lights.convolved import ConvolvedLight
 from shviewer.lights.lat_long import MAP_ROWS, LatLongMap
-from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 
 SERIES_BANDS = 1024
 """Bands in the products of lobes: A(l)^2 falls like l^-5, so that even a point light misses only 1e-9 of its norm.

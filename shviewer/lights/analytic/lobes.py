@@ -14,10 +14,10 @@ from shviewer.harmonics.extremes.zonal_table import around_edge
 from shviewer.harmonics.overlap import inner_product
 from shviewer.harmonics.quantities.names import IRRADIANCE
 from shviewer.harmonics.zonal import Constant, Disc
+from shviewer.lights.analytic.convolved_lobes import ConvolvedLobes
+from shviewer.lights.analytic.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.lights.convolved import UP, RadianceLight, convolved
-from shviewer.lights.convolved_lobes import ConvolvedLobes
 from shviewer.lights.light import Light, Split
-from shviewer.lights.lobe import Lobe, angle_between, lobes_form, pair_products
 from shviewer.limits import check_brightness
 
 MAX_LOBES = 64

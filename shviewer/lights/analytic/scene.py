@@ -26,8 +26,8 @@ from shviewer.files import naming, read_bytes
 from shviewer.harmonics.basis import Array
 from shviewer.harmonics.quadrature import directions_from_angles
 from shviewer.harmonics.zonal import ClampedLinear, Constant, Disc, Gaussian, Profile
-from shviewer.lights.lobe import Lobe
-from shviewer.lights.lobes import LobeLight
+from shviewer.lights.analytic.lobe import Lobe
+from shviewer.lights.analytic.lobes import LobeLight
 from shviewer.limits import BRIGHTEST, DEFAULT_LIMITS, Limits
 from shviewer.words import meant, one_line
 

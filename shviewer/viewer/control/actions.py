@@ -21,7 +21,7 @@ from shviewer.lights.light import Light
 from shviewer.lights.reading import LAYOUT_CHOICES
 from shviewer.limits import MAX_BANDS, MAX_DIRECT_BANDS
 from shviewer.viewer.beside import besides_of
-from shviewer.viewer.commands import Command
+from shviewer.viewer.control.commands import Command
 from shviewer.viewer.state import State, changed, value_of
 from shviewer.viewer.view import ERRORS, MAX_EXPOSURE, STOPPED, View
 

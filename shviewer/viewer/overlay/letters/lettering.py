@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont, features
 
 from shviewer.resources import resource_folder
-from shviewer.viewer.overlay.glyphs import Face, has, system_face
+from shviewer.viewer.overlay.letters.glyphs import Face, has, system_face
 
 REGULAR, MEDIUM, SEMIBOLD = "Regular", "Medium", "SemiBold"
 FINE = 4

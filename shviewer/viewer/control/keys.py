@@ -12,11 +12,11 @@ from typing import NamedTuple, TypeVar
 from shviewer.analysis.recipe import light_name
 from shviewer.harmonics.quantities.names import in_words
 from shviewer.limits import MAX_DIRECT_BANDS
-from shviewer.viewer import actions as do
-from shviewer.viewer.commands import Command
-from shviewer.viewer.idle import as_it_was, not_there
-from shviewer.viewer.placing import face_light
-from shviewer.viewer.playing import toggle_sweep, turn_light
+from shviewer.viewer.control import actions as do
+from shviewer.viewer.control.commands import Command
+from shviewer.viewer.control.idle import as_it_was, not_there
+from shviewer.viewer.control.placing import face_light
+from shviewer.viewer.control.playing import toggle_sweep, turn_light
 from shviewer.viewer.state import (
     State,
     changed,

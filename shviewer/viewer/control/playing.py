@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from shviewer.viewer.actions import compares, with_bands
 from shviewer.viewer.animation.metronome import TURN_STEP
 from shviewer.viewer.camera import about_axis, compose, turn_of
+from shviewer.viewer.control.actions import compares, with_bands
 from shviewer.viewer.state import State, changed
 
 SWEEP_BANDS = 10

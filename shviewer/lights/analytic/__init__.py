@@ -1,0 +1,1 @@
+"""Analytic lights: sums of lobes, their convolutions, and the scene files that name them."""

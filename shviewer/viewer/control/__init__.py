@@ -1,0 +1,1 @@
+"""Control: the keys, and what they make of a state."""

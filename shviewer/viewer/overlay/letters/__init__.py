@@ -1,0 +1,1 @@
+"""Letters: how text and numbers are set and drawn."""
