@@ -8,5 +8,6 @@ out vec4 colour;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    colour = texelFetch(layer, ivec2(pixel.x - corner.x, corner.y - 1 - pixel.y), 0);
+    ivec2 texel = ivec2(pixel.x - corner.x, corner.y - 1 - pixel.y);
+    colour = texelFetch(layer, min(texel, textureSize(layer, 0) - 1), 0);  // one texel may stand for all
 }

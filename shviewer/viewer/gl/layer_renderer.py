@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import moderngl
+import numpy as np
+from numpy.typing import NDArray
 
 from shviewer.viewer.composing.composition import Composition
 from shviewer.viewer.gl.programs import SAMPLERS, Program
@@ -29,7 +31,7 @@ class LayerRenderer:
             for layer in layers:
                 if id(layer.image) not in self._held:
                     texture = spare.pop() if spare else ArrayTexture(self._context)
-                    texture.follow(layer.image)
+                    texture.follow(_pixels(layer.image))
                     self._held[id(layer.image)] = layer, texture
                     yield
         finally:
@@ -57,3 +59,8 @@ class LayerRenderer:
         self._program.release()
         for _, texture in self._held.values():
             texture.release()
+
+
+def _pixels(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The pixels that the shader needs: one of an image that is one pixel broadcast."""
+    return image[:1, :1] if image.strides[:2] == (0, 0) else image

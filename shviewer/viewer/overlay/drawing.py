@@ -42,6 +42,11 @@ def lettering(pieces: Sequence[Piece]) -> Iterator[None]:
 
 def draw(pieces: Sequence[Piece]) -> Layer:
     """The same of pieces that will not come again."""
+    match pieces:
+        case [Fill(hollow=0.0) as fill]:
+            left, top, right, bottom = map(round, fill.box)
+            if right > left and bottom > top:
+                return Layer(np.broadcast_to(np.array(fill.ink, np.uint8), (bottom - top, right - left, 4)), left, top)
     boxes = [_reach(piece) for piece in pieces]
     left, top = floor(min(box.left for box in boxes)), floor(min(box.top for box in boxes))
     right, bottom = ceil(max(box.right for box in boxes)), ceil(max(box.bottom for box in boxes))

@@ -30,6 +30,11 @@ class Row(NamedTuple):
     after: float = 0.0
     """Where that begins: after the longest keys of its group, pixels."""
 
+    @property
+    def height(self) -> int:
+        """In rows of one line."""
+        return max(len(self.lines), 1)
+
 
 Page = list[list[Row]]
 """The rows of each column."""
@@ -43,12 +48,12 @@ class Type(NamedTuple):
 
 
 def help_blocks(state: State, at: Composition, foot: str, page: int = 0, ink: Ink = FAINT) -> list[list[Piece]]:
-    """The sheet, which covers the frame, its columns, and present values, each a block: turning the camera changes two of them.
+    """A ground over the frame, the head, the columns, and present values, each a block: turning the camera changes two of them.
 
     foot: what stands under it, if there is room, or if it is in an ink of its own in place of the title where there is none;
     page: how often PageDown was pressed.
     """
-    pieces: list[Piece] = [Fill(Box(0, 0, at.width, at.height), GROUND)]
+    pieces = list[Piece]()
     margin = at.margin
     pages, pitch, (size, step) = pages_of(at)
     shown = pages[page % len(pages)]
@@ -79,8 +84,8 @@ def help_blocks(state: State, at: Composition, foot: str, page: int = 0, ink: In
         pieces.append(Text("help_foot", margin, round(last), words, at.px(12), ink))
     elif foot and ink != FAINT:
         words = shortened_to(foot, x - at.px(12) - margin, at.px(12))
-        pieces[1] = Text("help_foot", margin, round(top), words, at.px(12), ink)
-    return [pieces, *columns, *values]
+        pieces[0] = Text("help_foot", margin, round(top), words, at.px(12), ink)
+    return [[Fill(Box(0, 0, at.width, at.height), GROUND)], pieces, *columns, *values]
 
 
 def _aligned(column: list[Row], room: float, size: float) -> list[Row]:
@@ -168,15 +173,20 @@ def _broken(text: str, room: float, size: float) -> tuple[str, ...]:
 def _filled(groups: list[list[Row]], most: int) -> Page:
     """Columns of at most so many rows."""
     filled: Page = [[]]
+    used = 0
     for group in groups:
-        if filled[-1] and _height([*filled[-1], GAP, *group]) > most:
+        if filled[-1] and used + GAP.height + sum(row.height for row in group) > most:
             filled.append([])
+            used = 0
         if filled[-1]:
             filled[-1].append(GAP)
+            used += GAP.height
         for row in group:
-            if _height([*filled[-1], row]) > most:
+            if used + row.height > most:
                 filled.append([group[0]] if row is not group[0] else [])
+                used = len(filled[-1])
             filled[-1].append(row)
+            used += row.height
     return filled
 
 
@@ -187,10 +197,6 @@ def _whole(columns: Page) -> bool:
 
 
 GAP = Row("")
-
-
-def _height(rows: list[Row]) -> int:
-    return sum(max(len(row.lines), 1) for row in rows)
 
 
 def _top(at: Composition) -> float:
