@@ -85,7 +85,7 @@ def generated(what: str) -> str:
 
 def said_of(holder: type, before: str = "", told: tuple[type, ...] = ()) -> Iterator[tuple[str, str]]:
     """The keys of a dataclass as JSON, those within [] of a list, and what its source says of them; of each class once."""
-    body = ast.parse(inspect.getsource(holder)).body[0].body  # type: ignore[attr-defined]
+    body = ast.parse(inspect.getsource(holder)).body[0].body
     texts = {
         first.target.id: str(second.value.value)
         for first, second in pairwise(body)

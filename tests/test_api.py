@@ -45,7 +45,7 @@ def test_everything_promised_is_there_and_nothing_else() -> None:
     assert set(shviewer.__all__) <= set(dir(shviewer))
     assert (Path(shviewer.__file__).parent / "py.typed").exists()
     with pytest.raises(AttributeError, match="no attribute 'render'"):
-        shviewer.render  # type: ignore[attr-defined]  # noqa: B018
+        shviewer.render  # noqa: B018
 
 
 def test_project_gives_the_coefficients_and_figures_of_the_window() -> None:
@@ -200,7 +200,7 @@ def test_saving_converts_and_keeps_figures_only_where_they_hold(tmp_path: Path) 
         with pytest.raises(ShviewerError, match=says):
             found.save(tmp_path / path, convention)
     with pytest.raises(ShviewerError, match="a file of type BytesIO: give a path"):
-        found.save(io.BytesIO())  # type: ignore[arg-type]
+        found.save(io.BytesIO())
     with pytest.raises(ShviewerError, match="takes 1 to 3"):
         shviewer.project("green", 4).numbers("unity")
 
@@ -262,7 +262,7 @@ def test_reconstruct_and_evaluate_basis_say_what_is_wrong() -> None:
             shviewer.reconstruct(coefficients, directions)
     for n_bands in (0, 2.5, "2"):
         with pytest.raises(ShviewerError):
-            shviewer.evaluate_basis([0, 0, 1], n_bands)  # type: ignore[arg-type]
+            shviewer.evaluate_basis([0, 0, 1], n_bands)
 
 
 @pytest.mark.parametrize(
@@ -365,7 +365,7 @@ def test_a_tolerance_chooses_the_bands_as_on_the_command_line() -> None:
         ({"bands": 3, "tolerance": 0.1}, "bands 3 and tolerance 0.1: give one of them"),
     ):
         with pytest.raises(ShviewerError, match=says):
-            shviewer.project("green", **options)  # type: ignore[arg-type]
+            shviewer.project("green", **options)
 
 
 def test_info_is_that_of_the_command_line_and_of_any_light(capsys: pytest.CaptureFixture[str]) -> None:

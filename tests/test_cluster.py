@@ -33,7 +33,7 @@ def test_the_example_of_the_guide_projects_on_a_local_cluster_and_names_what_fai
     names: dict[str, object] = {"__name__": "example"}
     exec(compile(example, "command-line.md", "exec"), names)
     with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=":0") as cluster:
-        found = names["project_all"](["green", "gren"], 4, cluster)  # type: ignore[operator]
+        found = names["project_all"](["green", "gren"], 4, cluster)
     assert list(found) == ["green"]
     assert np.array_equal(found["green"].coefficients, shviewer.project("green", 4).coefficients)
     assert capsys.readouterr().out == "gren: unknown light 'gren': did you mean green?\n"

@@ -59,7 +59,7 @@ def test_what_is_not_here_is_skipped_and_fails_on_ci(monkeypatch: pytest.MonkeyP
 
 def test_lazily_made_values_are_made_once_and_only_those_asked_for() -> None:
     made: list[str] = []
-    values = Lazily({name: lambda name=name: made.append(name) or len(made) for name in "abc"})  # type: ignore[misc]
+    values = Lazily({name: lambda name=name: made.append(name) or len(made) for name in "abc"})
     assert (list(values), len(values), made) == (["a", "b", "c"], 3, [])
     assert (values["b"], values["b"], made) == (1, 1, ["b"])
 

@@ -28,7 +28,7 @@ def drawn(shown: Any) -> tuple[np.ndarray[Any, Any], dict[str, Any]]:
     data = shown._repr_png_()
     assert data is not None
     with Image.open(io.BytesIO(data)) as image:
-        return np.asarray(image), json.loads(image.text["shviewer"])  # type: ignore[attr-defined]
+        return np.asarray(image), json.loads(image.text["shviewer"])
 
 
 def test_a_light_is_drawn_as_screenshot_draws_it() -> None:
@@ -58,6 +58,6 @@ def test_where_nothing_can_be_drawn_a_warning_says_so(monkeypatch: pytest.Monkey
     light = shviewer.find_light("green")
     monkeypatch.setattr(pictures, "picture_bytes", fails)
     with pytest.warns(UserWarning, match="no EGL"):
-        assert light._repr_png_() is None  # type: ignore[attr-defined]
+        assert light._repr_png_() is None
     monkeypatch.setattr(notebook, "drawing", None)
-    assert light._repr_png_() is None  # type: ignore[attr-defined]
+    assert light._repr_png_() is None

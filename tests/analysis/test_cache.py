@@ -37,7 +37,7 @@ def image(tmp_path: Path) -> Path:
 
 
 def recipe_of(path: Path | str, **changes: object) -> Recipe:
-    return Recipe(str(path), **changes)  # type: ignore[arg-type]
+    return Recipe(str(path), **changes)
 
 
 class Counting:

@@ -94,7 +94,7 @@ def test_numbers_of_nothing_are_never_explained(name: str, tmp_path: Path) -> No
 
 def test_another_encoding_with_the_same_formula_is_named(tmp_path: Path) -> None:
     def solved(held: dict[str, Any]) -> None:
-        held["coefficients"] = made("zh3-solved").stored.numbers.tolist()  # type: ignore[union-attr]
+        held["coefficients"] = made("zh3-solved").stored.numbers.tolist()
 
     assert told(written(tmp_path / "a.json", "zh3", solved)).endswith("but not at all if they are those of zh3-solved")
 

@@ -61,7 +61,7 @@ def told(file: Path, convention: str = "") -> tuple[str, str]:
 
 
 def compared(file: CoefficientLight, **changes: object) -> Picture:
-    recipe = Recipe(venice(), compare=file, **changes)  # type: ignore[arg-type]
+    recipe = Recipe(venice(), compare=file, **changes)
     recipe, said = as_the_file_holds(recipe, quantity="quantity" not in changes, bands="n_bands" not in changes)
     return prepare(State(recipe, View(message=said), (recipe.light,)))
 

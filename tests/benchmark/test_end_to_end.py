@@ -51,7 +51,7 @@ def test_what_is_timed_in_new_processes_is_the_start_alone_and_a_whole_screensho
 
     def noting(command: list[str], **options: object) -> object:
         ran.append(command[2:])
-        return run(command, **options)  # type: ignore[call-overload]
+        return run(command, **options)
 
     monkeypatch.setattr(subprocess, "run", noting)
     start, whole = process_rows("green", "mine", renderer, budget=0, at_least=1)

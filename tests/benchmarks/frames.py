@@ -76,7 +76,7 @@ def frame_costs(renderer: Renderer) -> dict[str, float]:
                 layers = (*mark_layers(picture, composition), *draw_overlay(picture, composition).layers)
             renderer.show(picture)
 
-            def draw(composition=composition, layers=layers) -> None:  # type: ignore[no-untyped-def]
+            def draw(composition=composition, layers=layers) -> None:
                 renderer.draw(target, composition, layers)
                 renderer.context.finish()
 

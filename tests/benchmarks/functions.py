@@ -90,7 +90,7 @@ def cost() -> None:
         "grey lobe": lambda d: np.exp(3 * d[:, 0]) + d[:, 1],
         "three lobes": lambda d: np.exp(d @ axes),
         "quadratic": lambda d: d**2 + 1,
-        "twenty lobes": lambda d: sum(np.exp(k * (d[:, k % 3] - 1)) for k in range(1, 21)),  # type: ignore[misc, return-value]
+        "twenty lobes": lambda d: sum(np.exp(k * (d[:, k % 3] - 1)) for k in range(1, 21)),
     }
     print(
         f"\n{'smooth function':16} {'before':>9} {'now':>7} {'ratio':>6}   {'with map':>9} {'now':>7} {'ratio':>6}   CPU ms"

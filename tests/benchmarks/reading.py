@@ -110,7 +110,7 @@ def openimageio() -> ModuleType | None:
         print("OpenImageIO is missing (pip install OpenImageIO): only our own times")
         return None
     OpenImageIO.attribute("threads", 1)
-    return OpenImageIO  # type: ignore[no-any-return]
+    return OpenImageIO
 
 
 def read_with(openimageio: ModuleType, path: Path) -> object:

@@ -156,7 +156,7 @@ def test_a_page_is_told_in_the_characters_that_there_are(monkeypatch: pytest.Mon
     monkeypatch.setattr(sys, "stdout", told)
     assert main(["help", "zh"]) == 0
     told.flush()
-    assert told.buffer.getvalue().decode("unicode_escape") == read(next(path for path in PAGES if path.stem == "zh"))  # type: ignore[attr-defined]
+    assert told.buffer.getvalue().decode("unicode_escape") == read(next(path for path in PAGES if path.stem == "zh"))
 
 
 @pytest.mark.parametrize("mode", PARSERS)

@@ -104,7 +104,7 @@ def test_a_program_gets_what_it_takes_without_being_asked_for_it(tmp_path: Path)
     assert "vec3 sh_venice_sunset_irradiance_over_pi(vec3 direction)" in text
     mean = find_light("venice_sunset").coefficients(1)[0] / (2 * np.sqrt(np.pi))
     assert held(tmp_path / "sh.glsl").file is not None
-    np.testing.assert_allclose(held(tmp_path / "sh.glsl").file.numbers[0], mean, rtol=1e-12)  # type: ignore[union-attr]
+    np.testing.assert_allclose(held(tmp_path / "sh.glsl").file.numbers[0], mean, rtol=1e-12)
 
 
 def test_axes_and_phase_are_options_and_axes_may_begin_with_a_minus(tmp_path: Path) -> None:
@@ -125,7 +125,7 @@ def test_a_coefficient_file_is_converted_with_all_its_bands_and_its_own_quantity
     assert "# bands: 7\n" in second
     assert "# quantity: irradiance\n" in second
     assert held(tmp_path / "b.csv").file is not None
-    np.testing.assert_allclose(held(tmp_path / "b.csv").file.coefficients, first["coefficients"], rtol=0, atol=1e-13)  # type: ignore[union-attr]
+    np.testing.assert_allclose(held(tmp_path / "b.csv").file.coefficients, first["coefficients"], rtol=0, atol=1e-13)
 
 
 def test_a_bare_list_is_converted_when_its_convention_is_named(tmp_path: Path) -> None:
@@ -259,7 +259,7 @@ def test_a_sun_that_is_left_out_is_written_in_the_axes_of_the_file(kind: str, tm
     """sun-sky.toml says where it stands and how bright it is; Unity's x, y, z are our x, z, y."""
     out = tmp_path / f"sky.{kind}"
     assert project("sun-sky", "--split-sun", "--convention", "unity", "-o", out) == 0
-    sun = next(lobe for lobe in find_light("sun-sky").lobes if lobe.radiance.max() > 1000)  # type: ignore[attr-defined]
+    sun = next(lobe for lobe in find_light("sun-sky").lobes if lobe.radiance.max() > 1000)
     light = held(out)
     assert light.file is not None
     said = {key: str(value) for key, value in light.file.stamp.items()}
@@ -381,7 +381,7 @@ def test_the_help_names_every_program(capsys: Capture) -> None:
     with pytest.raises(SystemExit):
         main(["project", "--help"])
     text = " ".join(capsys.readouterr().out.split())
-    said = set(re.findall(r"[\w-]+", re.search(r"convention to write: (.*?); after commas", text)[1]))  # type: ignore[index]
+    said = set(re.findall(r"[\w-]+", re.search(r"convention to write: (.*?); after commas", text)[1]))
     assert {*CONVENTIONS} - said == {f"{name}-{phase}" for name in READINGS for phase in ("phase", "no-phase")}
     assert {*READINGS, "-phase", "-no-phase"} <= said
 

@@ -85,7 +85,7 @@ def e3nn(folder: Path, directions: np.ndarray) -> np.ndarray:
     )
     names = {"torch": torch, "math": math}
     exec(compile(ast.Module([function], []), "e3nn", "exec"), names)
-    values = names["_spherical_harmonics"](N_BANDS - 1, *directions.T.copy().view(Tensor))  # type: ignore[operator]
+    values = names["_spherical_harmonics"](N_BANDS - 1, *directions.T.copy().view(Tensor))
     return np.asarray(values) / math.sqrt(4 * math.pi)
 
 

@@ -28,7 +28,7 @@ def told(numbers: Array, exact: Array, convention: str = "shviewer") -> tuple[st
     """What is wrong with the light, and the convention, of numbers that were written in one."""
     chosen = parse_convention(convention)
     written = chosen.from_ours(numbers, "radiance")
-    found = suspect(Listed(np.asarray(written)), exact, chosen, nothing_else)  # type: ignore[arg-type]
+    found = suspect(Listed(np.asarray(written)), exact, chosen, nothing_else)
     assert found is not None
     assert found.error < 1e-6
     return ", ".join(found.of_light), found.text
@@ -86,14 +86,14 @@ def test_strangers_are_no_turned_or_windowed_lights(n_bands: int) -> None:
     """None of 10 lists of random numbers is told to be of this light, whatever its angle or factors."""
     exact, random = asymmetric(n_bands), np.random.default_rng(n_bands)
     for _ in range(10):
-        assert suspect(Listed(random.normal(size=exact.shape)), exact, None, nothing_else) is None  # type: ignore[arg-type]
+        assert suspect(Listed(random.normal(size=exact.shape)), exact, None, nothing_else) is None
 
 
 def test_a_turn_is_told_under_noise() -> None:
     exact = asymmetric(3)
     noise = np.random.default_rng(8).normal(size=exact.shape)
     noisy = rotate(exact, turn(30, 0)) + 0.03 * noise * np.linalg.norm(exact) / np.linalg.norm(noise)
-    found = suspect(Listed(noisy), exact, parse_convention("shviewer"), nothing_else)  # type: ignore[arg-type]
+    found = suspect(Listed(noisy), exact, parse_convention("shviewer"), nothing_else)
     assert found is not None
     angle = re.search(r"by ([\d.]+) degrees", found.of_light[0])
     assert angle is not None

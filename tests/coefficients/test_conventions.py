@@ -196,7 +196,7 @@ def test_the_program_sees_our_image_where_its_own_loader_puts_it(name: str, look
     u, v = np.meshgrid(np.linspace(0.05, 0.95, 13), np.linspace(0.1, 0.9, 7))
     phi, theta = np.pi * (1 - 2 * u.ravel()), np.pi * v.ravel()
     ours = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=1)
-    found = look_up(*(ours @ CONVENTIONS[name].axes.matrix.T).T)  # type: ignore[operator]
+    found = look_up(*(ours @ CONVENTIONS[name].axes.matrix.T).T)
     np.testing.assert_allclose(np.stack(found), np.stack([u.ravel(), v.ravel()]), rtol=0, atol=1e-12)
 
 

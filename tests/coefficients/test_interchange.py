@@ -52,7 +52,7 @@ def numbers_of_csv(data: bytes) -> peers.Numbers:
 def test_a_file_written_here_is_the_same_radiance_there(name: str, kind: str, read: object) -> None:
     evaluator, n_bands = PEERS[name]
     directions = directions_here()
-    numbers = read(projected(name, n_bands).encode(CONVENTIONS[name], kind))  # type: ignore[operator]
+    numbers = read(projected(name, n_bands).encode(CONVENTIONS[name], kind))
     if name == "scipy":
         numbers = numbers[:, 0::2] + 1j * numbers[:, 1::2]
     wanted = held(name, given(n_bands), directions)

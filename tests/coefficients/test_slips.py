@@ -159,7 +159,7 @@ def test_rows_of_complex_lists_slip_in_pairs(what: str) -> None:
     assert (found.slips, found.error < 1e-6) == (slips, bool(slips))
     if slips:
         wanted = np.asarray(parse_convention("scipy").from_ours(exact))
-        np.testing.assert_allclose(mended(rows, slips, wanted), wanted)  # type: ignore[arg-type]
+        np.testing.assert_allclose(mended(rows, slips, wanted), wanted)
 
 
 def test_one_complex_row_without_its_partner_is_named(tmp_path: Path) -> None:

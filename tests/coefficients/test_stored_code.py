@@ -119,7 +119,7 @@ def test_the_formula_in_words_is_that_of_the_program(formula: str) -> None:
 @pytest.mark.parametrize("name", ["l1", "zh3", "l2-deringed", "ambient-cube"])
 def test_every_format_has_the_numbers_their_names_and_the_formula(name: str, tmp_path: Path) -> None:
     projected = stored(name)
-    numbers = projected.stored.numbers  # type: ignore[union-attr]
+    numbers = projected.stored.numbers
     read = json.loads(text(projected, "json"))
     np.testing.assert_array_equal(read["coefficients"], numbers)
     assert (read["encoding"], read["rows"], read["quantity"]) == (name, len(numbers), "irradiance")
@@ -157,7 +157,7 @@ def test_a_window_is_in_the_numbers_of_sums_and_leaves_the_others_none() -> None
     found = project_recipe(windowed, "l2")
     own = shviewer.find_light("green").coefficients(3)
     wanted = own * np.repeat([1, (1 + np.sqrt(0.5)) / 2, 0.5], [1, 3, 5])[:, None]
-    np.testing.assert_allclose(found.stored.numbers, wanted, rtol=1e-14)  # type: ignore[union-attr]
+    np.testing.assert_allclose(found.stored.numbers, wanted, rtol=1e-14)
     none = project_recipe(windowed, "zh3")
     assert (none.stored, none.about["through"], count_bands(none.coefficients)) == (None, "zh3", 3)
 
@@ -170,7 +170,7 @@ def test_numbers_of_a_turned_light_are_those_of_the_light_as_it_stands(name: str
     turned = still.turned(first).turned(second)
     radiance = shviewer.project("green", 32).turned(second @ first).coefficients
     wanted = ENCODINGS[name].store(radiance)
-    np.testing.assert_allclose(turned.stored.numbers, wanted, rtol=0, atol=1e-12)  # type: ignore[union-attr]
+    np.testing.assert_allclose(turned.stored.numbers, wanted, rtol=0, atol=1e-12)
     seen = evaluate_basis(NORMALS, turned.n_bands) @ turned.coefficients
     by_formula = Stored(name, wanted).irradiance(NORMALS)
     np.testing.assert_allclose(seen, by_formula, rtol=0, atol=CUT_OFF.get(name, 1e-12) * np.abs(seen).max())

@@ -104,7 +104,7 @@ class Steps:
             return right(path, flags, mode, **options)
 
         os.open = opened
-        outputs.open = self.open_file  # type: ignore[attr-defined]  # the writer's own open, in place of the built-in one
+        outputs.open = self.open_file  # the writer's own open, in place of the built-in one
 
     def open_file(self, path: Any, mode: str, **options: Any) -> Any:
         return _Slow(builtins.open(path, mode, **options), self)
@@ -167,7 +167,7 @@ UNDRAWN = SimpleNamespace(
 def press_p() -> int:
     """P, in a window: an error is a message there."""
     shown = session.Session(state_of())
-    shown.save(UNDRAWN, compose(320, 240))  # type: ignore[arg-type]
+    shown.save(UNDRAWN, compose(320, 240))
     shown.saving.finish()
     if "cannot be written" in shown.state.view.message:
         print(f"shviewer: {shown.state.view.message}", file=sys.stderr)
@@ -212,7 +212,7 @@ NEW = ("P",)
 
 @contextlib.contextmanager
 def undrawn() -> Iterator[None]:
-    yield UNDRAWN  # type: ignore[misc]
+    yield UNDRAWN
 
 
 def undrawn_part(*arguments: object) -> Generator[float, None, Callable[[], np.ndarray]]:
@@ -223,9 +223,9 @@ def undrawn_part(*arguments: object) -> Generator[float, None, Callable[[], np.n
 def give_pixels() -> None:
     """Let no picture be drawn."""
     for module in (screenshot, animation):
-        module.headless_renderer = undrawn  # type: ignore[attr-defined]
-        module.render_rgb = lambda *arguments, **options: PIXELS  # type: ignore[attr-defined]
-    saving.render_in_parts = undrawn_part  # type: ignore[assignment]
+        module.headless_renderer = undrawn
+        module.render_rgb = lambda *arguments, **options: PIXELS
+    saving.render_in_parts = undrawn_part
     screenshot.render_linear = lambda *arguments: PIXELS.astype(np.float32)
     plots.plots_of = lambda report: {"error-bands": lambda figure: None}
 
@@ -242,7 +242,7 @@ def in_child(run: Callable[[], int]) -> tuple[int, str]:
             sys.stdout, sys.stderr = (os.fdopen(number, "w", 1, closefd=False) for number in (1, 2))
             code = run()
         except BaseException:
-            sys.excepthook(*sys.exc_info())  # type: ignore[arg-type]
+            sys.excepthook(*sys.exc_info())
         finally:
             os._exit(code)
     os.close(writing_end)

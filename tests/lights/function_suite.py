@@ -120,11 +120,11 @@ def zonal(
     power = (2 * l + 1) * np.pi * ((weights * values) @ np.polynomial.legendre.legvander(places, l[-1])) ** 2
     kept = np.cumsum(power)
     errors = {n: float(np.sqrt(max(0.0, 1 - kept[n - 1] / energy))) for n in BANDS}
-    return Case(name, lambda d: g(np.clip(d @ axis, -1, 1)), flux, magnitude, energy, errors, **about)  # type: ignore[arg-type]
+    return Case(name, lambda d: g(np.clip(d @ axis, -1, 1)), flux, magnitude, energy, errors, **about)
 
 
 def integrals(name: str, function: Function, flux: float, magnitude: float, energy: float, **about: object) -> Case:
-    return Case(name, function, flux, magnitude, energy, {}, **about)  # type: ignore[arg-type]
+    return Case(name, function, flux, magnitude, energy, {}, **about)
 
 
 def azimuth(d: np.ndarray) -> np.ndarray:

@@ -57,7 +57,7 @@ def test_a_constant_light_gives_pi_everywhere_and_a_hemisphere_pi_facing_it() ->
 
 def test_a_small_sun_acts_like_a_directional_light() -> None:
     light = find_light("sun-sky")
-    sun = light.lobes[1]  # type: ignore[attr-defined]
+    sun = light.lobes[1]
     flux = 2 * np.pi * (1 - np.cos(np.radians(0.265))) * sun.radiance[0]
     cosine = NORMALS @ sun.axis
     clear = np.abs(cosine) > 0.01  # where the disc does not cut the horizon, its own size matters by 1e-5

@@ -52,7 +52,7 @@ def test_its_irradiance_is_that_of_the_formula_in_whichever_axes_the_file_is(
     tmp_path: Path, name: str, axes: str
 ) -> None:
     shaded = opened(tmp_path, name, convention=axes).through("irradiance")
-    wanted = made(name).stored.irradiance(NORMALS)  # type: ignore[union-attr]
+    wanted = made(name).stored.irradiance(NORMALS)
     np.testing.assert_allclose(shaded.radiance(NORMALS), wanted, rtol=0, atol=1e-14 * wanted.max())
     bands = ENCODINGS[name].bands
     np.testing.assert_allclose(shaded.coefficients(bands), made(name).coefficients, rtol=0, atol=1e-13 * wanted.max())
@@ -64,17 +64,17 @@ def test_its_irradiance_is_that_of_the_formula_in_whichever_axes_the_file_is(
 @pytest.mark.parametrize("kind", FORMATS)
 @pytest.mark.parametrize("name", ["l1", "zh3-shared", "ambient-cube-fitted"])
 def test_every_format_is_read_with_all_digits(tmp_path: Path, kind: str, name: str) -> None:
-    np.testing.assert_array_equal(opened(tmp_path, name, kind).stored.numbers, made(name).stored.numbers)  # type: ignore[union-attr]
+    np.testing.assert_array_equal(opened(tmp_path, name, kind).stored.numbers, made(name).stored.numbers)
 
 
 @pytest.mark.parametrize("name", ENCODINGS)
 def test_an_encoding_of_the_radiance_it_tells_of_is_the_same_again(tmp_path: Path, name: str) -> None:
     """But of what is made by searching, or of more than the three bands that are left."""
-    light, wanted = opened(tmp_path, name), made(name).stored.numbers  # type: ignore[union-attr]
-    again = shviewer.project(light, encode=name).stored.numbers  # type: ignore[union-attr]
+    light, wanted = opened(tmp_path, name), made(name).stored.numbers
+    again = shviewer.project(light, encode=name).stored.numbers
     searched = {"zh3-solved": 1e-4, "l2-deringed": 1e-4, "ambient-cube": 0.2, "ambient-cube-fitted": 0.2}
     np.testing.assert_allclose(again, wanted, rtol=0, atol=searched.get(name, 1e-13) * np.abs(wanted).max())
-    assert light.irradiance_up() == pytest.approx(made(name).stored.irradiance(np.eye(3)[2:])[0])  # type: ignore[union-attr]
+    assert light.irradiance_up() == pytest.approx(made(name).stored.irradiance(np.eye(3)[2:])[0])
 
 
 def test_it_is_shown_as_its_irradiance_under_its_name_as_in_the_window_it_is_dropped_on(tmp_path: Path) -> None:

@@ -89,7 +89,7 @@ def test_an_installed_wheel_draws_every_kind_of_built_in_light_from_another_fold
         done = run(programs / "shviewer", "screenshot", f"{light}.png", light, "--size", "640", "320", cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         with Image.open(tmp_path / f"{light}.png") as image:
-            assert json.loads(image.text["shviewer"])["light"] == light  # type: ignore[attr-defined]
+            assert json.loads(image.text["shviewer"])["light"] == light
     place = run(programs / "python", "-c", "import shviewer; print(shviewer.__path__[0])", cwd=tmp_path).stdout.strip()
     pages = {path.name: path.read_bytes() for path in (ROOT / "assets" / "guide").iterdir()}
     assert {path.name: path.read_bytes() for path in (Path(place) / "assets" / "guide").iterdir()} == pages

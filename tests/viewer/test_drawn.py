@@ -42,7 +42,7 @@ RADIUS = 222.0
     ],
 )
 def test_each_state_is_drawn_in_one_way(options: dict[str, object], by_map: bool, drawn: type[Drawn]) -> None:
-    assert type(prepare(state_of(**options), by_map=by_map).drawn) is drawn  # type: ignore[arg-type]
+    assert type(prepare(state_of(**options), by_map=by_map).drawn) is drawn
 
 
 @pytest.mark.parametrize("n_bands", [33, 40, 128])
@@ -66,7 +66,7 @@ def test_a_sweep_of_surfaces_goes_past_what_the_shader_sums(
     monkeypatch.setattr("shviewer.viewer.animation.animation.headless_renderer", lambda: nullcontext(renderer))
     assert main(["sweep", "s.webp", "green", "--from", "31", "--to", "34", "--lobes", "--size", "128", "64"]) == 0
     with Image.open("s.webp") as image:
-        assert image.n_frames == 4  # type: ignore[attr-defined]
+        assert image.n_frames == 4
 
 
 def test_surfaces_hold_no_radiance_that_could_be_drawn(renderer: Renderer) -> None:

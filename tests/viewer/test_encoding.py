@@ -49,10 +49,10 @@ def test_figures_are_the_published_ones_and_coefficients_those_of_the_encoding(n
     wanted = kernels()["B"]["green"]["figures"][NAMES[name]]
     assert picture.figures.relative_l2 == pytest.approx(wanted["rel_l2"], abs=2e-5)
     figures = picture.figures
-    assert figures.irradiance_relative_l2 == figures.relative_l2  # type: ignore[union-attr]
+    assert figures.irradiance_relative_l2 == figures.relative_l2
     extremes = picture.extremes
-    assert extremes.max_error / extremes.peak == pytest.approx(wanted["max_abs_over_max"], abs=2e-3)  # type: ignore[union-attr]
-    assert extremes.minimum / extremes.peak == pytest.approx(wanted["min_over_max"], abs=1e-3)  # type: ignore[union-attr]
+    assert extremes.max_error / extremes.peak == pytest.approx(wanted["max_abs_over_max"], abs=2e-3)
+    assert extremes.minimum / extremes.peak == pytest.approx(wanted["min_over_max"], abs=1e-3)
     made = ENCODINGS[name].make(find_light("green").coefficients(3))
     np.testing.assert_allclose(picture.coefficients, made, rtol=0, atol=1e-14)
 
@@ -153,7 +153,7 @@ def test_a_cube_is_made_anew_while_the_light_turns_and_shown_as_it_stands(name: 
     assert picture.state.view.light_rotation == towards(40.0, 30.0)
     assert picture.stored is not None
     wanted = shviewer.project("green", encode=name).turned(picture.light_from_world.T)
-    np.testing.assert_allclose(picture.stored.numbers, wanted.stored.numbers, rtol=0, atol=1e-12)  # type: ignore[union-attr]
+    np.testing.assert_allclose(picture.stored.numbers, wanted.stored.numbers, rtol=0, atol=1e-12)
     assert picture.figures.relative_l2 == pytest.approx(wanted.sums.relative_l2, rel=1e-9)
     assert picture.figures.relative_l2 != pytest.approx(still.figures.relative_l2, rel=1e-3)
 

@@ -199,7 +199,7 @@ def test_sixty_digit_suns_and_hemispheres_are_the_published_ones() -> None:
     degrees = float(light["half_angle_deg"])
     radians = Decimal(light["half_angle_deg"]) * exact.PI / 180  # not the float64 nearest to it
     assert float(radians) == pytest.approx(np.radians(degrees), rel=1e-15)
-    for l, (ours, text) in enumerate(zip(exact.disc(radians, 17), light["zonal"], strict=True)):  # type: ignore[arg-type]
+    for l, (ours, text) in enumerate(zip(exact.disc(radians, 17), light["zonal"], strict=True)):
         # there: coefficients of a sun on +z, lambda(l) sqrt((2l+1)/4pi)
         scale = (Decimal(2 * l + 1) / (4 * exact.PI)).sqrt()
         assert float(ours * scale) == pytest.approx(float(text), rel=1e-15)

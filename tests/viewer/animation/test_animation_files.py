@@ -49,7 +49,7 @@ def save(renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(animation, "headless_renderer", shared)
 
     def call(made: Animation, name: str, composition: Composition = SMALL, **options: object) -> Path:
-        save_animation(made, composition, tmp_path / name, **options)  # type: ignore[arg-type]
+        save_animation(made, composition, tmp_path / name, **options)
         return tmp_path / name
 
     return call
@@ -161,9 +161,9 @@ def test_equal_frames_become_one_that_is_shown_as_long(save: Save, tmp_path: Pat
     scene.write_text('[[lobe]]\nprofile = "constant"\nradiance = 2\n')
     made = turntable(state_of(str(scene)), 5, 0.1)
     with Image.open(save(made, "a.gif")) as image:
-        assert (image.n_frames, image.info["duration"]) == (1, 500)  # type: ignore[attr-defined]
+        assert (image.n_frames, image.info["duration"]) == (1, 500)
     with Image.open(save(made, "a.webp")) as image:
-        assert image.n_frames == 1  # type: ignore[attr-defined]  # a still picture, which needs no time
+        assert image.n_frames == 1  # a still picture, which needs no time
 
 
 def test_one_frame_can_be_written_in_both_formats(save: Save, renderer: Renderer) -> None:
@@ -202,7 +202,7 @@ def test_a_failure_in_the_middle_leaves_the_file_there_was(
         drawn.append(arguments)
         if len(drawn) == 3:
             raise GraphicsError("lost")
-        return render_rgb(*arguments, **options)  # type: ignore[arg-type]
+        return render_rgb(*arguments, **options)
 
     monkeypatch.setattr(animation, "render_rgb", failing)
     with pytest.raises(GraphicsError, match="lost"):

@@ -186,7 +186,7 @@ def test_figures_stand_in_two_rows_before_their_columns_are_narrow(size: tuple[i
     at = compose(*size)
     figures = at.numbers.figures
     assert min(cell.right - cell.left for cell in figures) >= 84 * at.scale
-    assert len({cell.value for cell in figures}) == (2 if at.numbers.foot.right < size[0] / 2 else 1)  # type: ignore[union-attr]
+    assert len({cell.value for cell in figures}) == (2 if at.numbers.foot.right < size[0] / 2 else 1)
 
 
 def test_twice_the_pixels_is_the_same_picture_twice_as_large() -> None:

@@ -140,7 +140,7 @@ class Viewer:
         line = self.press("p", "saved ")
         path = self.folder / line.rpartition("saved ")[2]
         with Image.open(path) as image:
-            return np.asarray(image.convert("RGB")), str(image.text["shviewer"])  # type: ignore[attr-defined]
+            return np.asarray(image.convert("RGB")), str(image.text["shviewer"])
 
     def rest(self, seconds: float = 1.0) -> None:
         """Wait until the viewer has said nothing for so long and has taken less than AT_REST of a core meanwhile.

@@ -11,7 +11,7 @@ from shviewer.viewer.desktop.canvas import Canvas
 from shviewer.viewer.picture import prepare
 from shviewer.viewer.state import State
 
-frames.PATIENCE = None  # type: ignore[assignment]
+frames.PATIENCE = None
 
 
 def window_of(handle: Any, state: State) -> window.Window:

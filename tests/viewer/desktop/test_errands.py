@@ -89,7 +89,7 @@ def test_errands_are_done_in_order_and_the_end_waits_for_all(at_once: None) -> N
     done: list[int] = []
     first = Held(lambda: 1)
     made = Errands()
-    made.run("first", first, done.append, lambda error: None)  # type: ignore[arg-type]
+    made.run("first", first, done.append, lambda error: None)
     made.run("second", lambda: 2, done.append, lambda error: None)
     assert first.asked.wait(60)
     made.take()
@@ -129,7 +129,7 @@ def test_a_picture_whose_map_is_on_its_way_to_opengl_is_saved_when_it_is_there(
     monkeypatch.setattr(saving, "write_picture", lambda *rest: saved.append(rest[-1]) or Written(Path("a.png")))
     opengl = SimpleNamespace(version="", ready=lambda *picture: False, held=SimpleNamespace(pinned=None))
     session = Session(state_of("green"))
-    session.save(opengl, None)  # type: ignore[arg-type]
+    session.save(opengl, None)
     assert session.prepare(patience=NOW)
     assert session.waiting
     assert not session.saving.drawing

@@ -92,7 +92,7 @@ def test_saving_waits_for_the_figures(search: threading.Event, monkeypatch: pyte
     saved: list[bool] = []
     monkeypatch.setattr(Session, "_save", lambda self, *rest: saved.append(self.picture.complete))
     session = without_figures()
-    session.save(None, None)  # type: ignore[arg-type]
+    session.save(None, None)
     assert saved == []
     search.set()
     assert session.prepare()
@@ -116,7 +116,7 @@ def test_escape_stops_the_search_and_what_needs_the_figures_takes_it_up_again(
     session.do(Command.FIT)
     assert session.prepare()
     assert session.picture.complete
-    assert session.state.recipe.n_bands == session.picture.needs.radiance  # type: ignore[union-attr]
+    assert session.state.recipe.n_bands == session.picture.needs.radiance
 
 
 def test_a_search_that_fails_keeps_the_picture_and_is_not_begun_again(monkeypatch: pytest.MonkeyPatch) -> None:

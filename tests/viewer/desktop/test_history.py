@@ -134,7 +134,7 @@ def test_no_more_steps_are_kept_than_anybody_goes_back() -> None:
     assert steps == MOST
 
 
-def test_the_clipboard_names_files_as_file_managers_copy_them(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+def test_the_clipboard_names_files_as_file_managers_copy_them(tmp_path, monkeypatch) -> None:
     sky, other = tmp_path / "sky \u65e5.hdr", tmp_path / "b.exr"
     sky.touch()
     other.touch()

@@ -87,7 +87,7 @@ def test_what_is_shown_afterwards_has_its_own_range(key: str) -> None:
     assert window.shown.view.range_held
     state = window.press(key)
     assert (state.view.error_range, state.view.range_held) == (None, False)
-    assert window.end == prepare(state).error_scale.end  # type: ignore[union-attr]
+    assert window.end == prepare(state).error_scale.end
 
 
 def test_another_error_while_it_plays_gets_the_range_of_the_same_sweep() -> None:
@@ -124,7 +124,7 @@ def test_a_picture_that_was_asked_for_before_its_range_was_found_is_saved(monkey
     )
     monkeypatch.setattr(sessions, "PATIENCE", 0.0)
     window.session.press("Space")
-    window.session.save(None, compose(320, 160))  # type: ignore[arg-type]
+    window.session.save(None, compose(320, 160))
     assert window.shown_soon() == saved[0]
     assert saved[0].view.range_held
 

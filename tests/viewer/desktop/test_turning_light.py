@@ -163,7 +163,7 @@ def test_a_frame_is_its_state_so_that_a_saved_picture_can_be_made_again(tmp_path
     command = [sys.executable, "-m", "shviewer", "screenshot", str(tmp_path / "a.png"), *line[3:]]
     subprocess.run(command, check=True)  # a process of its own: it makes an OpenGL context
     with Image.open(tmp_path / "a.png") as image:
-        text = str(image.text["shviewer"])  # type: ignore[attr-defined]
+        text = str(image.text["shviewer"])
     told = state_of_stamp(text)
     assert told.recipe == replace(shown.state.recipe, turn=told.recipe.turn)
     np.testing.assert_allclose(told.recipe.turn, shown.state.recipe.turn, rtol=0, atol=1e-14)

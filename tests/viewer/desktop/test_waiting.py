@@ -147,7 +147,7 @@ def test_saving_waits_for_the_picture_that_was_asked_for(gate: Gate, monkeypatch
 
     opengl = SimpleNamespace(version="", ready=lambda *picture: True, held=SimpleNamespace(pinned=None))
     session = waiting(gate)
-    session.save(opengl, None)  # type: ignore[arg-type]
+    session.save(opengl, None)
     assert saved == []
     gate.open.set()
     assert session.prepare()
@@ -162,7 +162,7 @@ def test_a_picture_that_was_left_before_it_was_there_is_not_saved_as_another(
     monkeypatch.setattr(savings, "render_in_parts", drawn_at_once)
     opengl = SimpleNamespace(version="", ready=lambda *picture: True, held=SimpleNamespace(pinned=None))
     session = waiting(gate)
-    session.save(opengl, None)  # type: ignore[arg-type]
+    session.save(opengl, None)
     session.press("Left")
     session.prepare(patience=NOW)
     gate.open.set()
@@ -180,7 +180,7 @@ def test_a_picture_that_opengl_cannot_draw_is_said_and_ends_nothing(monkeypatch:
     monkeypatch.setattr(savings, "render_in_parts", refused)
     opengl = SimpleNamespace(version="", ready=lambda *picture: True, held=SimpleNamespace(pinned=None))
     session = Session(state_of("green"))
-    session.save(opengl, None)  # type: ignore[arg-type]
+    session.save(opengl, None)
     session.saving.go_on(60.0)
     assert (session.state.view.message, session.saving.drawing, opengl.held.pinned) == ("no shaders here", False, None)
 

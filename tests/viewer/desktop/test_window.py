@@ -308,7 +308,7 @@ def test_escape_stops_a_map_on_its_way_to_opengl_and_closes_nothing() -> None:
     assert session.prepare()
     shown = Window.__new__(Window)
     shown.session, shown.shown, shown.frames_due = session, before, 0
-    shown.canvas = SimpleNamespace(pending="handing the map to OpenGL")  # type: ignore[assignment]
+    shown.canvas = SimpleNamespace(pending="handing the map to OpenGL")
     shown.press("Esc")
     assert session.prepare()
     assert session.picture.light is before.light

@@ -103,7 +103,7 @@ def test_frames_go_on_while_opengl_takes_the_memory_of_a_map(renderer: Renderer,
     assert canvas.pending
     assert canvas._shown.light is before.light
     assert np.allclose(canvas._shown.world_from_view, turned.world_from_view)  # the last picture can be turned
-    assert canvas._overlay_key[0].words == UPLOADING  # type: ignore[index]
+    assert canvas._overlay_key[0].words == UPLOADING
     assert (read_rgb(canvas.renderer, frame_of(after)) != last).any()
     thread.open.set()
     while not canvas.show(turned, frame_of(after)):

@@ -439,9 +439,9 @@ def test_zoomed_spheres_do_not_cross_the_middle_or_the_captions(renderer: Render
 def test_the_uniform_blocks_are_as_large_as_the_arrays_that_fill_them(renderer: Renderer) -> None:
     linear(renderer, picture_of("green"))
     program = renderer.panes.programs["RECONSTRUCTION", "LOBES", "SUM", "NONE", "SPHERE", 0, 1, False].program
-    assert program["ShBlock"].size == pack_coefficients(noise(5)).nbytes == renderer.held.sh_buffer.size  # type: ignore[union-attr]
+    assert program["ShBlock"].size == pack_coefficients(noise(5)).nbytes == renderer.held.sh_buffer.size
     block = pack_lobes((Lobe(Constant(), OFF_AXIS, np.ones(3)),))
-    assert program["LobeBlock"].size == block.nbytes == renderer.held.lobe_buffer.size  # type: ignore[union-attr]
+    assert program["LobeBlock"].size == block.nbytes == renderer.held.lobe_buffer.size
     assert max(SH_TERMS * 16, LOBE_SLOTS * 48) <= 16384  # what every OpenGL 3.3 grants a block
 
 

@@ -452,15 +452,15 @@ def test_what_went_wrong_is_said_in_full_in_small_windows_too(size: tuple[int, i
 def test_the_kind_of_a_message_has_a_shape_and_a_colour(said: str, ink: Ink, marks: int) -> None:
     pieces = foot_pieces(compose(1280, 640), said)
     (text,) = (piece for piece in pieces if piece.name == "message")
-    assert text.ink == ink  # type: ignore[union-attr]
-    assert text.text == said  # type: ignore[union-attr]
+    assert text.ink == ink
+    assert text.text == said
     assert len([piece for piece in pieces if piece.name.startswith("mark")]) == marks
 
 
 def test_an_error_has_a_cross() -> None:
     pieces = foot_pieces(compose(1280, 640), message.Message("cannot read a.exr", message.ERROR))
     assert len([piece for piece in pieces if piece.name.startswith("mark")]) == 2
-    assert {piece.ink for piece in pieces} == {ERROR}  # type: ignore[union-attr]
+    assert {piece.ink for piece in pieces} == {ERROR}
 
 
 def test_where_there_are_several_lights_the_keys_that_go_through_them_are_named_if_there_is_room() -> None:
@@ -492,7 +492,7 @@ def test_a_sun_is_not_proposed_to_be_taken_apart_where_there_is_none(kind: str) 
     noise = EnvironmentLight(np.random.default_rng(0).random((256, 512, 3), dtype=np.float32) ** 4)
     light = noise if kind == "noise" else FunctionLight(lambda d: np.sin(400 * d[:, 0]) * d[:, 1])
     picture = picture_of(light)
-    assert picture.needs.radiance is None  # type: ignore[union-attr]
+    assert picture.needs.radiance is None
     found = texts_of(draw_overlay(picture, compose(1280, 640)))
     assert next(piece.ink for piece in found if piece.name == "key_U") == GREY
 

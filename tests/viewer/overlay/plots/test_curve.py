@@ -114,8 +114,8 @@ def test_the_dot_is_what_is_shown_on_its_line_or_off_it_with_a_stem() -> None:
 def test_the_axis_is_100_to_1_percent_and_further_where_the_error_is(error: float, low: float, high: float) -> None:
     axes = axes_of(replace(band_series(picture_of()), shown=error), AT)
     assert (axes.low, axes.high) == pytest.approx((low, high))
-    assert axes.y(axes.high) == AT.numbers.curve.top  # type: ignore[union-attr]
-    assert axes.y(axes.low) == AT.numbers.curve.bottom  # type: ignore[union-attr]
+    assert axes.y(axes.high) == AT.numbers.curve.top
+    assert axes.y(axes.low) == AT.numbers.curve.bottom
 
 
 @pytest.mark.parametrize(

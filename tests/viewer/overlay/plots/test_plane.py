@@ -63,7 +63,7 @@ def steady(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def shown(**changes: object) -> Picture:
-    return prepare(state_of(**{"n_bands": 15, "sheet": "plane", **changes}))  # type: ignore[arg-type]
+    return prepare(state_of(**{"n_bands": 15, "sheet": "plane", **changes}))
 
 
 def session(counts: tuple[int, ...] = COUNTS, **changes: object) -> Picture:

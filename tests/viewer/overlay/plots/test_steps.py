@@ -57,7 +57,7 @@ def test_what_needs_more_bands_than_there_are_is_off_the_chart_and_pending_figur
     picture, at = shown("sun-sky", n_bands=9), compose(1280, 640)
     curves = [piece for piece in steps_pieces(staircase(picture.state.recipe), picture, at) if isinstance(piece, Curve)]
     assert len(curves) == 1
-    assert curves[0].points[0][0] > at.numbers.curve.left + at.px(LABELS) + 5  # type: ignore[union-attr]
+    assert curves[0].points[0][0] > at.numbers.curve.left + at.px(LABELS) + 5
     pending = draw_overlay(replace(picture, needs=PENDING), at)
     assert "steps_sentence" not in pending.boxes
     assert not any(isinstance(piece, Curve) and piece.name == "steps" for piece in pieces_of(pending))
