@@ -20,6 +20,7 @@ from shviewer.viewer.composing.composition import Composition, compose, frame_fo
 from shviewer.viewer.composing.panes import Box
 from shviewer.viewer.overlay.figures import _fitting
 from shviewer.viewer.overlay.foot import foot_pieces
+from shviewer.viewer.overlay.help_sheet import pages_of
 from shviewer.viewer.overlay.inks import ACCENT, ERROR, FAINT, GREY, GROUND, INK, WARNING, Ink
 from shviewer.viewer.overlay.letters.lettering import REGULAR, width_of
 from shviewer.viewer.overlay.letters.numerals import value
@@ -538,6 +539,15 @@ def test_the_help_is_whole_on_its_pages_and_nothing_is_cut(size: tuple[int, int]
         for piece in texts_of(page):
             assert 0 <= piece.box.left < piece.right <= size[0]
             assert piece.baseline < size[1]
+
+
+@pytest.mark.parametrize("size", [(480, 260), (540, 220)], ids=str)
+def test_a_title_that_is_said_again_counts_in_its_column(size: tuple[int, int]) -> None:
+    frame = frame_for(PICTURES["help"].state.view, *size)
+    row = pages_of(frame)[2].row
+    for page in range(12):
+        lowest = max(piece.baseline for piece in texts_of(help_of(size, page)) if piece.name != "help_foot")
+        assert lowest <= frame.height - frame.px(8) - row + 1, page  # rounded to a pixel
 
 
 def test_the_help_covers_everything() -> None:
